@@ -8,6 +8,7 @@ pub mod fit_spec;
 pub mod input_options;
 pub mod model_name;
 pub mod network;
+pub mod preset;
 pub mod table;
 pub mod variants;
 

@@ -77,7 +77,7 @@ fn page() -> String {
                 option.name,
                 option.meaning,
                 values(option),
-                option.default,
+                option.default_in_words(),
                 users(option)
             );
         }

@@ -85,8 +85,8 @@ pub fn option_names() -> Vec<&'static str> {
 
 /// Name, meaning and default of every option of a model and its training.
 #[pyfunction]
-pub fn option_table() -> Vec<(&'static str, &'static str, &'static str)> {
-    OPTIONS.iter().map(|option| (option.name, option.meaning, option.default)).collect()
+pub fn option_table() -> Vec<(&'static str, &'static str, String)> {
+    OPTIONS.iter().map(|option| (option.name, option.meaning, option.default_in_words())).collect()
 }
 
 /// Arguments of a progress callback: share of the work done, error on the training rows in percent of std,

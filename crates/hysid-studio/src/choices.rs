@@ -34,7 +34,7 @@ struct OptionChoice {
     flag: String,
     heading: &'static str,
     meaning: &'static str,
-    default: &'static str,
+    default: String,
     values: Value,
 }
 
@@ -89,7 +89,7 @@ impl OptionChoice {
             flag: flag(option.name),
             heading: option.group.heading(),
             meaning: option.meaning,
-            default: option.default,
+            default: option.default_in_words(),
             values: match option.values {
                 Values::Count(from, to) => json!({"kind": "count", "from": from, "to": to}),
                 Values::Whole => json!({"kind": "whole"}),

@@ -48,9 +48,8 @@ pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) 
 }
 
 fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
-    let defaults = RandomStopsOptions::default();
     let wanted = RandomStopsOptions {
-        stops: options.operators.unwrap_or(defaults.stops),
+        stops: options.operators(),
         hidden: options.hidden,
         rate: options.rate,
         deterioration: options.deterioration,

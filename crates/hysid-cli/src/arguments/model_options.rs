@@ -48,11 +48,7 @@ pub fn flag(name: &str) -> String {
 }
 
 fn argument(option: &'static FitOption) -> Arg {
-    let default = match option.default {
-        "" => String::new(),
-        default => format!(" [default: {default}]"),
-    };
-    let help = format!("{}{default}", option.meaning);
+    let help = format!("{} [default: {}]", option.meaning, option.default_in_words());
     let argument = Arg::new(option.name)
         .long(flag(option.name))
         .help(&help)

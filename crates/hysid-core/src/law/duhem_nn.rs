@@ -28,7 +28,7 @@ use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Rate};
+use crate::law::facts::{Defaults, Facts, Rate};
 use crate::law::interval::Interval;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -122,6 +122,14 @@ impl Law for DuhemNn {
             &["operators", "hidden", "states", "starts", "epochs", "rate_companding"],
             1.5,
         )
+        .with_defaults(Defaults {
+            operators: 6,
+            hidden: 8,
+            states: 3,
+            starts: 6,
+            epochs: 45,
+            ..Defaults::SEARCHED
+        })
     };
 
     fn virgin(&self) -> Memory {

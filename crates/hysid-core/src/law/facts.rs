@@ -19,6 +19,10 @@ pub struct Facts {
     pub options: &'static [&'static str],
     /// Smallest and largest values of such options, where they are not those of the table of options.
     pub limits: &'static [(&'static str, usize, usize)],
+    /// Default values of those options that count something.
+    pub defaults: Defaults,
+    /// The same with `degradation`; equal for a law without this variant.
+    pub defaults_with_degradation: Defaults,
     /// The options that select a variant of the law, each by itself: a further term, or another form.
     pub variants: &'static [&'static str],
     /// Natural logarithm of a ratio of errors, for data of one loop: the error inside the loop divided by the
@@ -26,7 +30,54 @@ pub struct Facts {
     pub log_error_inside: f64,
 }
 
+/// Default values of options that count something, for one law. 0 for what the law does not have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Defaults {
+    /// Plays, breakpoints, intervals of each axis of a Preisach plane, or stops.
+    pub operators: usize,
+    /// Tanh neurons.
+    pub hidden: usize,
+    /// Memory states.
+    pub states: usize,
+    /// Modes of vibration.
+    pub modes: usize,
+    /// Dead zones on each side.
+    pub dead_zones: usize,
+    /// Starts of the search.
+    pub starts: usize,
+    /// Iterations of each start.
+    pub epochs: usize,
+}
+
+impl Defaults {
+    /// Defaults of a law that linear least squares finds.
+    pub const LINEAR: Self =
+        Self { operators: 0, hidden: 0, states: 0, modes: 0, dead_zones: 0, starts: 0, epochs: 0 };
+
+    /// Defaults of a law that a search finds.
+    pub const SEARCHED: Self = Self { starts: 8, epochs: 40, ..Self::LINEAR };
+
+    /// The value of an option by its name; `None` for an option that counts nothing.
+    pub fn of(&self, option: &str) -> Option<usize> {
+        match option {
+            "operators" => Some(self.operators),
+            "hidden" => Some(self.hidden),
+            "states" => Some(self.states),
+            "modes" => Some(self.modes),
+            "dead_zones" => Some(self.dead_zones),
+            "starts" => Some(self.starts),
+            "epochs" => Some(self.epochs),
+            _ => None,
+        }
+    }
+}
+
 impl Facts {
+    /// The same facts with defaults of the law's own, in all its variants.
+    pub const fn with_defaults(self, defaults: Defaults) -> Self {
+        Self { defaults, defaults_with_degradation: defaults, ..self }
+    }
+
     /// A law that linear least squares finds, without a rate, limits or variants.
     pub const fn linear(
         name: &'static str,
@@ -43,6 +94,8 @@ impl Facts {
             identification: Identification::LeastSquares,
             options,
             limits: &[],
+            defaults: Defaults::LINEAR,
+            defaults_with_degradation: Defaults::LINEAR,
             variants: &[],
             log_error_inside,
         }
@@ -59,6 +112,7 @@ impl Facts {
             identification: Identification::Search,
             ..Self::linear(name, summary, options, log_error_inside)
         }
+        .with_defaults(Defaults::SEARCHED)
     }
 }
 

@@ -17,7 +17,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::Facts;
+use crate::law::facts::{Defaults, Facts};
 use crate::law::interval::Interval;
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
@@ -120,7 +120,8 @@ impl Law for GeneralizedPrandtlIshlinskii {
         "plays between two tanh envelopes",
         &["operators", "free_weights", "starts", "epochs"],
         0.15,
-    );
+    )
+    .with_defaults(Defaults { operators: 10, starts: 32, epochs: 60, ..Defaults::SEARCHED });
 
     fn virgin(&self) -> Vec<f64> {
         vec![self.initial; self.weights.plays()]

@@ -32,6 +32,7 @@ use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::law::facts::Defaults;
 use crate::law::interval::Interval;
 use crate::law::{Dimension, Parameter, Sample};
 use crate::simd;
@@ -323,15 +324,26 @@ fn largest_response(damping: f64) -> (f64, f64) {
     ((1.0 + decay) / (1.0 - decay), 2.0 * peak / (1.0 - decay))
 }
 
-/// Makes a law of a type that holds [`Dynamics`]: its form, its words in errors, its name and its summary.
+/// Defaults of a law with so many modes: memory states, or deteriorating stops for elements with degradation.
+pub(super) const fn defaults(modes: usize, degradation: bool) -> Defaults {
+    let search = Defaults { modes, starts: 4, epochs: 200, ..Defaults::SEARCHED };
+    match degradation {
+        false => Defaults { operators: 0, states: 2, hidden: 8, ..search },
+        true => Defaults { operators: 6, states: 0, hidden: 4, ..search },
+    }
+}
+
+/// Makes a law of a type that holds [`Dynamics`]: its form, its default number of modes, its words in errors, its name and its summary.
 macro_rules! law_of_dynamics {
-    ($law:ident, $form:expr, $words:literal, $name:literal, $summary:literal) => {
+    ($law:ident, $form:expr, $modes:literal, $words:literal, $name:literal, $summary:literal) => {
         impl $crate::law::Law for $law {
             type State = $crate::law::hysteretic_dynamics::Motion;
 
             const FACTS: $crate::law::facts::Facts = $crate::law::facts::Facts {
                 needs_time: true,
                 limits: $crate::law::hysteretic_dynamics::LIMITS,
+                defaults: $crate::law::hysteretic_dynamics::defaults($modes, false),
+                defaults_with_degradation: $crate::law::hysteretic_dynamics::defaults($modes, true),
                 ..$crate::law::facts::Facts::searched(
                     $name,
                     $summary,

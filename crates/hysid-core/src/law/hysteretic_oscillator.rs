@@ -23,6 +23,6 @@ use crate::law::hysteretic_dynamics::{Dynamics, Form, law_of_dynamics};
 pub struct HystereticOscillator(pub Dynamics);
 
 law_of_dynamics! {
-    HystereticOscillator, Form::Oscillator, "hysteretic oscillator",
+    HystereticOscillator, Form::Oscillator, 1, "hysteretic oscillator",
     "hysteretic-oscillator", "masses on springs and dampers with hysteretic elements, for data with a resonance; needs time"
 }

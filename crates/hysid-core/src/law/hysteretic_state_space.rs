@@ -20,6 +20,6 @@ use crate::law::hysteretic_dynamics::{Dynamics, Form, law_of_dynamics};
 pub struct HystereticStateSpace(pub Dynamics);
 
 law_of_dynamics! {
-    HystereticStateSpace, Form::StateSpace, "hysteretic state space model",
+    HystereticStateSpace, Form::StateSpace, 2, "hysteretic state space model",
     "hysteretic-state-space", "linear state space model with hysteretic elements, for data with a resonance; needs time"
 }

@@ -17,7 +17,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::Facts;
+use crate::law::facts::{Defaults, Facts};
 use crate::law::interval::Interval;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
@@ -120,7 +120,8 @@ impl Law for Masing {
         "virgin curve and Masing's rules at turning points",
         &["operators", "thresholds", "sign"],
         0.85,
-    );
+    )
+    .with_defaults(Defaults { operators: 30, ..Defaults::LINEAR });
 
     fn virgin(&self) -> Self::State {
         TurningPointStack::default()

@@ -30,7 +30,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::Facts;
+use crate::law::facts::{Defaults, Facts};
 use crate::law::interval::Interval;
 use crate::law::properties::ODD;
 use crate::law::yield_curve::yielding;
@@ -309,6 +309,7 @@ impl Law for MenegottoPinto {
             &["asymmetric", "starts", "epochs"],
             0.15,
         )
+        .with_defaults(Defaults { starts: 16, ..Defaults::SEARCHED })
     };
 
     fn virgin(&self) -> MenegottoPintoState {

@@ -16,7 +16,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::Facts;
+use crate::law::facts::{Defaults, Facts};
 use crate::law::interval::Interval;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::properties::WIPES_OUT;
@@ -185,7 +185,8 @@ impl Law for ModifiedPrandtlIshlinskii {
         "plays, then one-sided dead zones (Kuhnen)",
         &["operators", "thresholds", "sign", "dead_zones"],
         1.05,
-    );
+    )
+    .with_defaults(Defaults { operators: 20, dead_zones: 6, ..Defaults::LINEAR });
 
     fn virgin(&self) -> Vec<f64> {
         self.hysteresis.virgin()

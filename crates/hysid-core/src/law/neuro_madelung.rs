@@ -21,7 +21,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Rate};
+use crate::law::facts::{Defaults, Facts, Rate};
 use crate::law::interval::Interval;
 use crate::law::turning_point_stack::TurningPointStack;
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -153,6 +153,7 @@ impl Law for NeuroMadelung {
             &["hidden", "starts", "epochs", "rate_companding"],
             1.25,
         )
+        .with_defaults(Defaults { hidden: 8, starts: 16, epochs: 60, ..Defaults::SEARCHED })
     };
 
     fn virgin(&self) -> TurningPointStack<f64> {

@@ -36,7 +36,7 @@ mod reloading;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::Facts;
+use crate::law::facts::{Defaults, Facts};
 use crate::law::interval::Interval;
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -331,6 +331,7 @@ impl Law for PeakOriented {
             &["degradation", "asymmetric", "starts", "epochs"],
             0.15,
         )
+        .with_defaults(Defaults { starts: 16, ..Defaults::SEARCHED })
     };
 
     fn virgin(&self) -> PeakOrientedState {

@@ -14,7 +14,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::Facts;
+use crate::law::facts::{Defaults, Facts};
 use crate::law::interval::Interval;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
@@ -108,7 +108,8 @@ impl Law for PrandtlIshlinskii {
         "weighted plays on a grid of thresholds",
         &["operators", "thresholds", "sign"],
         0.85,
-    );
+    )
+    .with_defaults(Defaults { operators: 30, ..Defaults::LINEAR });
 
     fn virgin(&self) -> Vec<f64> {
         vec![0.0; self.thresholds.len()]

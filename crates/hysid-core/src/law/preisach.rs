@@ -20,7 +20,7 @@ pub mod plane;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::Facts;
+use crate::law::facts::{Defaults, Facts};
 use crate::law::interval::Interval;
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::thresholds::{check_weights, limited};
@@ -173,6 +173,7 @@ impl Law for Preisach {
     const FACTS: Facts = Facts {
         limits: &[("operators", 1, MOST_INTERVALS)],
         ..Facts::linear("preisach", "plane of relays with a smooth density", &["operators", "sign"], 0.85)
+            .with_defaults(Defaults { operators: 30, ..Defaults::LINEAR })
     };
 
     fn virgin(&self) -> Self::State {

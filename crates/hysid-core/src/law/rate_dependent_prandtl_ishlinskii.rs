@@ -17,7 +17,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Rate};
+use crate::law::facts::{Defaults, Facts, Rate};
 use crate::law::interval::Interval;
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
@@ -118,6 +118,7 @@ impl Law for RateDependentPrandtlIshlinskii {
             &["operators", "free_weights", "logarithmic_thresholds", "starts", "epochs", "rate_companding"],
             0.15,
         )
+        .with_defaults(Defaults { operators: 10, starts: 16, ..Defaults::SEARCHED })
     };
 
     fn virgin(&self) -> Vec<f64> {

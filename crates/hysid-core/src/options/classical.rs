@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::rate::RateMethod;
 use crate::for_each_law;
 use crate::law::Law;
-use crate::law::facts::{Facts, Identification, Rate};
+use crate::law::facts::{Defaults, Facts, Identification, Rate};
 use crate::options::input_options::InputOptions;
 use crate::options::network::SEED;
 
@@ -18,6 +18,7 @@ const RANDOM_STOPS: Facts = Facts {
         &["operators", "hidden", "no_deterioration", "history", "rate_companding"],
         1.25,
     )
+    .with_defaults(Defaults { operators: 300, ..Defaults::LINEAR })
 };
 
 macro_rules! classical_model {
@@ -146,7 +147,36 @@ pub struct ClassicalOptions {
     pub seed: u64,
 }
 
+macro_rules! counts {
+    ($($option:ident: $meaning:literal),* $(,)?) => {
+        impl ClassicalOptions {
+            $(
+                #[doc = concat!($meaning, ": the requested value, or the default of the model.")]
+                pub fn $option(&self) -> usize {
+                    self.$option.unwrap_or(self.defaults().$option)
+                }
+            )*
+        }
+    };
+}
+
+counts! {
+    operators: "Plays, breakpoints, intervals of each axis of a Preisach plane, or stops",
+    hidden: "Tanh neurons",
+    states: "Memory states",
+    modes: "Modes of vibration",
+    dead_zones: "Dead zones on each side",
+    starts: "Starts of the search",
+    epochs: "Iterations of each start",
+}
+
 impl ClassicalOptions {
+    /// The defaults of the model in its variant.
+    pub fn defaults(&self) -> &'static Defaults {
+        let facts = self.model.facts();
+        if self.degradation { &facts.defaults_with_degradation } else { &facts.defaults }
+    }
+
     /// The field of the option that selects a variant of the law: a further term, or another form.
     pub fn variant(&mut self, option: &str) -> Option<&mut bool> {
         match option {
@@ -158,11 +188,9 @@ impl ClassicalOptions {
         }
     }
 
-    /// True for a model with inertia whose elements have neither memory states nor stops. By default, only elements that
-    /// deteriorate have stops.
+    /// True for a model with inertia whose elements have neither memory states nor stops.
     pub fn has_no_memory(&self) -> bool {
-        let has_no_stops = self.operators.map_or(!self.degradation, |stops| stops == 0);
-        self.model.needs_time() && self.states == Some(0) && has_no_stops
+        self.model.needs_time() && self.states == Some(0) && self.operators() == 0
     }
 
     /// The defaults of a model.

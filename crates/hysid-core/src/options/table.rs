@@ -7,12 +7,15 @@ use crate::data::initial_state::InitialState;
 use crate::error::{OptionError, Result};
 use crate::law::duhem_nn::MOST_STATES;
 use crate::law::hysteretic_dynamics::MOST_PARTS;
-use crate::network::Family;
+use crate::network::{Family, Sizes};
 use crate::options::ModelName;
-use crate::options::auto::MOST_MEMBERS;
-use crate::options::classical::Sign;
+use crate::options::auto::{AutoOptions, MOST_MEMBERS};
+use crate::options::classical::{ClassicalModel, Sign};
 use crate::options::input_options::SHARES;
-use crate::options::network::{MOST_EPOCHS, MOST_STARTS, PENALTIES, POPULATIONS, Trainer};
+use crate::options::network::{
+    FitOptions, MOST_EPOCHS, MOST_STARTS, PENALTIES, POPULATIONS, Regularisation, SEED, Trainer,
+};
+use crate::options::preset::{self, Preset, count_of};
 
 /// An option of a fit.
 #[derive(Debug, Clone, Copy)]
@@ -25,8 +28,8 @@ pub struct FitOption {
     pub meaning: &'static str,
     /// Its valid values.
     pub values: Values,
-    /// The default, in words; empty if the meaning states it.
-    pub default: &'static str,
+    /// The default for a model, and for a network when it is trained by this trainer.
+    default: fn(ModelName, Trainer) -> Preset,
     /// Whether a network, or `auto`, uses it. A classical model lists its options itself.
     used_by: fn(ModelName, Trainer) -> bool,
 }
@@ -97,7 +100,7 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Model,
         meaning: "Model to fit. `auto` cross-validates networks and classical models and combines the best",
         values: Values::Names(models),
-        default: "auto",
+        default: |_, _| Preset::Name(ModelName::AUTO.name()),
         used_by: |_, _| true,
     },
     FitOption {
@@ -106,7 +109,12 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts \
                   that are combined",
         values: Values::Count(1, MOST_MEMBERS),
-        default: "6 for auto, otherwise 1",
+        default: |model, _| {
+            Preset::Count(match model {
+                ModelName::Auto(_) => AutoOptions::default().members,
+                _ => 1,
+            })
+        },
         used_by: |_, _| true,
     },
     FitOption {
@@ -114,7 +122,7 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Model,
         meaning: "Stop neurons of a network",
         values: NEURONS,
-        default: "10",
+        default: |_, _| Preset::Count(Sizes::default().stops),
         used_by: |_, _| true,
     },
     FitOption {
@@ -123,7 +131,11 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100), of random-stops, or of each \
                   hysteretic element (at most 60)",
         values: NEURONS,
-        default: "10; neuro-madelung, duhem-nn and hysteretic elements 8, or 4 with degradation; random-stops none",
+        default: |model, _| match model {
+            ModelName::Classical(ClassicalModel::RandomStops) => Preset::Chosen,
+            ModelName::Auto(_) => Preset::ByCandidate,
+            _ => count_of(model, "hidden", Sizes::default().hidden),
+        },
         used_by: |model, _| network_or_auto(model, |family| family.has_tanh_layer()),
     },
     FitOption {
@@ -131,7 +143,10 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Model,
         meaning: "Relaxation neurons of each input of xpnn+, for data with time stamps; 0 for none",
         values: Values::Count(0, 1000),
-        default: "4",
+        default: |model, _| match model {
+            ModelName::Auto(_) => Preset::ByCandidate,
+            _ => Preset::Count(Sizes::default().relaxation),
+        },
         used_by: |model, _| network_or_auto(model, |family| family.relaxes()),
     },
     FitOption {
@@ -139,7 +154,10 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Model,
         meaning: "Use stops that do not deteriorate",
         values: Values::Flag,
-        default: "gpnn, xpnn and xpnn+ have stops that deteriorate; chosen by cross-validation for auto",
+        default: |model, _| match model {
+            ModelName::Network(_) => Preset::Off,
+            _ => Preset::Chosen,
+        },
         used_by: |model, _| network_or_auto(model, |family| family.deteriorates()),
     },
     FitOption {
@@ -147,7 +165,7 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Model,
         meaning: "Add the running peak and the travelled path of the input as inputs",
         values: Values::Flag,
-        default: "chosen by cross-validation for auto, otherwise off",
+        default: chosen_or_off,
         used_by: |model, _| network_or_auto(model, |family| family.takes_further_inputs()),
     },
     FitOption {
@@ -156,7 +174,7 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as \
                   0.1; 0 for off",
         values: SHARE,
-        default: "chosen by cross-validation for auto, otherwise off",
+        default: chosen_or_off,
         used_by: |_, _| true,
     },
     FitOption {
@@ -165,7 +183,7 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all \
                   rows stay below; 0 for off",
         values: SHARE,
-        default: "off",
+        default: |_, _| Preset::Off,
         used_by: |model, _| matches!(model, ModelName::Network(family) if family.uses_rate()),
     },
     FitOption {
@@ -174,7 +192,10 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Rows at the beginning of each record that drive the memory and are not trained on, for records that \
                   do not begin in the virgin state",
         values: Values::Whole,
-        default: "chosen by cross-validation for auto, otherwise 0",
+        default: |model, _| match model {
+            ModelName::Auto(_) => Preset::Chosen,
+            _ => Preset::Count(0),
+        },
         used_by: |_, _| true,
     },
     FitOption {
@@ -183,7 +204,10 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "State of the memory at the beginning of each record: without history, after a visit of the upper or \
                   the lower end of the input range, demagnetised, or unknown and found for each record",
         values: Values::Names(initial_states),
-        default: "virgin; for auto, cross-validation chooses among virgin, a warm-up and unknown",
+        default: |model, _| match model {
+            ModelName::Auto(_) => Preset::Chosen,
+            _ => Preset::Name(InitialState::default().name()),
+        },
         used_by: |_, _| true,
     },
     FitOption {
@@ -192,7 +216,7 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic \
                   algorithm, or the paper's hybrid of the genetic algorithm and the sub-gradient method",
         values: Values::Names(trainers),
-        default: "subgradient; levenberg-marquardt for the networks of auto",
+        default: |_, _| Preset::Name(Trainer::default().name()),
         used_by: of_networks,
     },
     FitOption {
@@ -200,9 +224,10 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Training,
         meaning: "Number of random starts: networks, populations or parameter sets from which the training begins",
         values: Values::Count(1, MOST_STARTS),
-        default: "2; 8 for levenberg-marquardt; 1 for hybrid and genetic; 16 for \
-                  rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for \
-                  generalized-prandtl-ishlinskii, 4 for models with inertia",
+        default: |model, trainer| match model {
+            ModelName::Auto(_) => Preset::Count(AutoOptions::default().starts),
+            _ => count_of(model, "starts", trainer.default_starts()),
+        },
         used_by: |_, _| true,
     },
     FitOption {
@@ -211,8 +236,10 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm, \
                   iterations of the sub-gradient method; the hybrid uses half of them for each",
         values: Values::Count(0, MOST_EPOCHS),
-        default: "400; 2000 for hybrid and genetic; 40 for levenberg-marquardt, 25 for the networks of auto; 60 for \
-                  generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn, 200 for models with inertia",
+        default: |model, trainer| match model {
+            ModelName::Auto(_) => Preset::ByCandidate,
+            _ => count_of(model, "epochs", trainer.default_epochs()),
+        },
         used_by: |_, _| true,
     },
     FitOption {
@@ -220,7 +247,7 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Training,
         meaning: "Individuals of the genetic algorithm",
         values: Values::Count(*POPULATIONS.start(), *POPULATIONS.end()),
-        default: "50",
+        default: |_, trainer| Preset::Count(FitOptions::of(trainer).population),
         used_by: |model, trainer| of_networks(model, trainer) && trainer.is_genetic(),
     },
     FitOption {
@@ -229,7 +256,7 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Epochs without a noticeable improvement after which the genetic algorithm or the sub-gradient method \
                   ends; 0 for never",
         values: Values::Whole,
-        default: "50",
+        default: |_, trainer| Preset::Count(FitOptions::of(trainer).stall),
         used_by: |model, trainer| of_networks(model, trainer) && trainer != Trainer::LevenbergMarquardt,
     },
     FitOption {
@@ -237,7 +264,7 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Training,
         meaning: "Seed of all random numbers; the same data, options and seed give the same model",
         values: Values::Whole,
-        default: "1",
+        default: |_, _| Preset::Count(SEED as usize),
         used_by: |_, _| true,
     },
     FitOption {
@@ -246,7 +273,7 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Share of the data held out to validate a network on, between 0 and 1; the final network is trained \
                   on all data",
         values: Values::Fraction,
-        default: "the folds of a cross-validation",
+        default: |_, _| Preset::Folds,
         used_by: of_networks,
     },
     FitOption {
@@ -255,7 +282,10 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as \
                   in the paper",
         values: PENALTY,
-        default: "1e-6, or nearly 0 where that lowers the cross-validation error; chosen by cross-validation for auto",
+        default: |model, _| match model {
+            ModelName::Network(_) => Preset::Penalty(Regularisation::default().ridge),
+            _ => Preset::Chosen,
+        },
         used_by: |_, _| true,
     },
     FitOption {
@@ -263,7 +293,10 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Training,
         meaning: "Penalty on the squared weights of stops and tanh neurons",
         values: PENALTY,
-        default: "1e-7, otherwise as for ridge",
+        default: |model, _| match model {
+            ModelName::Network(_) => Preset::Penalty(Regularisation::default().decay),
+            _ => Preset::Chosen,
+        },
         used_by: |_, _| true,
     },
     FitOption {
@@ -272,8 +305,10 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of \
                   duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none)",
         values: Values::Count(0, 1000),
-        default: "10 for generalized- and rate-dependent-prandtl-ishlinskii, 20 for modified-prandtl-ishlinskii, 300 for \
-                  random-stops, 6 for duhem-nn and for hysteretic elements with degradation, none for others, otherwise 30",
+        default: |model, _| match model {
+            ModelName::Auto(_) => Preset::ByCandidate,
+            _ => count_of(model, "operators", 0),
+        },
         used_by: of_auto,
     },
     FitOption {
@@ -283,7 +318,7 @@ pub const OPTIONS: [FitOption; 31] = [
                   element, which change only when its displacement changes (0 to 10; an element without memory states \
                   and stops has no hysteresis)",
         values: Values::Count(0, MOST_STATES),
-        default: "3; 2 for hysteretic elements, or 0 with degradation",
+        default: |model, _| count_of(model, "states", 0),
         used_by: of_none,
     },
     FitOption {
@@ -291,7 +326,10 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Classical,
         meaning: "Modes of vibration of hysteretic-oscillator and hysteretic-state-space",
         values: Values::Count(1, MOST_PARTS),
-        default: "1; 2 for hysteretic-state-space",
+        default: |model, _| match model {
+            ModelName::Auto(_) => Preset::ByCandidate,
+            _ => count_of(model, "modes", 0),
+        },
         used_by: of_auto,
     },
     FitOption {
@@ -300,7 +338,7 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of \
                   the input",
         values: Values::Positive,
-        default: "chosen by cross-validation",
+        default: |_, _| Preset::Chosen,
         used_by: of_none,
     },
     FitOption {
@@ -308,7 +346,7 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Classical,
         meaning: "Sign of the weights of plays, or of the cells of a Preisach plane",
         values: Values::Names(signs),
-        default: "chosen by cross-validation",
+        default: |_, _| Preset::Chosen,
         used_by: of_none,
     },
     FitOption {
@@ -316,7 +354,7 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Classical,
         meaning: "Dead zones on each side of modified-prandtl-ishlinskii",
         values: Values::Count(1, 100),
-        default: "6",
+        default: |model, _| count_of(model, "dead_zones", 0),
         used_by: of_none,
     },
     FitOption {
@@ -325,7 +363,7 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Give each play of generalized-prandtl-ishlinskii or rate-dependent-prandtl-ishlinskii a weight of its \
                   own, in place of an exponential law",
         values: Values::Truth,
-        default: "true",
+        default: |_, _| Preset::On,
         used_by: of_none,
     },
     FitOption {
@@ -333,7 +371,7 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Classical,
         meaning: "Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate",
         values: Values::Flag,
-        default: "linear",
+        default: |_, _| Preset::Off,
         used_by: of_none,
     },
     FitOption {
@@ -342,7 +380,7 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Use bouc-wen with the degradation and pinching of Baber and Noori, peak-oriented with softening \
                   and deterioration, or hysteretic-oscillator and hysteretic-state-space with stops that deteriorate",
         values: Values::Flag,
-        default: "off",
+        default: |_, _| Preset::Off,
         used_by: of_none,
     },
     FitOption {
@@ -350,7 +388,7 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Classical,
         meaning: "Use peak-oriented or menegotto-pinto with different strengths upwards and downwards",
         values: Values::Flag,
-        default: "off",
+        default: |_, _| Preset::Off,
         used_by: of_none,
     },
     FitOption {
@@ -358,10 +396,17 @@ pub const OPTIONS: [FitOption; 31] = [
         group: Classical,
         meaning: "Use jiles-atherton in its differential form of 1992 in place of that of 1986",
         values: Values::Flag,
-        default: "off",
+        default: |_, _| Preset::Off,
         used_by: of_none,
     },
 ];
+
+fn chosen_or_off(model: ModelName, _: Trainer) -> Preset {
+    match model {
+        ModelName::Auto(_) => Preset::Chosen,
+        _ => Preset::Off,
+    }
+}
 
 fn models() -> Vec<&'static str> {
     std::iter::once(ModelName::AUTO).chain(ModelName::all()).map(ModelName::name).collect()
@@ -447,6 +492,16 @@ impl FitOption {
             }
             _ => (self.used_by)(model, trainer),
         }
+    }
+
+    /// Its default for a model; for a network, when it is trained by this trainer.
+    pub fn default(&self, model: ModelName, trainer: Trainer) -> Preset {
+        (self.default)(model, trainer)
+    }
+
+    /// Its defaults in words, with the models that have them.
+    pub fn default_in_words(&self) -> String {
+        preset::in_words(self)
     }
 
     /// The models that use it, by any trainer; in the order of [`ModelName::all`], after `auto`.

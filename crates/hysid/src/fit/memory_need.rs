@@ -7,14 +7,11 @@
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::auto;
+use crate::fit::law::duhem_nn;
 use crate::fit::law::hysteretic_dynamics::{self, Asked};
-use crate::fit::law::{
-    duhem_nn, generalized_prandtl_ishlinskii, masing, modified_prandtl_ishlinskii, neuro_madelung,
-    prandtl_ishlinskii, preisach,
-};
 use crate::fit::network::curvature::has_few_rows;
 use crate::fit::network::fitting::room;
-use crate::fit::network::random_stops::{HIDDEN, RandomStopsOptions};
+use crate::fit::network::random_stops::HIDDEN;
 use crate::law::duhem_nn::Layout;
 use crate::law::hysteretic_dynamics::Form;
 use crate::linear_algebra::dilated_space::DilatedSpace;
@@ -32,6 +29,9 @@ const ROWS_OF_A_SEARCH: usize = 5000;
 
 /// Runs on folds: three starts on each of five.
 const RUNS_ON_FOLDS: usize = 15;
+
+/// Largest number of searched parameters of a law without operators and neurons, about.
+const MOST_PARAMETERS_OF_A_LAW: usize = 40;
 
 /// Peak memory of an identification, without that of the data themselves.
 #[derive(Debug, Clone, PartialEq)]
@@ -168,15 +168,12 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
         let sums = (sums, format!("sums over {operators} operators"), FEWER_OPERATORS);
         largest_of(sums.0 + copies, [sums, (copies, format!("{rows} rows"), FEWER_ROWS)])
     };
-    let operators = |default: usize| options.operators.unwrap_or(default);
     let given = options.thresholds.as_ref().map(Vec::len);
-    let plays = |default: usize| linear(given.unwrap_or(default) as f64 + 3.0, given.unwrap_or(default));
+    let plays = given.unwrap_or(options.operators());
     match options.model {
-        ClassicalModel::PrandtlIshlinskii => plays(operators(prandtl_ishlinskii::OPERATORS)),
-        ClassicalModel::Masing => plays(operators(masing::OPERATORS)),
+        ClassicalModel::PrandtlIshlinskii | ClassicalModel::Masing => linear(plays as f64 + 3.0, plays),
         ClassicalModel::ModifiedPrandtlIshlinskii => {
-            let plays = given.unwrap_or(operators(modified_prandtl_ishlinskii::OPERATORS));
-            let zones = 2 * options.dead_zones.unwrap_or(modified_prandtl_ishlinskii::DEAD_ZONES);
+            let zones = 2 * options.dead_zones();
             let sums = linear((plays + zones + 3) as f64, plays);
             // Plays of every row are stored for each grid, and copied for each fold that is under way.
             let plays_of_rows = (3.0 + 2.0 * threads) * scored * (plays + 6) as f64;
@@ -188,7 +185,7 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             )
         }
         ClassicalModel::Preisach => {
-            let intervals = operators(preisach::INTERVALS) as f64;
+            let intervals = options.operators() as f64;
             let cells = 0.5 * intervals * (intervals + 1.0) + intervals + 3.0;
             let coarse = linear(233.0, 20);
             let fine = 3.0 * cells * cells;
@@ -200,8 +197,7 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
         }
         ClassicalModel::RandomStops => {
             let inputs = data.names().inputs.len() + if options.shaping.history { HISTORY_INPUTS } else { 0 };
-            let (stops, hidden) =
-                (operators(RandomStopsOptions::default().stops), options.hidden.unwrap_or(HIDDEN));
+            let (stops, hidden) = (options.operators(), options.hidden.unwrap_or(HIDDEN));
             let features = (stops + hidden + 3) as f64;
             let weights = (hidden * stops) as f64;
             let mut need = linear(features, stops);
@@ -209,7 +205,7 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             need
         }
         ClassicalModel::DuhemNn => {
-            let starts = options.starts.unwrap_or(duhem_nn::STARTS) as f64;
+            let starts = options.starts() as f64;
             let layout = Layout::new(duhem_nn::shape_of(options, data.has_time()));
             let (p, m) = (layout.count() as f64, layout.shape.terms() as f64);
             let busy = threads.min(starts);
@@ -233,8 +229,7 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             };
             // Numbers that no model can have are refused by the fit itself.
             let parameters = Asked::of(form, options).map_or(0, |asked| asked.layout().count());
-            let (p, starts) =
-                (parameters as f64, options.starts.unwrap_or(hysteretic_dynamics::STARTS) as f64);
+            let (p, starts) = (parameters as f64, options.starts() as f64);
             let at_once = data.records().len().min(hysteretic_dynamics::AT_ONCE) as f64;
             let busy = threads.min(starts * at_once);
             // As for a Duhem network; a row of derivatives for each number that moves beside them. A start keeps the sums
@@ -250,9 +245,10 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             )
         }
         _ => {
-            let starts = options.starts.unwrap_or(generalized_prandtl_ishlinskii::STARTS) as f64;
+            let starts = options.starts() as f64;
             let compared = scored.min(ROWS_OF_A_SEARCH as f64);
-            let variables = operators(12).max(options.hidden.unwrap_or(neuro_madelung::HIDDEN) * 5) as f64;
+            let variables =
+                options.operators().max(options.hidden() * 5).max(MOST_PARAMETERS_OF_A_LAW) as f64;
             let residuals = (starts + 3.0 * variables * threads) * compared + 24.0 * starts * 20.0;
             let taken_by = format!("residuals of {starts} starts");
             largest_of(

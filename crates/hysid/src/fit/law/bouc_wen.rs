@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::fit::law::Identify;
 use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
-    Columns, EPOCHS, Effort, Family, Identified, Memory, STARTS, SearchObserver, Variable, search, thinned,
+    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Sample;
 use crate::law::bouc_wen::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
@@ -27,7 +27,7 @@ impl Identify for BoucWen {
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let (family, series) = posed(data, options)?;
-        let effort = Effort::of(options, STARTS, EPOCHS);
+        let effort = Effort::of(options);
         search(&family, &series, effort, observer, stop)
     }
 

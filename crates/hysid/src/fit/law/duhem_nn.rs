@@ -39,21 +39,6 @@ use crate::options::table::check_counts;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
-/// Default number of stops.
-const STOPS: usize = 6;
-
-/// Default number of tanh neurons.
-const HIDDEN: usize = 8;
-
-/// Default number of states.
-const STATES: usize = 3;
-
-/// Default number of starts of the search.
-pub(crate) const STARTS: usize = 6;
-
-/// Default number of iterations of each start.
-const EPOCHS: usize = 45;
-
 /// Share of the data that judges the starts.
 const HELD_OUT: f64 = 0.25;
 
@@ -86,7 +71,7 @@ impl Identify for DuhemNn {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let effort = Effort::of(options, STARTS, EPOCHS).validated()?;
+        let effort = Effort::of(options).validated()?;
         let frame = Frame::new(data, options)?;
         let whole = Task::new(&frame, data, options, stop)?;
         // Nothing is to be chosen from a single start, so that it is trained on all data.
@@ -174,9 +159,9 @@ pub(crate) fn shape_of(options: &ClassicalOptions, has_time: bool) -> Shape {
     let has_rate = options.rate.is_some();
     Shape {
         channels: if has_rate { 2 } else { 1 },
-        stops: options.operators.unwrap_or(STOPS),
-        states: options.states.unwrap_or(STATES),
-        neurons: options.hidden.unwrap_or(HIDDEN),
+        stops: options.operators(),
+        states: options.states(),
+        neurons: options.hidden(),
         has_time: has_time && has_rate,
     }
 }

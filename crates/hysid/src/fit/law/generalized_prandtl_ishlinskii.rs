@@ -25,15 +25,6 @@ use crate::stop_check::StopCheck;
 /// it would leap where the input leaves the range.
 const SMALLEST_SHARE: f64 = 0.1;
 
-/// Default number of plays.
-const OPERATORS: usize = 10;
-
-/// Default number of starts of the search.
-pub(crate) const STARTS: usize = 32;
-
-/// Default number of iterations of each start.
-const EPOCHS: usize = 60;
-
 impl Identify for GeneralizedPrandtlIshlinskii {
     fn identify(
         data: &Dataset,
@@ -42,14 +33,14 @@ impl Identify for GeneralizedPrandtlIshlinskii {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let operators = options.operators.unwrap_or(OPERATORS);
+        let operators = options.operators();
         if operators == 0 || operators > MOST_PLAYS {
             return Err(
                 OptionError::value("operators", operators, format!("choose 1 to {MOST_PLAYS}")).into()
             );
         }
         let (family, series) = posed(data, options)?;
-        let effort = Effort::of(options, STARTS, EPOCHS);
+        let effort = Effort::of(options);
         search(&family, &series, effort, observer, stop)
     }
 
@@ -100,7 +91,7 @@ impl Plays {
             Variable::linear(-1.0, 1.0),
         ];
         let mut non_negative = vec![false];
-        let operators = options.operators.unwrap_or(OPERATORS);
+        let operators = options.operators();
         let free_weights = options.free_weights.unwrap_or(true);
         if free_weights {
             // Plays alone lag; a loop the other way round needs weights of both signs.

@@ -39,19 +39,6 @@ use records::Records;
 pub(crate) use task::AT_ONCE;
 use task::{Task, Value};
 
-/// Default number of starts of the search.
-pub(crate) const STARTS: usize = 4;
-
-/// Default number of iterations of each start.
-const EPOCHS: usize = 200;
-
-/// Default parts of an element, and of one whose stops deteriorate.
-const USUAL: Shape = Shape { stops: 0, states: 2, neurons: 8, deteriorates: false };
-const DETERIORATING: Shape = Shape { stops: 6, states: 0, neurons: 4, deteriorates: true };
-
-/// Default number of modes of a state space model; an oscillator has one.
-const MODES_OF_STATE_SPACE: usize = 2;
-
 /// After so many epochs half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 30;
 
@@ -116,13 +103,11 @@ impl Asked {
     /// # Errors
     /// Numbers that no model can have.
     pub fn of(form: Form, options: &ClassicalOptions) -> Result<Self> {
-        let of_form = if form == Form::Oscillator { 1 } else { MODES_OF_STATE_SPACE };
-        let modes = options.modes.unwrap_or(of_form);
-        let usual = if options.degradation { DETERIORATING } else { USUAL };
+        let modes = options.modes();
         let shape = Shape {
-            stops: options.operators.unwrap_or(usual.stops),
-            states: options.states.unwrap_or(usual.states),
-            neurons: options.hidden.unwrap_or(usual.neurons),
+            stops: options.operators(),
+            states: options.states(),
+            neurons: options.hidden(),
             deteriorates: options.degradation,
         };
         if shape.deteriorates && shape.stops == 0 {
@@ -157,7 +142,7 @@ pub(super) fn identify(
     stop: StopCheck<'_>,
 ) -> Result<Identified<Dynamics>> {
     data.check_identifiable(FEWEST_ROWS)?;
-    let effort = Effort::of(options, STARTS, EPOCHS).validated()?;
+    let effort = Effort::of(options).validated()?;
     let records = Records::of(data)?;
     let linear = LinearStarts::find(&records, asked, stop).ok_or(Error::Stopped)?;
     let layout = asked.layout();

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::fit::law::Identify;
 use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
-    Columns, EPOCHS, Effort, Family, Identified, Memory, STARTS, SearchObserver, Variable, search, thinned,
+    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
 use crate::law::series::Series;
@@ -23,7 +23,7 @@ impl Identify for JilesAtherton {
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let (family, series) = posed(data, options)?;
-        let effort = Effort::of(options, STARTS, EPOCHS);
+        let effort = Effort::of(options);
         search(&family, &series, effort, observer, stop)
     }
 

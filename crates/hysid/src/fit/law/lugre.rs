@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
-    Columns, EPOCHS, Effort, Family, Identified, Memory, STARTS, SearchObserver, Variable, search, thinned,
+    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::lugre::{Lugre, STRIBECK_BOUNDS};
@@ -27,7 +27,7 @@ impl Identify for Lugre {
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let (family, series) = posed(data, options)?;
-        let effort = Effort::of(options, STARTS, EPOCHS);
+        let effort = Effort::of(options);
         search(&family, &series, effort, observer, stop)
     }
 

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::fit::law::Identify;
 use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
-    Columns, EPOCHS, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::menegotto_pinto::{Downwards, LOSS_BOUNDS, MenegottoPinto};
@@ -18,9 +18,6 @@ use crate::stop_check::StopCheck;
 /// Elementary operations of a row, roughly.
 const OPERATIONS_A_ROW: usize = 150;
 
-/// Starts unless the user says otherwise: a run takes little time.
-const STARTS: usize = 16;
-
 impl Identify for MenegottoPinto {
     fn identify(
         data: &Dataset,
@@ -30,7 +27,7 @@ impl Identify for MenegottoPinto {
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let (family, series) = posed(data, options)?;
-        search(&family, &series, Effort::of(options, STARTS, EPOCHS), observer, stop)
+        search(&family, &series, Effort::of(options), observer, stop)
     }
 
     fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {

@@ -30,12 +30,6 @@ use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
 use rayon::prelude::*;
 
-/// Default number of plays.
-pub(crate) const OPERATORS: usize = 20;
-
-/// Default number of dead zones on each side.
-pub(crate) const DEAD_ZONES: usize = 6;
-
 /// Most dead zones on each side.
 const MOST_DEAD_ZONES: usize = 100;
 
@@ -54,7 +48,7 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         // A stop leaves out priors that were not compared yet, and further refinement.
         let rows = TrainingRows::of(data)?;
         let scaling = &rows.scaling;
-        let dead_zones = options.dead_zones.unwrap_or(DEAD_ZONES);
+        let dead_zones = options.dead_zones();
         if !(1..=MOST_DEAD_ZONES).contains(&dead_zones) {
             return Err(OptionError::value(
                 "dead_zones",
@@ -66,7 +60,7 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         options.thresholds.as_deref().map_or(Ok(()), check_thresholds)?;
         let given: Option<Vec<f64>> =
             options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
-        let grids = grids::candidates(given.as_deref(), options.operators.unwrap_or(OPERATORS), 1.0)?;
+        let grids = grids::candidates(given.as_deref(), options.operators(), 1.0)?;
         let problem = |grid: &[f64]| Problem::new(&rows, grid, dead_zones, stop);
         let problems = grids::fits_on_grids(&grids, problem)?;
         let signs = options.sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);

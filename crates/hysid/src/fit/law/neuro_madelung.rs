@@ -40,15 +40,6 @@ const DECAY: f64 = 1e-5;
 const HELD_OUT: f64 = 0.25;
 /// After so many epochs of free run half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 8;
-/// Default number of tanh neurons.
-pub(crate) const HIDDEN: usize = 8;
-
-/// Default number of starts of the search.
-const STARTS: usize = 16;
-
-/// Default number of iterations of each start.
-const EPOCHS: usize = 60;
-
 impl Identify for NeuroMadelung {
     fn identify(
         data: &Dataset,
@@ -57,12 +48,12 @@ impl Identify for NeuroMadelung {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let hidden = options.hidden.unwrap_or(HIDDEN);
+        let hidden = options.hidden();
         if hidden == 0 || hidden > MOST_HIDDEN {
             let needed = format!("choose 1 to {MOST_HIDDEN}");
             return Err(OptionError::value("hidden", hidden, needed).into());
         }
-        let effort = Effort::of(options, STARTS, EPOCHS).validated()?;
+        let effort = Effort::of(options).validated()?;
         let frame = frame(data, options)?;
         let whole = Task::new(&frame, data, options, stop)?;
         let Some((kept, held)) = data.split_for_validation(HELD_OUT) else {
@@ -243,7 +234,7 @@ impl<'a> Task<'a> {
                 *y = (*y - frame.output_mean) / frame.output_scale;
             }
         }
-        Ok(Self { frame, series, hidden: options.hidden.unwrap_or(HIDDEN), stop })
+        Ok(Self { frame, series, hidden: options.hidden(), stop })
     }
 
     fn inputs(&self) -> usize {

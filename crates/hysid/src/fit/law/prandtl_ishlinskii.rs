@@ -13,20 +13,13 @@ use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
-/// Default number of plays.
-pub(crate) const OPERATORS: usize = 30;
-
 /// Linear least squares with a ridge penalty chosen by cross-validation.
 impl LeastSquaresLaw for PrandtlIshlinskii {
     fn fitted(data: &Dataset, options: &ClassicalOptions, stop: StopCheck<'_>) -> Result<Self> {
         // A stop leaves out grids and penalties that were not compared yet.
         let rows = TrainingRows::of(data)?;
         let scaling = &rows.scaling;
-        let grids = grids::candidates(
-            options.thresholds.as_deref(),
-            options.operators.unwrap_or(OPERATORS),
-            scaling.inputs[0],
-        )?;
+        let grids = grids::candidates(options.thresholds.as_deref(), options.operators(), scaling.inputs[0])?;
         let (grid, weights) = best_on_grids(grids, |grid| weights_on_grid(&rows, grid, options.sign, stop))?;
         let slope = scaling.output_deviation / scaling.inputs[0];
         Self::new(

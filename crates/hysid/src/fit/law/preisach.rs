@@ -23,9 +23,6 @@ use crate::options::classical::ClassicalOptions;
 use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
 
-/// Default number of intervals of each axis.
-pub(crate) const INTERVALS: usize = 30;
-
 /// Most intervals on which the penalty is chosen; what is chosen is then taken for the finer plane.
 const INTERVALS_FOR_CHOICE: usize = 20;
 
@@ -38,7 +35,7 @@ impl LeastSquaresLaw for Preisach {
         // A stop leaves out folds of the choice, and the finer plane.
         let rows = TrainingRows::of(data)?;
         let TrainingRows { series, folds, scaling } = &rows;
-        let intervals = options.operators.unwrap_or(INTERVALS);
+        let intervals = options.operators();
         if !(1..=MOST_INTERVALS).contains(&intervals) {
             return Err(
                 OptionError::value("operators", intervals, format!("choose 1 to {MOST_INTERVALS}")).into()

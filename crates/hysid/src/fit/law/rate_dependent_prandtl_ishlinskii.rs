@@ -7,7 +7,7 @@ use crate::error::{Error, OptionError, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
-    Columns, EPOCHS, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::play_weights::MOST_PLAYS;
@@ -27,12 +27,6 @@ enum ThresholdForm {
     Logarithmic,
 }
 
-/// Default number of plays.
-const OPERATORS: usize = 10;
-
-/// Default number of starts of the search.
-const STARTS: usize = 16;
-
 impl Identify for RateDependentPrandtlIshlinskii {
     fn identify(
         data: &Dataset,
@@ -41,14 +35,14 @@ impl Identify for RateDependentPrandtlIshlinskii {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let operators = options.operators.unwrap_or(OPERATORS);
+        let operators = options.operators();
         if operators == 0 || operators > MOST_PLAYS {
             return Err(
                 OptionError::value("operators", operators, format!("choose 1 to {MOST_PLAYS}")).into()
             );
         }
         let (family, series) = posed(data, options)?;
-        let effort = Effort::of(options, STARTS, EPOCHS);
+        let effort = Effort::of(options);
         search(&family, &series, effort, observer, stop)
     }
 
@@ -80,7 +74,7 @@ struct Plays {
 
 impl Plays {
     fn new(series: &[Series], options: &ClassicalOptions) -> Self {
-        let operators = options.operators.unwrap_or(OPERATORS);
+        let operators = options.operators();
         let free_weights = options.free_weights.unwrap_or(true);
         let form = match options.logarithmic_thresholds {
             true => ThresholdForm::Logarithmic,

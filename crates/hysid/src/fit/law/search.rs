@@ -56,12 +56,6 @@ const ROUNDS_TO_PROVE_ITSELF: usize = 6;
 /// Starts that are never given up.
 const FINALISTS: usize = 2;
 
-/// Starts of a search unless the user or the law says otherwise.
-pub(crate) const STARTS: usize = 8;
-
-/// Iterations of each start unless the user or the law says otherwise.
-pub(crate) const EPOCHS: usize = 40;
-
 /// Bounds of a searched parameter and the scale it is searched on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Variable {
@@ -194,11 +188,11 @@ pub(crate) struct Effort {
 }
 
 impl Effort {
-    /// What was asked for, with the law's own starts and epochs where nothing was.
-    pub fn of(options: &ClassicalOptions, starts: usize, epochs: usize) -> Self {
+    /// The requested starts and epochs, or those of the law.
+    pub fn of(options: &ClassicalOptions) -> Self {
         Self {
-            starts: options.starts.unwrap_or(starts),
-            epochs: options.epochs.unwrap_or(epochs),
+            starts: options.starts(),
+            epochs: options.epochs(),
             seed: options.seed,
             near: options.near.clone(),
         }

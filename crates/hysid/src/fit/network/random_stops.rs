@@ -25,7 +25,7 @@ use crate::fit::network::start::{self, Capacities};
 use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network, RowsOverRecords};
 use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
-use crate::options::classical::Sign;
+use crate::options::classical::{ClassicalModel, Sign};
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
 
@@ -48,7 +48,13 @@ pub struct RandomStopsOptions {
 
 impl Default for RandomStopsOptions {
     fn default() -> Self {
-        Self { stops: 300, hidden: None, rate: None, deterioration: None, seed: 1 }
+        Self {
+            stops: ClassicalModel::RandomStops.facts().defaults.operators,
+            hidden: None,
+            rate: None,
+            deterioration: None,
+            seed: 1,
+        }
     }
 }
 

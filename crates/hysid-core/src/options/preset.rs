@@ -1,0 +1,184 @@
+//! Default values of options, typed: what the code takes and what help, pages and the Python package print.
+
+use std::fmt;
+
+use crate::options::ModelName;
+use crate::options::classical::ClassicalModel;
+use crate::options::network::Trainer;
+use crate::options::table::FitOption;
+
+/// The default of an option for one model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Preset {
+    /// A number of things.
+    Count(usize),
+    /// A count, and another one with `degradation`.
+    WithDegradation(usize, usize),
+    /// A penalty, or nearly 0 where that lowers the cross-validation error.
+    Penalty(f64),
+    /// One of the option's names.
+    Name(&'static str),
+    /// True.
+    On,
+    /// Not given.
+    Off,
+    /// Cross-validation chooses.
+    Chosen,
+    /// Each candidate of `auto` has its own.
+    ByCandidate,
+    /// No held-out share: the folds of a cross-validation.
+    Folds,
+}
+
+impl fmt::Display for Preset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Count(count) => write!(f, "{count}"),
+            Self::WithDegradation(plain, degrading) => write!(f, "{plain} ({degrading} with degradation)"),
+            Self::Penalty(penalty) => {
+                write!(f, "{penalty:e}, or nearly 0 where that lowers the cross-validation error")
+            }
+            Self::Name(name) => f.write_str(name),
+            Self::On => f.write_str("true"),
+            Self::Off => f.write_str("off"),
+            Self::Chosen => f.write_str("chosen by cross-validation"),
+            Self::ByCandidate => f.write_str("set by each candidate"),
+            Self::Folds => f.write_str("the folds of a cross-validation"),
+        }
+    }
+}
+
+/// Names that one default is listed for at most; a longer list becomes "otherwise".
+const MOST_NAMES: usize = 5;
+
+/// The default of an option in words, for the models and trainers that use it.
+pub(super) fn in_words(option: &FitOption) -> String {
+    let mut groups: Vec<(String, Vec<&'static str>)> = Vec::new();
+    for (name, preset) in by_name(option) {
+        let text = preset.to_string();
+        match groups.iter_mut().find(|group| group.0 == text) {
+            Some(group) => group.1.push(name),
+            None => groups.push((text, vec![name])),
+        }
+    }
+    let [(only, _)] = &groups[..] else {
+        let longest = groups.iter().map(|group| group.1.len()).max().unwrap_or_default();
+        let (mut named, otherwise): (Vec<_>, Vec<_>) =
+            groups.into_iter().partition(|group| group.1.len() < longest.max(MOST_NAMES + 1));
+        let otherwise = otherwise.into_iter().map(|(text, _)| format!("otherwise {text}"));
+        let named = named.drain(..).map(|(text, names)| format!("{text} for {}", listed(&names)));
+        return named.chain(otherwise).collect::<Vec<_>>().join("; ");
+    };
+    only.clone()
+}
+
+/// The defaults of an option with the name of the model, or of the trainer where networks differ by it.
+fn by_name(option: &FitOption) -> Vec<(&'static str, Preset)> {
+    let users = option.users();
+    let network = users.iter().copied().find(|model| matches!(model, ModelName::Network(_)));
+    let of_trainers: Vec<(&'static str, Preset)> = network
+        .into_iter()
+        .flat_map(|network| Trainer::ALL.map(|trainer| (network, trainer)))
+        .filter(|(network, trainer)| option.is_used_by(*network, *trainer))
+        .map(|(network, trainer)| (trainer.name(), option.default(network, trainer)))
+        .collect();
+    let all_alike = of_trainers.windows(2).all(|pair| pair[0].1 == pair[1].1);
+    let of_networks = match of_trainers.first() {
+        Some((_, preset)) if all_alike => vec![("networks", *preset)],
+        _ => of_trainers,
+    };
+    let others = users.into_iter().filter(|model| !matches!(model, ModelName::Network(_)));
+    let others = others.map(|model| (model.name(), option.default(model, Trainer::default())));
+    of_networks.into_iter().chain(others).collect()
+}
+
+/// The default count of an option that laws and networks have: the law's own, or that of networks.
+pub(super) fn count_of(model: ModelName, option: &str, of_networks: usize) -> Preset {
+    let ModelName::Classical(law) = model else { return Preset::Count(of_networks) };
+    let [plain, degrading] = counts(law, option);
+    if plain == degrading { Preset::Count(plain) } else { Preset::WithDegradation(plain, degrading) }
+}
+
+/// The default counts of a law, without and with degradation.
+fn counts(law: ClassicalModel, option: &str) -> [usize; 2] {
+    let facts = law.facts();
+    [facts.defaults, facts.defaults_with_degradation]
+        .map(|defaults| defaults.of(option).expect("an option that counts something"))
+}
+
+/// Names with commas, and `and` before the last.
+fn listed(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => (*one).into(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::classical::ClassicalOptions;
+
+    #[test]
+    fn a_default_in_words_names_every_model_with_another_value() {
+        let words = |name: &str| FitOption::named(name).unwrap().default_in_words();
+        assert_eq!(words("seed"), "1");
+        assert_eq!(words("members"), "6 for auto; otherwise 1");
+        assert_eq!(words("dead_zones"), "6");
+        assert_eq!(
+            words("states"),
+            "3 for duhem-nn; 2 (0 with degradation) for hysteretic-oscillator and hysteretic-state-space"
+        );
+        assert!(words("starts").starts_with("2 for subgradient and auto; 8 for levenberg-marquardt,"));
+    }
+
+    #[test]
+    fn a_printed_default_is_the_value_that_a_fit_takes() {
+        for &law in ClassicalModel::ALL {
+            let options = ClassicalOptions::of(law);
+            let degrading = ClassicalOptions { degradation: true, ..options.clone() };
+            let taken = |options: &ClassicalOptions, name: &str| match name {
+                "operators" => options.operators(),
+                "hidden" => options.hidden(),
+                "states" => options.states(),
+                "modes" => options.modes(),
+                "dead_zones" => options.dead_zones(),
+                "starts" => options.starts(),
+                "epochs" => options.epochs(),
+                _ => unreachable!("an option that counts something"),
+            };
+            for name in ["operators", "hidden", "states", "modes", "dead_zones", "starts", "epochs"] {
+                let option = FitOption::named(name).unwrap();
+                if !option.is_used_by(ModelName::Classical(law), Trainer::default()) {
+                    continue;
+                }
+                let printed = match option.default(ModelName::Classical(law), Trainer::default()) {
+                    Preset::Count(count) => [count; 2],
+                    Preset::WithDegradation(plain, degrading) => [plain, degrading],
+                    Preset::Chosen => continue,
+                    other => panic!("{name} of {}: {other:?}", law.name()),
+                };
+                assert_eq!(
+                    printed,
+                    [taken(&options, name), taken(&degrading, name)],
+                    "{name} {}",
+                    law.name()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn networks_differ_only_by_their_trainer() {
+        for option in &crate::options::table::OPTIONS {
+            let networks = option.users().into_iter().filter(|model| matches!(model, ModelName::Network(_)));
+            let networks: Vec<ModelName> = networks.collect();
+            for trainer in Trainer::ALL {
+                for pair in networks.windows(2) {
+                    assert_eq!(option.default(pair[0], trainer), option.default(pair[1], trainer));
+                }
+            }
+        }
+    }
+}
