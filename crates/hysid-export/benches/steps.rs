@@ -1,6 +1,6 @@
 //! Time of a step of exported C code beside the library's stepper, and time of exports: `cargo bench -p hysid-export`.
 
-#[path = "../tests/models/mod.rs"]
+#[path = "../tests/suite/models/mod.rs"]
 mod models;
 
 use std::fs;

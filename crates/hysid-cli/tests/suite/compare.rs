@@ -1,0 +1,135 @@
+//! `hysid compare` as a user runs it, and models that are no networks in the other commands.
+
+use std::time::{Duration, Instant};
+
+use crate::workbench::{Ran, Workbench, table};
+
+fn bench() -> Workbench {
+    let bench = Workbench::new();
+    bench.put("good.csv", table());
+    bench
+}
+
+fn json(ran: &Ran) -> serde_json::Value {
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
+}
+
+#[test]
+fn models_are_sorted_by_their_error_on_unseen_data() {
+    let bench = bench();
+    let models = "prandtl-ishlinskii,pnn,preisach,random-stops,rate-dependent-prandtl-ishlinskii";
+    let compared =
+        bench.run(&format!("compare good.csv --test good.csv --models {models} --json --rate none"));
+    let rows = json(&compared);
+    let rows = rows.as_array().unwrap();
+    assert_eq!(rows.len(), 6);
+    let errors: Vec<f64> = rows.iter().filter_map(|row| row["test"]["nrmse_std_percent"].as_f64()).collect();
+    assert_eq!(errors.len(), 4);
+    assert!(errors.is_sorted(), "{errors:?}");
+    // The same data for both: the same errors.
+    assert!(rows[..4].iter().all(|row| row["test"] == row["train"]));
+    assert!(rows[..4].iter().all(|row| row["simulate_ns_per_sample"].as_f64().unwrap() > 0.0));
+    // One that cannot be fitted does not stop the others, and says why.
+    for row in &rows[4..] {
+        assert_eq!(row["model"], "rate-dependent-prandtl-ishlinskii");
+        assert!(row["error"].as_str().unwrap().contains("needs the rate"), "{row}");
+    }
+    let page = bench.text("good-compared.html");
+    for word in ["Error against size", "prandtl-ishlinskii", "needs the rate", "<svg"] {
+        assert!(page.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn the_table_fits_a_terminal() {
+    let bench = bench();
+    let ran = bench.run("compare good.csv --models gpnn,bouc-wen,generalized-prandtl-ishlinskii --no-report");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    assert!(ran.stdout.lines().all(|line| line.chars().count() <= 80), "{}", ran.stdout);
+    assert!(ran.stdout.contains("the training data (name test data with --test)"), "{}", ran.stdout);
+    assert!(ran.stderr.contains("6/6"), "{}", ran.stderr);
+    assert!(!bench.path("good-compared.html").exists());
+}
+
+#[test]
+fn each_model_keeps_its_time_limit() {
+    let bench = bench();
+    let began = Instant::now();
+    let ran = bench.run("compare good.csv --models xpnn+,xpnn --time-limit 0.05 --no-report --json");
+    assert!(began.elapsed() < Duration::from_secs(20));
+    let rows = json(&ran);
+    assert!(rows.as_array().unwrap().iter().all(|row| row["termination"] == "stopped"), "{rows}");
+}
+
+#[test]
+fn a_fit_that_was_stopped_is_marked() {
+    let bench = bench();
+    let ran = bench.run("compare good.csv --models xpnn+ --time-limit 0.05");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let row = ran.stdout.lines().find(|line| line.starts_with("xpnn+")).unwrap();
+    assert!(row.contains("* "), "{}", ran.stdout);
+    for text in [ran.stdout, bench.text("good-compared.html")] {
+        assert!(text.contains("* stopped early"), "{text}");
+    }
+    let whole = bench.run("compare good.csv --models prandtl-ishlinskii --no-report");
+    assert!(!whole.stdout.contains('*'), "{}", whole.stdout);
+}
+
+#[test]
+fn a_law_is_compared_in_all_its_variants() {
+    let bench = bench();
+    let rows = json(&bench.run("compare good.csv --models bouc-wen --no-report --json --time-limit 2"));
+    let mut labels: Vec<&str> =
+        rows.as_array().unwrap().iter().map(|row| row["label"].as_str().unwrap()).collect();
+    labels.sort_unstable();
+    let expected = ["bouc-wen", "bouc-wen (degradation)", "bouc-wen (degradation, rate)", "bouc-wen (rate)"];
+    assert_eq!(labels, expected);
+    assert!(rows.as_array().unwrap().iter().all(|row| row["model"] == "bouc-wen"));
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let bench = bench();
+    bench.put("other.csv", "a,b\n1,2\n");
+    for (arguments, status, words) in [
+        ("compare good.csv --models xpnn,presach", 2, "presach"),
+        ("compare good.csv --test other.csv --models pnn", 1, "other.csv"),
+        ("compare none.csv", 1, "none.csv"),
+        ("compare good.csv --models pnn -o good.csv", 2, "would be overwritten"),
+    ] {
+        let ran = bench.run(arguments);
+        assert_eq!(ran.status, Some(status), "{arguments}: {}", ran.stderr);
+        assert!(ran.last_line().contains(words), "{arguments}: {}", ran.stderr);
+    }
+}
+
+#[test]
+fn a_law_is_fitted_reported_judged_and_simulated_like_a_network() {
+    let bench = bench();
+    let ran = bench.run("fit good.csv --model bouc-wen -o law.json --starts 2 --epochs 10");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    assert!(ran.stdout.contains("bouc-wen with 7 parameters; multi-start search"), "{}", ran.stdout);
+    let page = bench.text("law.html");
+    for word in ["Parameters", "yield displacement", "Convergence", "multi-start search"] {
+        assert!(page.contains(word), "{word}");
+    }
+    assert_eq!(bench.run("evaluate law.json good.csv").status, Some(0));
+    let simulated = bench.run("simulate law.json good.csv");
+    assert!(simulated.stdout.starts_with("t,x,y,y_model\n"), "{}", simulated.stdout);
+    for (arguments, words) in [
+        ("fit good.csv --model bouc-wen --checkpoint c.bin -o m.json", "has no checkpoints"),
+        ("fit good.csv --model rate-dependent-prandtl-ishlinskii --rate none -o m.json", "needs the rate"),
+        ("fit good.csv --model prandtl-ishlinskii --thresholds 0.2,0.1 -o m.json", "threshold"),
+        ("fit good.csv --model preisach --operators 5000", "--operators"),
+    ] {
+        let ran = bench.run(arguments);
+        assert_eq!(ran.status, Some(2), "{arguments}: {}", ran.stderr);
+        assert!(ran.last_line().contains(words), "{arguments}: {}", ran.stderr);
+    }
+    let useless = bench.run("fit good.csv --model preisach --starts 3 --degradation --operators 6 -o m.json");
+    assert_eq!(useless.status, Some(0), "{}", useless.stderr);
+    for option in ["--starts", "--degradation"] {
+        assert!(useless.stderr.contains(&format!("preisach ignores {option}")), "{}", useless.stderr);
+    }
+}

@@ -1,0 +1,364 @@
+//! `hysid diagnose` as a user runs it: text, JSON, page, and what it refuses.
+
+use crate::workbench::{Ran, Workbench, csv, error_line, rows, table, with_cell, with_column};
+use serde_json::Value;
+
+const PROPERTIES: [&str; 10] = [
+    "static-hysteresis",
+    "orientation",
+    "rate-dependence",
+    "wiping-out",
+    "congruency",
+    "masing",
+    "odd-symmetry",
+    "saturation",
+    "deterioration",
+    "loop-closure",
+];
+
+const VERDICTS: [&str; 3] = ["yes", "no", "not testable"];
+
+fn succeeds(bench: &Workbench, arguments: &str) -> Ran {
+    let ran = bench.run(arguments);
+    assert_eq!(ran.status, Some(0), "hysid {arguments}: {}", ran.stderr);
+    ran
+}
+
+fn json(bench: &Workbench, arguments: &str) -> Value {
+    serde_json::from_str(&succeeds(bench, arguments).stdout).unwrap()
+}
+
+fn verdict<'v>(diagnosis: &'v Value, property: &str) -> &'v str {
+    let found = diagnosis["properties"].as_array().unwrap().iter().find(|p| p["name"] == property);
+    found.unwrap()["verdict"].as_str().unwrap()
+}
+
+/// An ideal plastic stop of threshold 1 under five loops between -3 and 3, in steps of 0.05.
+fn stop_loops() -> String {
+    let mut text = String::from("x_mm,F_kN\n");
+    let (mut x, mut y) = (0.0, 0.0);
+    for turning in [60, -60, 60, -60, 60, -60, 60, -60, 60, -60, 60] {
+        let turning = f64::from(turning) / 20.0;
+        while f64::abs(x - turning) > 1e-9 {
+            let step = 0.05 * f64::signum(turning - x);
+            x += step;
+            y = f64::clamp(y + step, -1.0, 1.0);
+            text += &format!("{x:.2},{y:.2}\n");
+        }
+    }
+    text
+}
+
+#[test]
+fn text_tells_every_property_and_fits_a_terminal() {
+    let bench = Workbench::new();
+    succeeds(&bench, "generate reinforced-concrete-joint -o joint.csv");
+    let ran = succeeds(&bench, "diagnose joint.csv");
+    let lines: Vec<&str> = ran.stdout.lines().collect();
+    for line in &lines {
+        assert!(line.chars().count() <= 80 && *line == line.trim_end(), "{line}");
+    }
+    assert!(lines[0].starts_with("property ") && lines[0].ends_with(" comparisons"), "{}", lines[0]);
+    for property in PROPERTIES {
+        let row = lines.iter().position(|line| line.starts_with(&format!("{property} "))).unwrap();
+        let rest = lines[row][property.len()..].trim_start();
+        assert!(VERDICTS.iter().any(|verdict| rest.starts_with(verdict)), "{rest}");
+        assert!(lines[row + 1].starts_with("    "), "a statement: {}", lines[row + 1]);
+    }
+    assert!(ran.stdout.contains("\ndeterioration      yes "), "{}", ran.stdout);
+    assert!(ran.stdout.contains("\nexperiments for what could not be tested\n"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("\nenergy, J "), "{}", ran.stdout);
+    assert!(ran.stdout.contains("\nsecant stiffness, kN/mm "), "{}", ran.stdout);
+    assert!(ran.stderr.starts_with("file     joint.csv\nread as  text, UTF-8; "), "{}", ran.stderr);
+    assert_eq!(ran.last_line(), "page    joint.diagnosis.html");
+}
+
+#[test]
+fn loops_of_a_plastic_stop_have_the_numbers_of_their_geometry() {
+    let bench = Workbench::new();
+    bench.put("stop.csv", stop_loops());
+    let diagnosis = json(&bench, "diagnose stop.csv --json --no-report");
+    let cycles = diagnosis["cycles"].as_array().unwrap();
+    assert_eq!(cycles.len(), 5);
+    for cycle in &cycles[1..] {
+        // A parallelogram of width 4 and height 2, its slanting sides of slope 1.
+        for (name, expected) in [
+            ("energy", 8.0),
+            ("width", 4.0),
+            ("secant_stiffness", 1.0 / 3.0),
+            ("coercive_input", 2.0),
+            ("remanent_output", 1.0),
+            ("gap", 0.0),
+        ] {
+            let value = cycle[name].as_f64().unwrap();
+            assert!((value - expected).abs() < 1e-9, "{name}: {value}");
+        }
+        let area = cycle["area"].as_f64().unwrap();
+        assert!((area - 8.0).abs() < 1e-3, "taken between two curves, at a hundred places: {area}");
+        assert_eq!(cycle["speed"], Value::Null, "there is no time");
+    }
+    assert_eq!(verdict(&diagnosis, "orientation"), "yes");
+    assert_eq!(verdict(&diagnosis, "deterioration"), "no");
+    assert_eq!(verdict(&diagnosis, "rate-dependence"), "not testable");
+    let text = succeeds(&bench, "diagnose stop.csv --no-report").stdout;
+    let energies = text.lines().find(|line| line.starts_with("energy, J")).unwrap();
+    assert_eq!(energies.split_whitespace().skip(2).collect::<Vec<_>>(), ["8", "8", "8"]);
+}
+
+#[test]
+fn the_doctor_speaks_and_the_advice_can_be_followed() {
+    let bench = Workbench::new();
+    succeeds(&bench, "generate reinforced-concrete-joint -o joint.csv");
+    let text = bench.text("joint.csv").replacen("displacement_mm", "the way, mm", 1);
+    bench.put("a joint.csv", text.replacen("the way, mm", "\"the way, mm\"", 1));
+    let ran = bench.shell("hysid diagnose 'a joint.csv' --input 'the way, mm' --no-report");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    assert!(ran.stdout.contains("\ndata quality"), "{}", ran.stdout);
+    assert!(
+        ran.stdout.contains("\nadvice\n    The simplest model that can represent these properties is gpnn"),
+        "{}",
+        ran.stdout
+    );
+    let next = ran.stdout.lines().find(|line| line.starts_with("  hysid fit ")).unwrap();
+    assert_eq!(next, "  hysid fit 'a joint.csv' --input 'the way, mm' --model gpnn");
+    let fitted = bench.shell(&format!("{next} --starts 1 --epochs 1 --no-report"));
+    assert_eq!(fitted.status, Some(0), "{}", fitted.stderr);
+}
+
+/// The promised fields of each property; a model has further ones at the end.
+fn check_properties(diagnosis: &Value, further: &[&str]) {
+    let properties = diagnosis["properties"].as_array().unwrap();
+    let names: Vec<&str> = properties.iter().map(|property| property["name"].as_str().unwrap()).collect();
+    assert_eq!(names, [&PROPERTIES, further].concat());
+    for property in properties {
+        let verdict = property["verdict"].as_str().unwrap();
+        assert!(VERDICTS.contains(&verdict), "{verdict}");
+        for number in ["index", "threshold", "noise"] {
+            assert!(property[number].is_number() || property[number].is_null(), "{property}");
+        }
+        assert!(property["comparisons"].is_u64() && !property["statement"].as_str().unwrap().is_empty());
+        if verdict == "not testable" {
+            assert!(!property["experiment"].as_str().unwrap().is_empty(), "what would tell: {property}");
+        } else {
+            assert!(property["index"].is_number() && property["threshold"].is_number(), "{property}");
+        }
+        for evidence in property["evidence"].as_array().unwrap() {
+            assert!(evidence["index"].is_number());
+            let pieces = evidence["pieces"].as_array().unwrap();
+            assert!(pieces.iter().all(|piece| piece["record"].is_string() && piece["rows"].is_array()));
+        }
+    }
+}
+
+#[test]
+fn json_has_the_promised_shape_for_data_and_models() {
+    let bench = Workbench::new();
+    succeeds(&bench, "generate ferromagnet -o sheet.csv");
+    let of_data = json(&bench, "diagnose sheet.csv --json --no-report");
+    check_properties(&of_data, &[]);
+    assert_eq!((&of_data["input"], &of_data["output"]), (&"H_A_per_m".into(), &"B_T".into()));
+    assert!(of_data["cycles"].is_array() && of_data["turning_points"].is_u64());
+    for complaint in of_data["doctor"].as_array().unwrap() {
+        for words in ["kind", "severity", "statement"] {
+            assert!(!complaint[words].as_str().unwrap().is_empty(), "{words}: {complaint}");
+        }
+        assert!(complaint["evidence"].is_array());
+    }
+    let advice = &of_data["advice"];
+    assert!(advice["model"].is_string() && !advice["statement"][0].as_str().unwrap().is_empty(), "{advice}");
+    for need in ["needs_rate", "needs_deterioration", "needs_asymmetry"] {
+        assert!(VERDICTS.contains(&advice[need].as_str().unwrap()), "{need}");
+    }
+
+    succeeds(&bench, "fit sheet.csv -o sheet.json --model preisach --no-report");
+    let of_model = json(&bench, "diagnose sheet.json --json --no-report");
+    check_properties(&of_model, &["invertible"]);
+    let invertible = of_model["properties"].as_array().unwrap().last().unwrap();
+    for field in ["direction", "always", "monotone_outputs", "pasts", "scans", "flat_share", "jumps", "worst"]
+    {
+        assert!(invertible.get(field).is_some(), "{field}: {invertible}");
+    }
+    assert_eq!(of_model["model"], "preisach");
+    assert_eq!(verdict(&of_model, "congruency"), "yes", "every Preisach model has it");
+    assert_eq!(of_model["memory"]["return_point_memory"]["holds"], true);
+    assert!(!bench.path("sheet.diagnosis.html").exists());
+}
+
+#[test]
+fn a_page_shows_every_property_and_needs_nothing_else() {
+    let bench = Workbench::new();
+    succeeds(&bench, "generate reinforced-concrete-joint -o joint.csv");
+    let text = bench.text("joint.csv").replacen("force_kN", "<b>&force_kN", 1);
+    bench.put("joint.csv", text);
+    succeeds(&bench, "fit joint.csv -o joint.json --model xpnn+ --starts 1 --epochs 3 --no-report");
+    for (file, page, more) in [
+        ("joint.csv", "joint.diagnosis.html", "Loops: 16 cycles"),
+        ("joint.json", "of-model.html", "Neurons"),
+    ] {
+        let ran = succeeds(&bench, &format!("diagnose {file} -o {page}"));
+        assert_eq!(ran.last_line(), format!("page    {page}"));
+        let text = bench.text(page);
+        for property in PROPERTIES {
+            assert_eq!(text.matches(&format!("id=\"{property}\"")).count(), 1, "{property}");
+        }
+        assert!(text.contains(&format!("<h2>{more}</h2>")), "{page}");
+        assert!(text.matches("<svg").count() >= 6, "{page}");
+        assert!(!text.contains("<b>") && text.contains("&lt;b&gt;&amp;force"), "{page}: names are escaped");
+        let elsewhere = bench.page(page).replace("http://www.w3.org/2000/svg", "");
+        for link in ["http:", "https:", "<script", "<link", "url("] {
+            assert!(!elsewhere.contains(link), "{page}: {link}");
+        }
+    }
+}
+
+#[test]
+fn the_smallest_reversal_decides_what_is_a_turning_point() {
+    let bench = Workbench::new();
+    // A small excursion, 5 % of the range, on the way up of each loop.
+    let mut path = Vec::new();
+    for _ in 0..4 {
+        path.extend([0.0, 0.5, 0.4, 1.0, -1.0]);
+    }
+    let mut text = String::from("x,y\n");
+    for ends in path.windows(2) {
+        for k in 0..20 {
+            let x = ends[0] + (ends[1] - ends[0]) * f64::from(k) / 20.0;
+            text += &format!("{x},{}\n", x * x * x);
+        }
+    }
+    bench.put("data.csv", text);
+    let points = |options: &str| {
+        json(&bench, &format!("diagnose data.csv --json --no-report {options}"))["turning_points"].clone()
+    };
+    // Two of each of four excursions, four upper ends, and three lower ends within the record.
+    assert_eq!((points(""), points("--smallest-reversal 0.1")), (15.into(), 7.into()));
+}
+
+#[test]
+fn further_inputs_and_useless_options_are_told() {
+    let bench = Workbench::with_model();
+    let further =
+        csv("t,x,temperature,y", ",", "\n", &rows().into_iter().map(with_temperature).collect::<Vec<_>>());
+    bench.put("further.csv", further);
+    let ran = succeeds(&bench, "diagnose further.csv --no-report");
+    let told = "warning: diagnosed: y over x; temperature is not diagnosed (choose with --input)";
+    assert!(ran.stderr.contains(told), "{}", ran.stderr);
+    let ran = succeeds(&bench, "diagnose further.csv --input temperature --rate central --no-report");
+    assert!(ran.stdout.contains("y over temperature"), "{}", ran.stdout);
+    assert!(ran.stderr.contains("warning: diagnose ignores --rate"), "{}", ran.stderr);
+
+    let ran = succeeds(&bench, "diagnose model.json --time t --smoothing false --no-report");
+    for option in ["--time", "--smoothing"] {
+        let told = format!("warning: the diagnosis of a model ignores {option}\n");
+        assert!(ran.stderr.contains(&told), "{}", ran.stderr);
+    }
+}
+
+fn with_temperature(mut row: Vec<String>) -> Vec<String> {
+    let angle: f64 = row[0].parse().unwrap();
+    row.insert(2, format!("{:.4}", (1.3 * angle).sin()));
+    row
+}
+
+#[test]
+fn several_tables_are_one_set_of_records() {
+    let bench = Workbench::new();
+    bench.put("a.csv", table());
+    bench.put("b.csv", table());
+    let both = json(&bench, "diagnose a.csv b.csv --json");
+    assert_eq!((both["records"].as_u64(), both["samples"].as_u64()), (Some(2), Some(120)));
+    assert!(bench.path("a.diagnosis.html").exists(), "the page is named after the first");
+}
+
+#[test]
+fn bad_input_gets_one_line() {
+    let bench = Workbench::with_model();
+    let model = bench.text("model.json");
+    let constant = |column| with_column(column, |_| "2.5".into());
+    let unsorted = with_cell(20, 0, "0.1");
+    let files: [(&str, String, i32, &str); 11] = [
+        ("empty", String::new(), 1, ": is empty (expected a header line and rows of numbers)"),
+        (
+            "NaN input",
+            with_cell(15, 1, "nan"),
+            1,
+            ", line 17, column \"x\": \"nan\" is a missing value (only the output may be blank; choose rows with --rows)",
+        ),
+        ("one sample", "t,x,y\n0,1,2\n".into(), 1, ": only 1 row has an output: at least 8 are needed"),
+        ("constant input", constant(1), 1, ": column \"x\" is constant (2.5): there is nothing to identify"),
+        ("constant output", constant(2), 1, ": column \"y\" is constant (2.5): there is nothing to identify"),
+        (
+            "blank output",
+            with_column(2, |_| String::new()),
+            1,
+            ": column \"y\" is blank in every row: there is nothing to compare with",
+        ),
+        (
+            "output alone",
+            "t,y\n0,1\n".into(),
+            1,
+            ": no column is left for the input besides output \"y\" (columns: t, y)",
+        ),
+        (
+            "unsorted",
+            unsorted,
+            1,
+            ", line 22, column \"t\": time 0.1 does not come after 1.9 (sort the rows, or name the records in a column `record`)",
+        ),
+        ("truncated model", model[..model.len() / 2].into(), 1, ""),
+        ("other JSON", "{\"a\": 1}".into(), 1, ""),
+        ("a brace", "{".into(), 1, ""),
+    ];
+    for (name, content, status, expected) in files {
+        bench.put("data", content);
+        let ran = bench.run("diagnose data --no-report");
+        let last = ran.last_line();
+        assert!(last.starts_with("error: data"), "{name}: {}", ran.stderr);
+        if expected.is_empty() {
+            assert!(last.contains("model file"), "{name}: {last}");
+        } else {
+            assert_eq!(last, format!("error: data{expected}"), "{name}");
+        }
+        assert_eq!((ran.status, ran.stdout.as_str()), (Some(status), ""), "{name}");
+        assert_eq!(ran.stderr.matches("error").count(), 1, "{name}: {}", ran.stderr);
+    }
+}
+
+#[test]
+fn requests_that_cannot_be_met_are_refused_in_one_line() {
+    let bench = Workbench::with_model();
+    for (arguments, status, expected) in [
+        (
+            "diagnose good.csv model.json",
+            2,
+            "model.json is a model: diagnose it alone, without further files",
+        ),
+        ("diagnose good.csv -o good.csv", 2, "good.csv would be overwritten: name another file with --out"),
+        (
+            "diagnose model.json -o model.json",
+            2,
+            "model.json would be overwritten: name another file with --out",
+        ),
+        ("diagnose nowhere.csv", 1, "nowhere.csv: cannot be read: no such file or directory"),
+        (
+            "diagnose good.csv --input z",
+            1,
+            "good.csv: there is no column \"z\" for --input (columns: t, x, y)",
+        ),
+        (
+            "diagnose good.csv -o nowhere/a.html",
+            1,
+            "nowhere/a.html: cannot be written: no such file or directory",
+        ),
+        (
+            "diagnose good.csv --smallest-reversal 2",
+            2,
+            "invalid value '2' for '--smallest-reversal <FRACTION>': a number between 0 and 1 is needed",
+        ),
+    ] {
+        let ran = bench.run(arguments);
+        assert_eq!(ran.last_line(), error_line(arguments, status, expected), "hysid {arguments}");
+        assert_eq!((ran.status, ran.stdout.as_str()), (Some(status), ""), "hysid {arguments}");
+    }
+    assert!(!bench.path("good.diagnosis.html").exists());
+}

@@ -1,0 +1,138 @@
+//! `hysid export` as a user runs it.
+
+use std::fs;
+
+use crate::workbench::Workbench;
+
+/// A bench with a model of a few stops.
+fn with_model() -> Workbench {
+    let bench = Workbench::new();
+    let rows: String = (0..300)
+        .map(|k| {
+            let x = (0.1 * f64::from(k)).sin() * f64::from(k) / 100.0;
+            format!("{x},{}\n", 2.0 * x + 0.3 * (0.1 * f64::from(k)).cos())
+        })
+        .collect();
+    bench.put("train.csv", format!("x_mm,F_kN\n{rows}"));
+    let fit = "fit train.csv --model pnn --starts 1 --epochs 3 -o stage-2.json --no-report";
+    assert_eq!(bench.run(fit).status, Some(0));
+    bench
+}
+
+#[test]
+fn a_folder_appears_with_all_that_its_manifest_lists() {
+    let bench = with_model();
+    let ran = bench.run("export stage-2.json --to c");
+    assert_eq!((ran.status, ran.stdout.as_str()), (Some(0), ""), "{}", ran.stderr);
+    assert_eq!(ran.stderr, "wrote stage_2_c: 6 files; stage_2_c/README.md says how to use them\n");
+    let folder = bench.path("stage_2_c");
+    let manifest: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.join("manifest.json")).unwrap()).unwrap();
+    assert_eq!((&manifest["target"], &manifest["name"]), (&"c".into(), &"stage_2".into()));
+    for file in manifest["files"].as_array().unwrap() {
+        let content = fs::read(folder.join(file["path"].as_str().unwrap())).unwrap();
+        assert_eq!(file["bytes"], content.len());
+        assert_eq!(file["sha256"].as_str().unwrap().len(), 64);
+    }
+    let header = fs::read_to_string(folder.join("stage_2.h")).unwrap();
+    for fact in ["x_mm, trained from", "F_kN", "error in training", "date of the model file: 20"] {
+        assert!(header.contains(fact), "{header}");
+    }
+
+    // The same again replaces it; a file that was added does not vanish.
+    assert_eq!(bench.run("export stage-2.json --to c --json").status, Some(0));
+    fs::write(folder.join("mine.c"), "mine").unwrap();
+    let ran = bench.run("export stage-2.json --to c");
+    assert_eq!(ran.status, Some(2));
+    assert!(
+        ran.stderr.contains("stage_2_c: a file is there already and is no export of Hysid"),
+        "{}",
+        ran.stderr
+    );
+    assert_eq!(fs::read_to_string(folder.join("mine.c")).unwrap(), "mine");
+    assert_eq!(bench.run("export stage-2.json --to c --force").status, Some(0));
+    assert!(!folder.join("mine.c").exists());
+}
+
+#[test]
+fn without_a_compiler_a_unit_has_its_sources_and_the_user_is_told() {
+    let bench = with_model();
+    let without = bench
+        .command("export stage-2.json --to fmu -o sources --json")
+        .env("CC", "no-such-cc")
+        .output()
+        .unwrap();
+    assert!(without.status.success());
+    let answer: serde_json::Value = serde_json::from_slice(&without.stdout).unwrap();
+    assert!(answer["note"].as_str().unwrap().contains("no C compiler"), "{answer}");
+    let ran = bench.command("export stage-2.json --to fmu -o told").env("CC", "no-such-cc").output().unwrap();
+    let text = String::from_utf8_lossy(&ran.stderr).into_owned();
+    assert!(text.contains("stage_2.fmu has source code only") && text.lines().count() == 2, "{text}");
+}
+
+#[test]
+fn bad_requests_are_one_line_and_leave_nothing() {
+    let bench = with_model();
+    bench.put("file", "mine");
+    for (arguments, status, text) in [
+        ("--to c --name 2nd", 2, "--name: the name \"2nd\" is no identifier"),
+        ("--to c --precision f16", 2, "f16"),
+        ("--to onnx --precision f32", 2, "--precision: onnx computes in double precision"),
+        ("--to c --fmi 2", 2, "--fmi is a version of --to fmu"),
+        ("--to fmu --fmi 1", 2, "--fmi"),
+        ("--to cobol", 2, "cobol"),
+        ("--to rust --inverse", 2, "--inverse: exports to rust have no inverse: those to c and fmu have one"),
+        ("--to c --limits 0:1", 2, "--limits is for the input of an inverse: add --inverse"),
+        ("--to c --slew 1", 2, "--slew is for the input of an inverse: add --inverse"),
+        ("--to c --inverse --limits 3:1", 2, "'3:1' for '--limits <LOW:HIGH>': the low limit 3 is not below"),
+        ("--to c --inverse --limits nan:1", 2, "--limits <LOW:HIGH>': two numbers are needed"),
+        ("--to c --inverse --slew -1", 2, "'-1' for '--slew <RATE>': a number above 0 is needed"),
+        (
+            "--to c --inverse --precision f32 --limits 1:1.00000001",
+            2,
+            "--limits: the limits of the input are 1",
+        ),
+        ("--to c -o file", 2, "file: a file is there already"),
+        ("--to c -o train.csv/new", 1, "train.csv/new: cannot be written"),
+    ] {
+        let ran = bench.run(&format!("export stage-2.json {arguments}"));
+        assert_eq!(ran.status, Some(status), "{arguments}: {}", ran.stderr);
+        assert!(ran.stderr.contains(text) && ran.stderr.lines().count() == 1, "{arguments}: {}", ran.stderr);
+    }
+    let ran = bench.run("export missing.json --to c");
+    assert_eq!(ran.status, Some(1), "{}", ran.stderr);
+    let mut left: Vec<_> =
+        fs::read_dir(bench.path("")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    left.sort();
+    assert_eq!(left, ["file", "stage-2.json", "train.csv"]);
+}
+
+#[test]
+fn an_inverse_has_the_bounds_that_were_asked_for() {
+    let bench = with_model();
+    for (bounds, low, high) in [
+        ("", None, None),
+        ("--limits -0.5:0.75", Some("(-0.5)"), Some("0.75")),
+        ("--limits=-0.5:-0.25 --slew 2e3", Some("(-0.5)"), Some("(-0.25)")),
+    ] {
+        let ran = bench.run(&format!("export stage-2.json --to c --inverse {bounds}"));
+        assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+        let header = fs::read_to_string(bench.path("stage_2_c").join("stage_2_inverse.h")).unwrap();
+        for (bound, value) in [("LOW", low), ("HIGH", high)] {
+            let line = format!("#define STAGE_2_INVERSE_{bound} {}", value.unwrap_or_default());
+            assert!(header.contains(&line), "{header}");
+        }
+        let slew = header.contains("#define STAGE_2_INVERSE_SLEW 2000.0");
+        assert_eq!(slew, bounds.contains("slew"), "{header}");
+        assert!(bench.path("stage_2_c").join("inverse_vectors.csv").exists());
+    }
+    let ran = bench.run("export stage-2.json --to fmu --inverse --json");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let answer: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    let files: Vec<&str> =
+        answer["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
+    assert_eq!(
+        files,
+        ["stage_2.fmu", "stage_2_test.py", "inverse_vectors.csv", "README.md", "manifest.json"]
+    );
+}

@@ -1,0 +1,62 @@
+//! Options that a model ignores are named and change nothing; values that it cannot have are refused before the fit.
+
+use crate::workbench::{Workbench, table};
+
+const QUICK: &str = "--starts 1 --epochs 2";
+
+fn fitted(bench: &Workbench, options: &str, searched: bool) -> (String, String) {
+    let effort = if searched { QUICK } else { "" };
+    let ran = bench.run(&format!("fit good.csv {options} {effort} --no-report --force -o model.json"));
+    assert_eq!(ran.status, Some(0), "{options}: {}", ran.stderr);
+    (ran.stderr, bench.text("model.json"))
+}
+
+#[test]
+fn an_ignored_option_is_named_and_changes_nothing() {
+    let bench = Workbench::new();
+    bench.put("good.csv", table());
+    for (model, searched, option, flag) in [
+        ("pnn", true, "--history", "--history"),
+        ("xpnn", true, "--history", "--history"),
+        ("preisach", false, "--history", "--history"),
+        ("masing", false, "--history", "--history"),
+        ("bouc-wen", true, "--history", "--history"),
+        ("jiles-atherton", true, "--history", "--history"),
+        ("pnn", true, "--hidden 7 --relaxation 9", "--hidden"),
+        ("pnn", true, "--hidden 7 --relaxation 9", "--relaxation"),
+        ("preisach", false, "--validation 0.3", "--validation"),
+    ] {
+        let (plain, model_file) = fitted(&bench, &format!("--model {model}"), searched);
+        assert!(!plain.contains("ignores"), "{plain}");
+        let (stderr, with_option) = fitted(&bench, &format!("--model {model} {option}"), searched);
+        assert!(stderr.contains(&format!("{model} ignores {flag}")), "{model} {option}: {stderr}");
+        assert_eq!(with_option, model_file, "{model} {option}");
+    }
+}
+
+#[test]
+fn a_value_that_a_model_cannot_have_is_refused_before_the_fit() {
+    let bench = Workbench::new();
+    bench.put("good.csv", table());
+    for (options, words) in [
+        ("--model neuro-madelung --hidden 500", "hidden 500: neuro-madelung has at most 100"),
+        ("--model preisach --operators 300", "operators 300: preisach has at most 200"),
+        ("--model preisach --operators 0", "operators 0: preisach has at least 1"),
+        ("--model duhem-nn --operators 101", "operators 101: duhem-nn has at most 100"),
+        ("--model duhem-nn --hidden 101", "hidden 101: duhem-nn has at most 100"),
+        ("--model duhem-nn --states 0", "states 0: duhem-nn has at least 1"),
+    ] {
+        let ran = bench.run(&format!("fit good.csv {options} -o model.json"));
+        assert_eq!(ran.status, Some(2), "{}", ran.stderr);
+        assert!(ran.stderr.contains(words) && ran.stderr.lines().count() == 1, "{}", ran.stderr);
+    }
+}
+
+#[test]
+fn help_is_short_where_it_is_asked_for_briefly() {
+    let bench = Workbench::new();
+    let (short, long) = (bench.run("fit -h").stdout, bench.run("fit --help").stdout);
+    assert!(short.lines().count() < 60, "{} lines", short.lines().count());
+    assert!(short.contains("Examples:") && !short.contains("--free-weights"), "{short}");
+    assert!(long.contains("--free-weights"), "{long}");
+}

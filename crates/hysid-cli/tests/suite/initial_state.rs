@@ -1,0 +1,98 @@
+//! The initial state of records, as a user gives it or lets it be found.
+
+use crate::workbench::{Ran, Workbench, csv};
+use serde_json::Value;
+
+fn json(ran: &Ran) -> Value {
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
+}
+
+/// Rows of a play of threshold 0.5 that was driven to `past` before the record begins at 0.
+fn rows(name: &str, past: f64, size: f64, pace: f64) -> Vec<Vec<String>> {
+    let follow = |play: f64, x: f64| play.clamp(x - 0.5, x + 0.5);
+    let mut play = follow(follow(0.0, past), 0.0);
+    let row = |k: usize| {
+        let x = size * (pace * k as f64).sin();
+        play = follow(play, x);
+        vec![name.to_string(), format!("{x:.6}"), format!("{:.6}", 0.3 * x + play)]
+    };
+    (0..120).map(row).collect()
+}
+
+/// Training data that begin after either end of the range, and a record to come.
+fn bench() -> Workbench {
+    let bench = Workbench::new();
+    let records =
+        [("a", 1.0, 0.45, 0.11), ("b", -1.0, 0.4, 0.13), ("c", 1.0, 1.0, 0.12), ("d", 1.0, 0.48, 0.1)];
+    let train: Vec<Vec<String>> =
+        records.iter().flat_map(|&(name, past, size, pace)| rows(name, past, size, pace)).collect();
+    bench.put("train.csv", csv("record,H_A_m,B_T", ",", "\n", &train));
+    bench.put("test.csv", csv("record,H_A_m,B_T", ",", "\n", &rows("t", 1.0, 0.42, 0.115)));
+    bench
+}
+
+const MODEL: &str = "--model prandtl-ishlinskii --operators 12";
+
+#[test]
+fn states_are_found_told_and_used() {
+    let bench = bench();
+    let fit = |state: &str, out: &str| {
+        json(&bench.run(&format!("fit train.csv -o {out} {MODEL} --initial-state {state} --json")))
+    };
+    let evaluate = |model: &str, options: &str| {
+        json(&bench.run(&format!("evaluate {model} test.csv --json {options}")))["rmse"].as_f64().unwrap()
+    };
+    let (found, virgin) = (fit("unknown", "found.json"), fit("virgin", "virgin.json"));
+    assert_eq!(found["initial_state"], "saturated-up");
+    assert_eq!(found["lead_ins"].as_array().unwrap().len(), 4);
+    assert_eq!(found["lead_ins"][0]["record"], "a");
+    let note = found["notes"].to_string();
+    assert!(note.contains("3 records begin saturated-up, 1 record begins saturated-down"), "{note}");
+    assert!(note.contains("new data begin saturated-up"), "{note}");
+    assert_eq!((virgin.get("initial_state"), virgin.get("lead_ins")), (None, None));
+    assert_eq!(virgin["notes"], Value::Array(Vec::new()));
+    let page = bench.text("found.html");
+    assert!(page.contains("Initial state") && page.contains("in its initial state"), "in the page");
+    assert!(bench.text("virgin.html").contains("in the virgin state"), "in the page");
+    let told = bench.run(&format!("fit train.csv -o found.json {MODEL} --initial-state unknown"));
+    assert!(told.stdout.contains("\nnote   initial state: 3 records begin"), "{}", told.stdout);
+    assert!(told.stdout.lines().all(|line| line.chars().count() <= 80), "{}", told.stdout);
+    assert_eq!(
+        json(&bench.run(&format!("fit train.csv -o again.json {MODEL} --initial-state unknown --json")))["train"],
+        found["train"]
+    );
+
+    let error = evaluate("found.json", "");
+    assert!(error < 0.2 * evaluate("virgin.json", ""), "{error}");
+    assert_eq!(evaluate("found.json", "--initial-state saturated-up"), error);
+    assert!(evaluate("found.json", "--initial-state saturated-down") > 5.0 * error);
+    let simulate = |options: &str| bench.run(&format!("simulate found.json test.csv {options}")).stdout;
+    assert_eq!(simulate("--initial-state saturated-up"), simulate(""));
+    assert_ne!(simulate("--initial-state virgin"), simulate(""));
+    assert_ne!(simulate("--initial-state demagnetised"), simulate(""));
+
+    let validated = |state: &str| {
+        let ran = bench.run(&format!("validate train.csv {MODEL} --initial-state {state} --json"));
+        json(&ran)["unseen_nrmse_std_percent"].as_f64().unwrap()
+    };
+    assert!(validated("unknown") < validated("virgin"));
+}
+
+#[test]
+fn a_state_that_is_none_is_refused() {
+    let bench = bench();
+    assert_eq!(bench.run(&format!("fit train.csv -o m.json --no-report {MODEL}")).status, Some(0));
+    for (arguments, words) in [
+        ("fit train.csv -o n.json --initial-state saturated", "saturated"),
+        (
+            "evaluate m.json test.csv --initial-state up",
+            "choose one of virgin, saturated-up, saturated-down,",
+        ),
+        ("simulate m.json test.csv --initial-state unknown", "only a fit finds an unknown state"),
+    ] {
+        let ran = bench.run(arguments);
+        assert_eq!(ran.status, Some(2), "{arguments}: {}", ran.stderr);
+        assert!(ran.stderr.contains(words), "{arguments}: {}", ran.stderr);
+    }
+}

@@ -1,0 +1,75 @@
+//! What a user is told of a model beside its errors: rows that it was not trained on, data that cannot tell
+//! candidates apart, inputs that are measured from elsewhere than 0.
+
+use crate::workbench::{Ran, Workbench, csv, table};
+use serde_json::Value;
+
+fn json(ran: &Ran) -> Value {
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
+}
+
+/// Some cycles of one loop.
+fn one_loop() -> String {
+    let row = |k: usize| {
+        let x = (0.2 * k as f64).sin();
+        vec![format!("{x:.6}"), format!("{:.6}", x + 0.3 * (0.2 * k as f64).cos())]
+    };
+    csv("H_A_m,B_T", ",", "\n", &(0..150).map(row).collect::<Vec<_>>())
+}
+
+#[test]
+fn a_warm_up_is_told_with_its_effect_and_judged_both_ways() {
+    let bench = Workbench::new();
+    bench.put("good.csv", table());
+    let fit = json(&bench.run("fit good.csv -o m.json --model prandtl-ishlinskii --warm-up 20 --json"));
+    let evaluated = json(&bench.run("evaluate m.json good.csv --json"));
+    assert_eq!(fit["train"]["rmse"], evaluated["rmse"]);
+    assert_eq!(fit["train_after_warm_up"]["rmse"], evaluated["after_warm_up"]["rmse"]);
+    assert_eq!((&evaluated["samples"], &evaluated["after_warm_up"]["samples"]), (&60.into(), &40.into()));
+    assert!(fit["notes"][0].as_str().unwrap().contains("the first 20 rows of each record"), "{fit}");
+
+    let told = bench.run("evaluate m.json good.csv");
+    assert!(told.stdout.contains("after warm-up"), "{}", told.stdout);
+    assert!(told.stdout.contains("without the first 20 rows of each record"), "{}", told.stdout);
+    let told = bench.run("fit good.csv -o m.json --model prandtl-ishlinskii --warm-up 20");
+    assert!(told.stdout.contains("\nnote   warm-up: the first 20 rows"), "{}", told.stdout);
+    assert!(told.stdout.lines().all(|line| line.chars().count() <= 80), "{}", told.stdout);
+    let page = bench.text("m.html");
+    assert!(
+        page.contains("training, after warm-up") && page.contains("the first 20 rows"),
+        "both in the page"
+    );
+
+    let plain = json(&bench.run("fit good.csv -o p.json --model prandtl-ishlinskii --json"));
+    assert_eq!((plain.get("train_after_warm_up"), &plain["notes"]), (None, &Value::Array(Vec::new())));
+}
+
+#[test]
+fn data_of_one_loop_are_told_of() {
+    let bench = Workbench::new();
+    bench.put("loop.csv", one_loop());
+    let quick = "--members 2 --stops 3 --hidden 2 --epochs 2 --operators 10";
+    let fit = json(&bench.run(&format!("fit loop.csv -o m.json {quick} --json")));
+    assert_eq!(fit["selection"]["one_loop"], true);
+    let note = fit["notes"].to_string();
+    assert!(note.contains("one loop: all reversals of H_A_m"), "{note}");
+    assert!(note.contains("measure loops of three or more amplitudes"), "{note}");
+    assert!(bench.text("m.html").contains("one loop: all reversals of H_A_m"));
+}
+
+#[test]
+fn an_input_far_from_zero_is_measured_from_elsewhere_and_the_report_says_so() {
+    let bench = Workbench::new();
+    let shifted = |line: &str| {
+        let (x, y) = line.split_once(',').unwrap();
+        x.parse::<f64>().map_or(line.to_string(), |x| format!("{},{y}", x + 200.0))
+    };
+    bench.put("far.csv", one_loop().lines().map(shifted).collect::<Vec<_>>().join("\n"));
+    let ran = bench.run("fit far.csv -o m.json --model prandtl-ishlinskii");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    assert!(bench.text("m.html").contains("Offset of H_A_m"));
+    let ran = bench.run("fit far.csv -o j.json --model jiles-atherton --time-limit 1");
+    let caution = "H_A_m ranges from 199 to 201, but for the law 0 is the demagnetised state";
+    assert!(ran.stderr.contains(caution), "{}", ran.stderr);
+}

@@ -1,0 +1,139 @@
+//! `hysid plan`: drives from data and for kinds of specimens, their files, and what is refused.
+
+use crate::workbench::{Ran, Workbench};
+
+/// Cycles of one amplitude, 400 rows.
+fn cycles(header: &str, has_time: bool) -> String {
+    let mut text = format!("{header}\n");
+    for row in 0..400 {
+        let angle = 0.1 * f64::from(row);
+        if has_time {
+            text += &format!("{},", 0.01 * f64::from(row));
+        }
+        text += &format!("{},{}\n", 5.0 * angle.sin(), 100.0 * (angle - 0.3).sin());
+    }
+    text
+}
+
+fn bench() -> Workbench {
+    let bench = Workbench::new();
+    bench.put("data.csv", cycles("t_s,disp_mm,force_kN", true));
+    bench.put("slow.csv", cycles("disp_mm,force_kN", false));
+    bench
+}
+
+fn ran(bench: &Workbench, line: &str) -> Ran {
+    let ran = bench.run(line);
+    assert_eq!(ran.status, Some(0), "{line}: {}", ran.stderr);
+    ran
+}
+
+/// The columns of a drive.
+fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
+    let mut lines = text.lines();
+    let header = lines.next().unwrap().split(',').map(str::to_owned).collect::<Vec<_>>();
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    let column = |place: usize| rows.iter().map(|row| row[place]).collect();
+    let columns = (0..header.len()).map(column).collect();
+    (header, columns)
+}
+
+#[test]
+fn a_drive_has_the_columns_of_the_data_and_a_page_beside_it() {
+    let bench = bench();
+    let said = ran(&bench, "plan --like data.csv --coverage-only");
+    let (header, columns) = columns(&bench.text("data.drive.csv"));
+    assert_eq!(header, ["t_s", "disp_mm"]);
+    let [t, x] = &columns[..] else { panic!("two columns") };
+    assert!(x.len() <= 400 && x.len() > 350 && x[0] == 0.0 && x[x.len() - 1] == 0.0);
+    assert!(x.iter().all(|x| x.abs() <= 5.0));
+    assert!(t.windows(2).all(|pair| (pair[1] - pair[0] - 0.01).abs() < 1e-9));
+    assert!(bench.text("data.drive.html").contains("What the data do not cover"));
+    for expected in ["what the data do not cover", "amplitudes: no swing", "hysid fit data.csv NEW.csv"] {
+        assert!(said.stdout.contains(expected), "{expected}: {}", said.stdout);
+    }
+    let widest = said.stdout.lines().map(|line| line.chars().count()).max().unwrap();
+    assert!(widest <= 80, "{}", said.stdout);
+    // The same again replaces the files of before.
+    assert_eq!(ran(&bench, "plan --like data.csv --coverage-only").stdout, said.stdout);
+}
+
+#[test]
+fn data_without_time_give_a_drive_without_time() {
+    let bench = bench();
+    let said = ran(&bench, "plan --like slow.csv --coverage-only -o -");
+    let (header, columns) = columns(&said.stdout);
+    assert_eq!(header, ["disp_mm"]);
+    assert!(columns[0].len() > 300);
+    // No page is left beside stdout.
+    assert!(!bench.path("slow.drive.csv").exists() && !bench.path("slow.drive.html").exists());
+}
+
+#[test]
+fn an_ensemble_says_where_its_members_differ() {
+    let bench = bench();
+    let model = "--model xpnn --members 3 --starts 3 --training levenberg-marquardt --epochs 3";
+    ran(&bench, &format!("fit data.csv {model} -o model.json --no-report"));
+    let said = ran(&bench, "plan --like data.csv --model model.json --json -o drive.csv --no-report");
+    let told: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
+    assert_eq!(told["drive"], "drive.csv");
+    assert!(told["page"].is_null());
+    let [plan, repeat] = ["plan", "repeat"].map(|name| told["disagreement"][name].as_f64().unwrap());
+    assert!(plan > repeat && repeat > 0.0, "{plan} {repeat}");
+    let segments = told["segments"].as_array().unwrap();
+    assert!(segments.iter().all(|segment| segment["reason"].as_str().is_some_and(|why| !why.is_empty())));
+    assert_eq!(segments.last().unwrap()["rows"][1].as_u64().unwrap() + 1, told["rows"].as_u64().unwrap());
+}
+
+#[test]
+fn without_a_model_an_ensemble_is_fitted() {
+    let bench = bench();
+    // The time limit keeps the test short; whatever was fitted until then is used.
+    let said = ran(&bench, "plan --like data.csv --time-limit 2");
+    assert!(said.stdout.contains("next") && said.stderr.contains("auto"), "{}", said.stderr);
+}
+
+#[test]
+fn a_kind_of_specimen_has_a_first_test() {
+    let bench = bench();
+    let said = bench.shell("hysid plan --for 'RC column' --range -50:50 --length 3000");
+    assert_eq!(said.status, Some(0), "{}", said.stderr);
+    assert!(said.stdout.contains("FEMA 461") && said.stdout.contains("hysid fit NEW.csv"), "{}", said.stdout);
+    let (header, columns) = columns(&bench.text("structure.drive.csv"));
+    assert_eq!(header, ["x"]);
+    assert!(columns[0].len() <= 3000 && columns[0].contains(&50.0) && columns[0].contains(&-50.0));
+    let said = ran(&bench, "plan --for piezo --range 0:150 --step 0.001 --duration 5 -o piezo.csv --json");
+    let told: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
+    assert!(told["duration"].as_f64().unwrap() <= 5.0 && told["limits"]["range"][1] == 150.0);
+}
+
+#[test]
+fn what_cannot_be_planned_is_said_in_one_line() {
+    let bench = bench();
+    bench.put("constant.csv", "x,y\n".to_string() + &"1,2\n".repeat(60));
+    bench.put("two.csv", cycles("a,b,force", true));
+    let refused = |line: &str, status: i32, expected: &str| {
+        let ran = bench.run(line);
+        assert_eq!(ran.status, Some(status), "{line}: {}", ran.stderr);
+        assert!(ran.last_line().contains(expected), "{line}: {}", ran.stderr);
+        assert!(!bench.path("data.drive.csv").exists(), "{line}");
+    };
+    refused("plan", 2, "--for: structure, damper");
+    refused("plan --for jelly --range 0:1", 2, "structure, damper, rubber, actuator, magnet");
+    refused("plan --for piezo", 2, "--range LOW:HIGH");
+    refused("plan --for piezo --range 0:1 --duration 3", 2, "--step");
+    refused("plan --for piezo --range 0:1 --length 60", 2, "too few");
+    refused("plan --for piezo --like data.csv", 2, "cannot be used with");
+    refused("plan --like none.csv", 1, "none.csv");
+    refused("plan --like constant.csv --coverage-only", 1, "constant");
+    refused("plan --like two.csv --input a --input b --output force", 2, "--input");
+    refused("plan --like data.csv --length 50", 2, "too few");
+    refused("plan --like data.csv --length 5", 2, "length 5");
+    refused("plan --like data.csv --range 5:1", 2, "not below");
+    refused("plan --like slow.csv --duration 3", 2, "--length");
+    refused("plan --like slow.csv --step 0.1", 2, "step");
+    refused("plan --like data.csv -o data.csv", 2, "would be overwritten");
+    refused("plan --like data.csv -o drive.html", 2, ".csv for the drive");
+    refused("plan --like data.csv --json -o -", 2, "name a file");
+}

@@ -1,0 +1,16 @@
+//! Every target: its files are translated and run by the tools of the target, and give the outputs of the library.
+
+mod c;
+mod case;
+mod closed_loop;
+mod fmu;
+mod inverse;
+mod inverse_case;
+mod inverse_fmu;
+mod matlab;
+mod names;
+mod onnx;
+mod opensees;
+mod python;
+mod rust;
+mod tools;

@@ -1,0 +1,45 @@
+//! Exports to MATLAB, run by GNU Octave.
+
+use std::fs;
+use std::process::Command;
+
+use hysid_export::{Options, Target};
+
+use super::case::{Case, MODELS, NAME, written};
+use super::tools::{succeeds, tool};
+
+/// Simulates rows of arguments in binary, and writes outputs in binary.
+fn driver(arguments: usize) -> String {
+    let given: String = (1..=arguments).map(|index| format!(", row({index})")).collect();
+    format!(
+        "actuator_test();
+file = fopen('rows'); rows = fread(file, [{arguments}, Inf], 'double'); fclose(file);
+state = actuator();
+outputs = zeros(1, columns(rows));
+for k = 1:columns(rows)
+    row = rows(:, k);
+    [outputs(k), state] = actuator(state{given});
+end
+file = fopen('outputs', 'w'); fwrite(file, outputs, 'double'); fclose(file);
+"
+    )
+}
+
+#[test]
+fn outputs_are_those_of_the_library() {
+    const ROWS: usize = 500;
+    let install = "run: sudo apt-get install octave";
+    let Some(octave) = tool("exports to MATLAB", "octave-cli", &["--version"], install) else { return };
+    for (name, model) in MODELS.iter() {
+        let folder = tempfile::tempdir().unwrap();
+        written(model, Target::Matlab, &Options::named(NAME), folder.path());
+        let case = Case::of(model, ROWS);
+        fs::write(folder.path().join("rows"), case.bytes()).unwrap();
+        fs::write(folder.path().join("driver.m"), driver(case.arguments.len())).unwrap();
+        let arguments = ["--no-gui", "--norc", "--quiet", "driver.m"];
+        succeeds(Command::new(&octave).current_dir(&folder).args(arguments));
+        let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());
+        println!("{name}: {difference:.1e}");
+        assert!(difference <= 1e-12, "{name}: {difference:e}");
+    }
+}

@@ -1,0 +1,80 @@
+//! Names that could meet those inside the exported files.
+
+use std::path::Path;
+use std::process::Command;
+
+use hysid_export::{Error, Options, Target, export};
+
+use super::case::{MODELS, written};
+use super::tools::{python, succeeds, tool};
+
+/// Names of models: those that users choose, and parts of names inside the files.
+const NAMES: [&str; 8] = ["model", "data", "state", "first", "real", "MODEL", "y", "inverse"];
+
+/// Runs the test that an export has.
+fn run(target: Target, name: &str, folder: &Path) {
+    let compiled = |compiler: &str, arguments: &[&str]| {
+        succeeds(Command::new(compiler).current_dir(folder).args(arguments));
+        succeeds(Command::new(folder.join("the_test")).current_dir(folder));
+    };
+    let (c, c_test) = (format!("{name}.c"), format!("{name}_test.c"));
+    match target {
+        Target::C | Target::OpenSees => {
+            let Some(compiler) = tool("exports to C", "gcc", &["--version"], "run: sudo apt-get install gcc")
+            else {
+                return;
+            };
+            compiled(&compiler, &["-std=c99", "-ffp-contract=off", &c, &c_test, "-lm", "-o", "the_test"]);
+        }
+        Target::Rust => {
+            let Some(compiler) = tool("exports to Rust", "rustc", &["--version"], "see https://rustup.rs")
+            else {
+                return;
+            };
+            compiled(&compiler, &["-O", &format!("{name}_test.rs"), "-o", "the_test"]);
+        }
+        Target::Matlab => {
+            let install = "run: sudo apt-get install octave";
+            let probe = ["--no-gui", "--eval", "1;"];
+            let Some(octave) = tool("exports to MATLAB", "octave-cli", &probe, install) else { return };
+            succeeds(Command::new(octave).current_dir(folder).args(["--eval", &format!("{name}_test")]));
+        }
+        Target::Fmu | Target::Onnx | Target::Python => {
+            let Some(python) = python("names of exports", &["numpy", "fmpy", "onnxruntime"]) else { return };
+            succeeds(Command::new(python).current_dir(folder).arg(format!("{name}_test.py")));
+        }
+    }
+}
+
+#[test]
+fn every_name_that_is_not_refused_works() {
+    let (_, model) = MODELS.iter().find(|(label, _)| label.starts_with("auto")).unwrap();
+    for target in Target::ALL {
+        for name in NAMES {
+            let options = Options::named(name);
+            if let Err(Error::Reserved { .. }) = export(model, target, &options) {
+                assert!(["state", "y"].contains(&name) && target == Target::Matlab, "{name}: {target:?}");
+                continue;
+            }
+            let folder = tempfile::tempdir().unwrap();
+            written(model, target, &options, folder.path());
+            run(target, name, folder.path());
+        }
+    }
+}
+
+#[test]
+fn words_of_the_language_are_refused() {
+    let model = &MODELS[0].1;
+    for (target, words) in [
+        (Target::Matlab, ["end", "function", "tanh"]),
+        (Target::Python, ["class", "lambda", "numpy"]),
+        (Target::Rust, ["fn", "self", "std"]),
+    ] {
+        for name in words {
+            let refused = export(model, target, &Options::named(name));
+            let expected = Error::Reserved { name: name.into(), target: target.name() };
+            assert_eq!(refused, Err(expected));
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Exports to Python.
+
+use std::fs;
+use std::process::Command;
+
+use hysid_export::{Error, Options, Precision, Target, export};
+
+use super::case::{Case, MODELS, NAME, written};
+use super::tools::{python, succeeds};
+
+/// Simulates rows of arguments in binary, and writes outputs in binary.
+const DRIVER: &str = "
+import sys
+import numpy as np
+import actuator
+rows = np.fromfile('rows').reshape(-1, int(sys.argv[1]))
+model = actuator.Model()
+np.array([model.step(*row) for row in rows]).tofile('outputs')
+";
+
+#[test]
+fn outputs_equal_those_of_the_library() {
+    const ROWS: usize = 3000;
+    let Some(python) = python("exports to Python", &["numpy"]) else { return };
+    for (name, model) in MODELS.iter() {
+        let folder = tempfile::tempdir().unwrap();
+        written(model, Target::Python, &Options::named(NAME), folder.path());
+        let output = succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(text.starts_with("0 of "), "{name}: {text}");
+
+        let case = Case::of(model, ROWS);
+        fs::write(folder.path().join("rows"), case.bytes()).unwrap();
+        let arguments = ["-c", DRIVER, &case.arguments.len().to_string()];
+        succeeds(Command::new(&python).current_dir(&folder).args(arguments));
+        case.must_equal(name, &fs::read(folder.path().join("outputs")).unwrap());
+    }
+}
+
+#[test]
+fn single_precision_is_refused() {
+    let options = Options { precision: Precision::Single, ..Options::named(NAME) };
+    assert_eq!(export(&MODELS[0].1, Target::Python, &options), Err(Error::Precision("python")));
+}

@@ -1,0 +1,412 @@
+//! The automatic model: what it promises of itself, its ensembles, bands and validation.
+
+use std::ops::ControlFlow;
+use std::sync::OnceLock;
+
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::cross_validate;
+use hysid::fit::identify;
+use hysid::fit::network::{Observer, Progress};
+use hysid::law::Classical;
+use hysid::model::{BandLevel, Ensemble, Group, Model, Node, NodeKind, Predictor, Weights};
+use hysid::network::Family;
+use hysid::options::auto::AutoOptions;
+use hysid::options::classical::{ClassicalModel, ClassicalOptions};
+use hysid::options::{FitSpec, ModelName};
+use hysid::termination::Termination;
+use hysid::validation::folds;
+
+use crate::noisy_record::noisy;
+use crate::small_models::{record, small};
+
+fn names() -> ColumnNames {
+    ColumnNames { time: Some("t_s".into()), inputs: vec!["x_mm".into()], rate: None, output: "f_kN".into() }
+}
+
+fn data() -> Dataset {
+    Dataset::new(names(), vec![noisy(150, "a"), noisy(110, "b"), noisy(130, "c")]).unwrap()
+}
+
+/// Several tests ask the same ensemble.
+fn shared() -> &'static Model {
+    static MODEL: OnceLock<Model> = OnceLock::new();
+    MODEL.get_or_init(|| fitted(&data(), options(None)))
+}
+
+fn on(_: &Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+fn options(rate: Option<RateMethod>) -> AutoOptions {
+    match small(ModelName::AUTO, rate) {
+        FitSpec::Auto(options) => options,
+        _ => unreachable!("auto was asked for"),
+    }
+}
+
+fn fitted(data: &Dataset, options: AutoOptions) -> Model {
+    identify(data, &FitSpec::Auto(options), &mut on).unwrap().model
+}
+
+#[test]
+fn an_ensemble_comes_back_from_its_file_and_steps_as_it_simulates() {
+    let data = data();
+    let model = fitted(&data, options(Some(RateMethod::Central)));
+    let ensemble = model.ensemble().expect("several members");
+    assert!((2..=6).contains(&ensemble.members().len()));
+    assert_eq!(model.name(), ModelName::AUTO);
+    let again = Model::from_json(&model.to_json()).unwrap();
+    assert_eq!(again, model);
+
+    for record in data.records() {
+        let simulated = model.simulate(record).unwrap();
+        assert_eq!(again.simulate(record).unwrap(), simulated);
+        let rates = RateMethod::Central.rate(record).unwrap();
+        let mut stepper = model.stepper();
+        for _ in 0..2 {
+            for (row, expected) in simulated.iter().enumerate() {
+                let rate = Some(rates[row]);
+                let y = stepper.step(&[record.inputs()[0][row]], record.time().unwrap()[row], rate).unwrap();
+                assert_eq!(y, *expected, "{} row {row}", record.name());
+            }
+            stepper.reset();
+        }
+    }
+    let told: usize =
+        model.provenance().selection.as_ref().unwrap().candidates.iter().map(|one| one.members).sum();
+    assert_eq!(told, ensemble.members().len());
+    let parameters: usize = ensemble.members().iter().map(Model::parameters).sum();
+    assert_eq!(model.parameters(), parameters);
+    let errors = model.evaluate(&data).unwrap();
+    assert_eq!(errors, model.provenance().train);
+    assert!(errors.nrmse_std_percent.unwrap() < 15.0, "{errors:?}");
+}
+
+#[test]
+fn the_answer_is_the_nested_median_of_the_members() {
+    let data = data();
+    let model = shared();
+    let ensemble = model.ensemble().unwrap();
+    let record = &data.records()[0];
+    let outputs: Vec<Vec<f64>> =
+        ensemble.members().iter().map(|member| member.simulate(record).unwrap()).collect();
+    let simulated = model.simulate(record).unwrap();
+    for row in (0..record.len()).step_by(7) {
+        let expected = answer(ensemble.group(), &|member| outputs[member][row]);
+        assert!((simulated[row] - expected).abs() < 1e-12 * (1.0 + expected.abs()), "row {row}");
+    }
+}
+
+/// The weighted median by its definition, theory.md (11.3), written another way: the weighted distribution
+/// function is inverted by bisection.
+fn answer(group: &Group, of_member: &dyn Fn(usize) -> f64) -> f64 {
+    let mut votes: Vec<(f64, f64)> = group
+        .nodes
+        .iter()
+        .map(|node| match &node.kind {
+            NodeKind::Member(member) => (of_member(*member), node.weights.inside),
+            NodeKind::Group(group) => (answer(group, of_member), node.weights.inside),
+        })
+        .filter(|(_, weight)| *weight > 0.0)
+        .collect();
+    votes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let all: f64 = votes.iter().map(|vote| vote.1).sum();
+    let places: Vec<f64> = (0..votes.len())
+        .map(|i| (votes[..i].iter().map(|vote| vote.1).sum::<f64>() + 0.5 * votes[i].1) / all)
+        .collect();
+    let share_below = |y: f64| match votes.iter().rposition(|vote| vote.0 <= y) {
+        None => 0.0,
+        Some(last) if last + 1 == votes.len() => 1.0,
+        Some(i) => {
+            let (low, high) = (votes[i].0, votes[i + 1].0);
+            places[i] + (y - low) / (high - low) * (places[i + 1] - places[i])
+        }
+    };
+    let (mut low, mut high) = (votes[0].0, votes[votes.len() - 1].0);
+    if places[0] >= 0.5 {
+        return low;
+    }
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if share_below(middle) < 0.5 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+#[test]
+fn neither_threads_nor_repetition_change_the_model() {
+    let data = data();
+    let text = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| fitted(&data, options(None)).to_json())
+    };
+    let one = shared().to_json();
+    assert_eq!(text(1), one);
+    assert_eq!(text(3), one);
+    let other = fitted(&data, AutoOptions { seed: 4, ..options(None) }).to_json();
+    assert_ne!(other, one);
+}
+
+#[test]
+fn one_member_is_a_single_model_with_band_and_selection() {
+    let data = data();
+    let model = fitted(&data, AutoOptions { members: 1, ..options(None) });
+    assert!(model.ensemble().is_none());
+    assert_ne!(model.name(), ModelName::Classical(ClassicalModel::RandomStops));
+    let provenance = model.provenance();
+    let selection = provenance.selection.as_ref().expect("there was a choice");
+    assert_eq!(selection.folds.len(), 3);
+    assert!(provenance.validation.is_some() && model.band().is_some());
+    assert_eq!(provenance.train, model.evaluate(&data).unwrap());
+    // What it was taught beside the data is none of the data.
+    assert_eq!(model.trained_ranges().inputs[0], data.input_range(0));
+    assert_eq!((provenance.samples, provenance.records), (390, 3));
+    assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
+}
+
+#[test]
+fn decisions_are_obeyed() {
+    let data = data();
+    let rate = Some(RateMethod::Central);
+    let members = |options: AutoOptions| fitted(&data, options).ensemble().unwrap().members().to_vec();
+    let networks = |members: &[Model]| -> Vec<hysid::network::Architecture> {
+        members.iter().filter_map(|member| member.network().map(|network| *network.architecture())).collect()
+    };
+    let without = members(AutoOptions {
+        deterioration: Some(false),
+        always_rate: true,
+        companding: Some(false),
+        ..options(rate)
+    });
+    assert!(networks(&without).iter().all(|a| !a.deterioration));
+    assert!(without.iter().all(|member| member.rate() == rate));
+    assert!(without.iter().all(|member| member.input_transform().companding.is_none()));
+    let with = members(AutoOptions { deterioration: Some(true), ..options(rate) });
+    assert!(!with.is_empty() && networks(&with).iter().all(|a| a.deterioration));
+    let wears = |member: &Model| match member.predictor() {
+        Predictor::Network { network, .. } => network.architecture().deterioration,
+        Predictor::Law(Classical::BoucWen(law)) => law.degradation.is_some(),
+        _ => false,
+    };
+    assert!(with.iter().all(wears));
+    let unrated = shared().ensemble().unwrap().members();
+    assert!(unrated.iter().all(|member| member.rate().is_none() && !member.needs_time()));
+    let sized = members(AutoOptions { stops: Some(4), hidden: Some(3), ..options(None) });
+    let trained = sized.iter().filter(|member| matches!(member.name(), ModelName::Network(_)));
+    assert!(trained.count() > 0);
+    for member in sized.iter().filter(|member| matches!(member.name(), ModelName::Network(_))) {
+        let a = member.network().unwrap().architecture();
+        assert_eq!((a.stops, a.hidden), (4, 3));
+    }
+}
+
+#[test]
+fn decisions_that_leave_nothing_are_refused() {
+    let refused =
+        |options: AutoOptions| identify(&data(), &FitSpec::Auto(options), &mut on).unwrap_err().to_string();
+    let nothing = AutoOptions { companding: Some(true), history: Some(true), ..options(None) };
+    assert!(refused(nothing).contains("leave no candidate"));
+    assert!(refused(AutoOptions { members: 0, ..options(None) }).contains("choose a whole number from 1 to"));
+}
+
+#[test]
+fn a_named_model_becomes_an_ensemble_of_its_starts() {
+    let data = data();
+    let of = |model: ModelName| small(model, None);
+    for (model, expected) in [
+        (ModelName::Network(Family::Xpnn), 3),
+        (ModelName::Classical(ClassicalModel::RandomStops), 3),
+        // Nothing about it is random.
+        (ModelName::Classical(ClassicalModel::Preisach), 1),
+    ] {
+        let options = AutoOptions { only: Some(Box::new(of(model))), members: 3, starts: 3, ..options(None) };
+        let fitted = fitted(&data, options);
+        let ensemble = fitted.ensemble().unwrap();
+        assert_eq!(ensemble.members().len(), expected, "{model:?}");
+        assert!(ensemble.members().iter().all(|member| member.name() == model));
+        if expected > 1 {
+            assert_ne!(ensemble.members()[0].predictor(), ensemble.members()[1].predictor());
+        }
+    }
+}
+
+#[test]
+fn however_early_it_is_stopped_there_is_a_model() {
+    let data = data();
+    for patience in [0, 5, 120] {
+        let mut heard = 0;
+        let mut observer = |progress: &Progress| {
+            assert!((0.0..=1.0).contains(&progress.done));
+            heard += 1;
+            if heard > patience { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let observer: &mut Observer = &mut observer;
+        let model = identify(&data, &FitSpec::Auto(options(None)), observer).unwrap().model;
+        assert_eq!(model.provenance().termination, Termination::Stopped, "after {patience}");
+        assert!(model.simulate(&data.records()[0]).unwrap().iter().all(|y| y.is_finite()));
+        assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
+    }
+}
+
+#[test]
+fn the_band_lies_about_the_output_and_widens_with_its_probability() {
+    let data = data();
+    let model = shared();
+    let record = record(400, "new");
+    let excitation = record.excitation();
+    let mut last = 0.0;
+    for probability in [0.5, 0.8, 0.9, 0.99] {
+        let prediction = model.predict(&excitation, probability).unwrap();
+        assert_eq!(prediction.output, model.simulate(&record).unwrap());
+        let rows = prediction.low.iter().zip(&prediction.high).zip(record.output());
+        let covered = rows.filter(|((low, high), y)| (**low..=**high).contains(y)).count();
+        let share = covered as f64 / record.len() as f64;
+        assert!(share >= last, "{probability}");
+        last = share;
+        assert!(prediction.output.iter().zip(&prediction.low).all(|(y, low)| low <= y));
+    }
+    // Three epochs of a few members do not foretell a longer record as they did their folds, but the band
+    // is no thin line.
+    assert!(last > 0.5, "{last}");
+    for wrong in [0.0, 0.3, 1.0, f64::NAN] {
+        assert!(model.predict(&excitation, wrong).unwrap_err().to_string().contains("from 0.5 to 0.99"));
+    }
+    let alone = identify(&data, &small(ModelName::Network(Family::Xpnn), None), &mut on).unwrap().model;
+    assert!(alone.predict(&excitation, 0.9).unwrap_err().to_string().contains("no prediction band"));
+}
+
+#[test]
+fn data_too_few_to_hold_any_out_still_give_a_model() {
+    let few = Dataset::new(names(), vec![record(30, "short")]).unwrap();
+    assert!(folds(&few, 5).is_empty());
+    let model = fitted(&few, options(None));
+    assert!(model.band().is_none() && model.provenance().selection.is_none());
+    assert!(model.provenance().train.nrmse_std_percent.unwrap() < 100.0);
+}
+
+#[test]
+fn folds_hold_out_what_they_do_not_train_on() {
+    let data = data();
+    let of_records = folds(&data, 5);
+    assert_eq!(of_records.len(), 3);
+    for fold in &of_records {
+        let held: Vec<&str> = fold.held_out.records().iter().map(Record::name).collect();
+        assert!(fold.train.records().iter().all(|record| !held.contains(&record.name())));
+        assert_eq!(fold.train.scored() + fold.held_out.scored(), data.scored());
+    }
+    assert_eq!(folds(&data, 2).len(), 2);
+
+    let one = Dataset::new(names(), vec![record(200, "one")]).unwrap();
+    let of_one = folds(&one, 5);
+    assert_eq!(of_one.len(), 5);
+    let whole = &one.records()[0];
+    for fold in &of_one {
+        let (train, held) = (&fold.train.records()[0], &fold.held_out.records()[0]);
+        assert!(held.scored() > 0);
+        for row in 0..held.len() {
+            let trained_on = row < train.len() && !train.output()[row].is_nan();
+            assert!(!trained_on || held.output()[row].is_nan(), "{} row {row}", fold.name);
+            // The memory runs through everything before.
+            assert_eq!(held.inputs()[0][row], whole.inputs()[0][row]);
+        }
+    }
+}
+
+#[test]
+fn cross_validation_is_a_fit_to_each_fold_and_its_error_on_the_rest() {
+    let data = data();
+    let request = FitSpec::Classical(ClassicalOptions {
+        operators: Some(8),
+        ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii)
+    });
+    let validation = cross_validate(&data, &request, 5, &mut on).unwrap();
+    assert_eq!(validation.folds.len(), 3);
+    let mut logarithms = 0.0;
+    for (fold, judged) in folds(&data, 5).iter().zip(&validation.folds) {
+        let model = identify(&fold.train, &request, &mut on).unwrap().model;
+        assert_eq!(model.evaluate(&fold.held_out).unwrap(), judged.unseen);
+        assert_eq!(judged.held_out, fold.name);
+        logarithms += judged.unseen.nrmse_std_percent.unwrap().ln();
+    }
+    let mean = validation.unseen_nrmse_std_percent.unwrap();
+    assert!((mean - (logarithms / 3.0).exp()).abs() < 1e-9 * mean);
+    assert_eq!(validation.unseen.samples, data.scored());
+    let few = Dataset::new(names(), vec![record(30, "short")]).unwrap();
+    assert!(cross_validate(&few, &request, 5, &mut on).unwrap_err().to_string().contains("too few"));
+}
+
+#[test]
+fn an_ensemble_that_makes_no_sense_is_refused() {
+    let data = data();
+    let member = identify(&data, &small(ModelName::Network(Family::Pnn), None), &mut on).unwrap().model;
+    let node = |member| Node { weights: Weights::equal(), kind: NodeKind::Member(member) };
+    let group = |nodes| Group { name: "g".into(), nodes };
+    let new = |members: &[&Model], nodes, range| {
+        Ensemble::new(members.iter().map(|one| (*one).clone()).collect(), group(nodes), range)
+    };
+    let range = (-1.0, 1.0);
+    assert!(new(&[&member], vec![node(0)], range).is_ok());
+    let refused = |result: hysid::Result<Ensemble>| result.unwrap_err().to_string();
+    assert!(refused(new(&[&member], vec![], range)).contains("at least one"));
+    assert!(refused(new(&[&member], vec![node(1)], range)).contains("no member 1"));
+    assert!(refused(new(&[&member], vec![node(0)], (1.0, 1.0))).contains("no range"));
+    let none = Node { weights: Weights { inside: 0.0, outside: 0.0 }, ..node(0) };
+    assert!(refused(new(&[&member], vec![none], range)).contains("not all 0"));
+    let whole = shared();
+    assert!(refused(new(&[whole], vec![node(0)], range)).contains("member of another"));
+}
+
+#[test]
+fn rows_of_a_wrong_beginning_are_not_trained_on() {
+    // The memory of each record starts elsewhere than in the virgin state, and is itself after a while.
+    let strange = |rows: usize, name: &str| {
+        let sound = record(rows, name);
+        let wrong = |(row, y): (usize, &f64)| y + 3.0 * (-(row as f64) / 4.0).exp();
+        let output = sound.output().iter().enumerate().map(wrong).collect();
+        Record::new(name, sound.inputs().iter().map(|input| input.to_vec()).collect(), output).unwrap()
+    };
+    let untimed = ColumnNames { time: None, ..names() };
+    let data = Dataset::new(untimed.clone(), vec![strange(150, "a"), strange(140, "b")]).unwrap();
+    let unseen = Dataset::new(untimed, vec![record(300, "sound")]).unwrap();
+    let error = |warm_up| {
+        let options = AutoOptions { warm_up: Some(warm_up), ..options(None) };
+        fitted(&data, options).evaluate(&unseen).unwrap().nrmse_std_percent.unwrap()
+    };
+    let (from_the_beginning, after) = (error(0), error(20));
+    assert!(after < 0.8 * from_the_beginning, "{after} after a warm-up, {from_the_beginning} without");
+}
+
+/// By count on generated cases: a band contains nine rows of ten in about half of them, one for nine of ten
+/// data sets in nearly all.
+#[test]
+fn a_band_contains_its_share_in_as_many_data_sets_as_it_is_for() {
+    const CASES: usize = 20;
+    let (mut in_band, mut in_wide_band, mut shares) = (0, 0, 0.0);
+    for case in hysid::specimens::cases::generated(CASES, 5).unwrap() {
+        let only = FitSpec::Classical(ClassicalOptions {
+            operators: Some(60),
+            hidden: Some(0),
+            deterioration: Some(true),
+            ..ClassicalOptions::of(ClassicalModel::RandomStops)
+        });
+        let ensemble = AutoOptions { only: Some(Box::new(only)), members: 3, starts: 3, ..options(None) };
+        let model = fitted(&case.train.thinned(600), ensemble);
+        let share = |level: BandLevel| {
+            let of_record = |record: &Record| {
+                model.predict(&record.excitation(), level).unwrap().covered(record.output())
+            };
+            let counts = case.test.records().iter().map(of_record);
+            let (covered, all) = counts.fold((0, 0), |sum, next| (sum.0 + next.0, sum.1 + next.1));
+            covered as f64 / all as f64
+        };
+        let (narrow, wide) = (share(0.9.into()), share(BandLevel { probability: 0.9, of_ten: 9 }));
+        assert!(wide >= narrow, "{}", case.name);
+        shares += narrow / CASES as f64;
+        in_band += usize::from(narrow >= 0.9);
+        in_wide_band += usize::from(wide >= 0.9);
+    }
+    assert!((CASES / 4..=3 * CASES / 4).contains(&in_band), "{in_band} of {CASES}");
+    assert!(in_wide_band * 10 >= 8 * CASES, "{in_wide_band} of {CASES}");
+    assert!((0.8..0.97).contains(&shares), "{shares}");
+}

@@ -1,0 +1,406 @@
+//! Initial states: lead-ins drive the memory as rows before the record do, unknown ones are found, and data that
+//! begin in the virgin state are not touched.
+
+use std::ops::ControlFlow;
+
+use hysid::data::initial_state::InitialState;
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Excitation, Record};
+use hysid::fit::network::objective::Objective;
+use hysid::fit::{cross_validate, identify};
+use hysid::law::preisach::{Preisach, PreisachWeights};
+use hysid::law::series::{run, samples_of};
+use hysid::model::Model;
+use hysid::network::scaling::Scaling;
+use hysid::network::{Architecture, Family, Network, Sizes};
+use hysid::options::auto::AutoOptions;
+use hysid::options::chosen::NamedOptions;
+use hysid::options::classical::ClassicalModel;
+use hysid::options::network::FitOptions;
+use hysid::options::{FitSpec, ModelName};
+
+use crate::small_models::{record, small};
+use rand::{RngExt, SeedableRng};
+
+fn fitted(data: &Dataset, request: &FitSpec) -> Model {
+    identify(data, request, &mut |_| ControlFlow::Continue(())).unwrap().model
+}
+
+fn request(options: serde_json::Value) -> FitSpec {
+    let serde_json::Value::Object(options) = options else { panic!("a map") };
+    NamedOptions::of(options).unwrap().request(None, false)
+}
+
+fn untimed(records: Vec<Record>) -> Dataset {
+    Dataset::new(ColumnNames { time: None, ..ColumnNames::plain(1) }, records).unwrap()
+}
+
+fn without_time(record: &Record) -> Record {
+    Record::new(
+        record.name(),
+        record.inputs().iter().map(|input| input.to_vec()).collect(),
+        record.output().to_vec(),
+    )
+    .unwrap()
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+/// Small oscillations about 0 that grow and shrink.
+fn path(rows: usize, size: f64, pace: f64) -> Vec<f64> {
+    let x = |k: f64| size * (pace * k).sin() * (0.35 + 0.3 * (0.37 * pace * k).sin());
+    (0..rows).map(|k| x(k as f64)).collect()
+}
+
+/// The record with its lead-in as rows without an output, of which the last rests at the first input, and the same
+/// with the lead-in told.
+fn both_ways(record: &Record, lead_in: &[f64]) -> (Record, Record) {
+    let x = &record.inputs()[0];
+    let x: Vec<f64> = lead_in.iter().chain(&x[..1]).chain(x).copied().collect();
+    let mut y = vec![f64::NAN; lead_in.len() + 1];
+    y.extend(record.output());
+    let as_rows = Record::new(record.name(), vec![x], y).unwrap();
+    (as_rows, without_time(record).with_lead_in(lead_in.to_vec()).unwrap())
+}
+
+/// A magnet: relays whose thresholds lie about a coercive input of 0.35.
+fn magnet() -> Preisach {
+    const INTERVALS: usize = 24;
+    let line = |k: usize| 2.0 * k as f64 / INTERVALS as f64 - 1.0;
+    let middle = |k: usize| line(k) + 1.0 / INTERVALS as f64;
+    let bell = |distance: f64, width: f64| (-(distance / width).powi(2)).exp();
+    let weight = |i: usize, j: usize| {
+        let (alpha, beta) = (middle(i), middle(j));
+        bell(0.5 * (alpha - beta) - 0.35, 0.2) * bell(0.5 * (alpha + beta), 0.25)
+    };
+    let cells: Vec<f64> = (0..INTERVALS).flat_map(|i| (0..=i).map(move |j| weight(i, j))).collect();
+    let sum: f64 = cells.iter().sum();
+    Preisach::new(PreisachWeights {
+        constant: 0.0,
+        slope: 0.05,
+        lines: (0..=INTERVALS).map(line).collect(),
+        reversible: vec![0.0; INTERVALS],
+        cells: cells.iter().map(|weight| weight / sum).collect(),
+    })
+    .unwrap()
+}
+
+/// What the magnet does along a path after a lead-in that nobody has recorded.
+fn measured(name: &str, lead_in: &[f64], x: Vec<f64>) -> Record {
+    let driven: Vec<f64> = lead_in.iter().chain(&x).copied().collect();
+    let y = run(&magnet(), &samples_of(&driven)).split_off(lead_in.len());
+    Record::new(name, vec![x], y).unwrap()
+}
+
+/// Records that begin at remanence. The inputs reach 1 in one of them, which tells the range.
+fn remanent() -> (Dataset, Dataset) {
+    let (up, down) = (&[1.0][..], &[-1.0][..]);
+    let whole = |pace: f64| {
+        let mut x = path(240, 1.0, pace);
+        x.extend((0..160).map(|k| (0.08 * f64::from(k)).sin()));
+        x
+    };
+    let train = vec![
+        measured("a", up, path(300, 0.9, 0.11)),
+        measured("b", down, path(280, 0.8, 0.13)),
+        measured("c", up, whole(0.12)),
+        measured("d", up, path(260, 1.0, 0.1)),
+        measured("e", down, whole(0.09)),
+        measured("f", up, path(300, 0.7, 0.14)),
+    ];
+    let test = vec![measured("t", up, path(300, 0.85, 0.125)), measured("u", up, path(300, 0.75, 0.105))];
+    (untimed(train), untimed(test))
+}
+
+/// Every model without time, fitted to records that begin saturated, is the one that is fitted to the same with
+/// the lead-in as rows, and simulates the same.
+#[test]
+fn a_lead_in_drives_the_memory_as_rows_before_the_record_do() {
+    let records = [record(150, "a"), record(120, "b")];
+    let range = untimed(records.iter().map(without_time).collect()).input_range(0);
+    for (name, lead_in) in [("up", vec![range.1]), ("turned", vec![range.0, 0.4 * range.1])] {
+        let (as_rows, told): (Vec<Record>, Vec<Record>) =
+            records.iter().map(|record| both_ways(record, &lead_in)).unzip();
+        let (as_rows, told) = (untimed(as_rows), untimed(told));
+        for model in ModelName::all() {
+            let request = small(model, None);
+            if model.check_data(&told, None).is_err() {
+                continue;
+            }
+            let what = format!("{} {name}", model.name());
+            let (of_rows, of_told) = (fitted(&as_rows, &request), fitted(&told, &request));
+            assert_eq!((of_rows.lead_in(), of_told.lead_in()), (&[][..], &lead_in[..]), "{what}");
+            assert_eq!(of_told.network(), of_rows.network(), "{what}");
+            assert_eq!(of_told.law(), of_rows.law(), "{what}");
+            assert_eq!(of_told.provenance().train, of_rows.provenance().train, "{what}");
+            assert_eq!(of_told.evaluate(&told).unwrap(), of_told.provenance().train, "{what}");
+            for (as_rows, told) in as_rows.records().iter().zip(told.records()) {
+                let behind = of_rows.simulate(as_rows).unwrap().split_off(lead_in.len() + 1);
+                assert_eq!(bits(&of_told.simulate(told).unwrap()), bits(&behind), "{what}");
+            }
+        }
+    }
+}
+
+/// Rows of a record, in blocks that go round in a circle.
+fn in_blocks(model: &Model, record: &Record, lengths: &[usize]) -> Vec<f64> {
+    let (mut simulation, mut output, mut first) = (model.simulation(), Vec::new(), 0);
+    simulation.begin(record.name());
+    for &length in lengths.iter().cycle() {
+        let rows = first..record.len().min(first + length);
+        let inputs = record.inputs().iter().map(|input| &input[rows.clone()]).collect();
+        let mut block = Excitation::new(record.name(), inputs).unwrap();
+        if let Some(time) = record.time() {
+            block = block.with_time(&time[rows.clone()]).unwrap();
+        }
+        if let Some(lead_in) = record.lead_in().filter(|_| first == 0) {
+            block = block.with_lead_in(lead_in).unwrap();
+        }
+        output.extend(simulation.take(&block).unwrap().output);
+        first = rows.end;
+        if first == record.len() {
+            break;
+        }
+    }
+    output.extend(simulation.finish().unwrap().output);
+    output
+}
+
+#[test]
+fn whole_blocks_and_steps_begin_alike_and_a_record_can_begin_otherwise() {
+    let data = Dataset::new(ColumnNames::plain(1), vec![record(150, "a"), record(110, "b")]).unwrap();
+    let unseen = record(90, "unseen");
+    let rate = Some(RateMethod::Backward);
+    let rates = RateMethod::Backward.rate(&unseen).unwrap();
+    let mut requests: Vec<FitSpec> = ModelName::all()
+        .filter(|model| model.check_data(&data, rate).is_ok())
+        .map(|model| small(model, rate.filter(|_| model.uses_rate())))
+        .collect();
+    requests.push(small(ModelName::AUTO, rate));
+    let mut shaped = NamedOptions::of(Default::default()).unwrap();
+    (shaped.model, shaped.epochs, shaped.starts) = (Some("xpnn+".parse().unwrap()), Some(3), Some(1));
+    (shaped.history, shaped.companding, shaped.rate_companding) = (Some(true), Some(0.2), Some(0.3));
+    requests.push(shaped.request(rate, false));
+    for request in requests {
+        let virgin = fitted(&data, &request);
+        let request = request.with_initial_state(Some(InitialState::SaturatedDown));
+        let model = fitted(&data, &request);
+        let what = format!("{} {:?}", model.name().name(), model.input_transform());
+        assert_eq!(model.lead_in(), [data.input_range(0).0], "{what}");
+        let whole = model.simulate(&unseen).unwrap();
+        for lengths in [&[1][..], &[3, 7], &[64, 1, 13], &[1000]] {
+            assert_eq!(bits(&in_blocks(&model, &unseen, lengths)), bits(&whole), "{what} {lengths:?}");
+        }
+        // Told, whatever the model begins with.
+        let told = unseen.clone().with_lead_in(model.lead_in().to_vec()).unwrap();
+        let also = model.clone().with_initial_state(InitialState::SaturatedUp).unwrap();
+        assert_eq!(bits(&also.simulate(&told).unwrap()), bits(&whole), "{what}");
+        assert_eq!(bits(&in_blocks(&also, &told, &[5])), bits(&whole), "{what}");
+        let mut stepper = model.stepper();
+        let step = |stepper: &mut hysid::Stepper<'_>| -> Vec<f64> {
+            let rows = unseen.inputs()[0].iter().zip(unseen.time().unwrap()).zip(&rates);
+            rows.map(|((&x, &t), &rate)| stepper.step(&[x], t, Some(rate)).unwrap()).collect()
+        };
+        for _ in 0..2 {
+            assert_eq!(bits(&step(&mut stepper)), bits(&whole), "{what}");
+            stepper.reset();
+        }
+        stepper.reset_to(InitialState::SaturatedUp).unwrap();
+        let up = model.clone().with_initial_state(InitialState::SaturatedUp).unwrap();
+        assert_eq!(bits(&step(&mut stepper)), bits(&up.simulate(&unseen).unwrap()), "{what}");
+        stepper.reset_to(InitialState::Virgin).unwrap();
+        let begun = unseen.clone().with_lead_in(Vec::new()).unwrap();
+        assert_eq!(bits(&step(&mut stepper)), bits(&model.simulate(&begun).unwrap()), "{what}");
+        stepper.reset();
+        assert_eq!(bits(&step(&mut stepper)), bits(&whole), "{what}");
+
+        let again = Model::from_json(&model.to_json()).unwrap();
+        assert_eq!(again, model, "{what}");
+        assert_eq!(bits(&again.simulate(&unseen).unwrap()), bits(&whole), "{what}");
+        assert!(model.to_json().contains("\"version\": 6,"), "{what}");
+        let text = virgin.to_json();
+        assert!(
+            text.contains("\"version\": 5,") && !text.contains("lead_in") && !text.contains("initial_state"),
+            "{what}"
+        );
+    }
+}
+
+#[test]
+fn relaxation_is_complete_before_the_first_row() {
+    let sizes = Sizes { stops: 1, hidden: 1, relaxation: 1 };
+    let mut architecture = Architecture::new(Family::XpnnPlus, sizes, 1, false, true).unwrap();
+    (architecture.deterioration, architecture.hidden, architecture.linear) = (false, 0, false);
+    // A stop whose weight is 1, a relaxation time of e, and an output of the relaxation neuron alone.
+    let network = Network::new(architecture, vec![1.0, 1.0], vec![0.0, 0.0, 1.0]).unwrap();
+    let mut simulator = network.simulator();
+    let mut y = [f64::NAN; 3];
+    simulator.run(&[&[0.9, -0.7, 0.2]], &[f64::INFINITY; 3], &mut y);
+    assert_eq!(y, [0.0; 3]);
+    // Then the record: at rest first, and from there on as the equation says.
+    simulator.run(&[&[0.2, 0.2, 0.5]], &[0.0, 1.0, 0.0], &mut y);
+    assert_eq!(y[..2], [0.0; 2]);
+    assert!((y[2] - 0.3).abs() < 1e-15);
+}
+
+/// The derivatives stay finite over the infinite steps of a lead-in, and are those of the objective.
+#[test]
+fn gradients_are_right_behind_a_lead_in() {
+    let data = Dataset::new(ColumnNames::plain(1), vec![record(120, "a"), record(140, "b")]).unwrap();
+    let lead_in = InitialState::Demagnetised.lead_in(data.input_range(0), 0.0).unwrap();
+    let data = data.with_lead_ins(|record, _| if record == 0 { lead_in.clone() } else { vec![0.8] }).unwrap();
+    let sizes = Sizes { stops: 3, hidden: 2, relaxation: 2 };
+    let rate = Some(RateMethod::Central);
+    let options = FitOptions { model: Family::XpnnPlus, sizes, rate, ..FitOptions::default() };
+    let (scaling, architecture) = (Scaling::of(&data, rate).unwrap(), options.architecture(&data).unwrap());
+    let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
+    let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(7);
+    let mut point: Vec<f64> =
+        (0..objective.layout().len()).map(|_| generator.random::<f64>() - 0.5).collect();
+    objective.layout().ln_beta.clone().for_each(|index| point[index] += 6.0);
+    objective.layout().stop_weights.clone().for_each(|index| point[index] *= 8.0);
+    let value = objective.value(&point);
+    let gradient = objective.gradient(&point, &value);
+    let largest = gradient.iter().fold(0.0, |most: f64, g| most.max(g.abs()));
+    let (mut compared, step) = (0, 1e-6);
+    for index in objective.layout().ln_tau.clone().chain(objective.layout().hidden.clone()) {
+        let at = |by: f64| {
+            let mut moved = point.clone();
+            moved[index] += by;
+            objective.value(&moved).objective
+        };
+        let slope = (at(step) - at(-step)) / (2.0 * step);
+        assert!((slope - gradient[index]).abs() < 1e-5 * largest, "{index}: {slope} and {}", gradient[index]);
+        compared += 1;
+    }
+    assert!(compared > 4 && largest > 1e-4);
+}
+
+#[test]
+fn states_of_a_magnet_at_remanence_are_found() {
+    let (train, test) = remanent();
+    for model in ["preisach", "random-stops"] {
+        let virgin = fitted(&train, &request(serde_json::json!({ "model": model })));
+        let found =
+            fitted(&train, &request(serde_json::json!({ "model": model, "initial_state": "unknown" })));
+        let (low, high) = train.input_range(0);
+        assert_eq!(found.lead_in(), [high], "{model}");
+        for (name, end) in [("a", high), ("b", low), ("c", high), ("d", high), ("e", low), ("f", high)] {
+            let of_record = found.provenance().lead_ins.iter().find(|one| one.record == name).unwrap();
+            assert_eq!(of_record.lead_in, [end], "{model} {name}");
+        }
+        let as_trained = found.as_trained(&train).unwrap();
+        assert_eq!(found.evaluate(&as_trained).unwrap(), found.provenance().train, "{model}");
+        let error = |model: &Model| model.evaluate(&test).unwrap().rmse;
+        assert!(error(&found) < 0.5 * error(&virgin), "{model}: {} of {}", error(&found), error(&virgin));
+        assert_eq!(Model::from_json(&found.to_json()).unwrap(), found);
+    }
+}
+
+/// Held-out records begin as most of the records that are left, not as their own outputs tell.
+#[test]
+fn a_validation_does_not_look_at_what_is_held_out() {
+    let (up, down) = (&[1.0][..], &[-1.0][..]);
+    let saturating = |pace: f64| {
+        let mut x = path(100, 0.8, pace);
+        x.extend((0..200).map(|k| (0.07 * f64::from(k)).sin()));
+        x
+    };
+    let data = untimed(vec![
+        measured("a", up, saturating(0.11)),
+        measured("b", up, saturating(0.13)),
+        measured("c", down, path(200, 0.8, 0.12)),
+    ]);
+    let request = request(serde_json::json!({ "model": "preisach", "initial_state": "unknown" }));
+    let validation = cross_validate(&data, &request, 3, &mut |_| ControlFlow::Continue(())).unwrap();
+    let (kept, held) = data.partition(|record| record < 2);
+    let model = fitted(&kept, &request);
+    assert_eq!(model.lead_in(), [kept.input_range(0).1]);
+    let wrong = model.evaluate(&held).unwrap();
+    assert_eq!(validation.folds[2].unseen, wrong);
+    let begun = model.with_initial_state(InitialState::SaturatedDown).unwrap();
+    assert!(begun.evaluate(&held).unwrap().rmse < 0.5 * wrong.rmse);
+}
+
+/// A single record is forecast from the state that its beginning tells.
+#[test]
+fn a_forecast_begins_with_the_state_of_its_record() {
+    let mut x = path(150, 0.9, 0.12);
+    x.extend((0..60).map(|k| (0.105 * f64::from(k)).sin()));
+    x.extend(path(250, 0.9, 0.1));
+    let data = untimed(vec![measured("r", &[1.0], x)]);
+    let error = |state: &str| {
+        let request = request(serde_json::json!({ "model": "preisach", "initial_state": state }));
+        let validation = cross_validate(&data, &request, 5, &mut |_| ControlFlow::Continue(())).unwrap();
+        let forecasts =
+            validation.folds.iter().filter(|fold| fold.held_out.ends_with("from what came before"));
+        forecasts.map(|fold| fold.unseen.nrmse_std_percent.unwrap().ln()).sum::<f64>()
+    };
+    let (found, told, virgin) = (error("unknown"), error("saturated-up"), error("virgin"));
+    assert!(found < told + 0.1 && found < virgin - 0.5, "{found} found, {told} told, {virgin} virgin");
+}
+
+#[test]
+fn auto_finds_states_where_they_matter_and_says_so() {
+    let (train, test) = remanent();
+    let FitSpec::Auto(options) = small(ModelName::AUTO, None) else { panic!("auto was asked for") };
+    // Few candidates, so that it is quick.
+    let auto = FitSpec::Auto(AutoOptions {
+        companding: Some(false),
+        history: Some(false),
+        deterioration: Some(false),
+        ..options
+    });
+    let model = fitted(&train, &auto);
+    let selection = model.provenance().selection.as_ref().unwrap();
+    let found = selection.found_states.expect("states that were found");
+    assert!(found.found_percent < 0.8 * found.virgin_percent);
+    assert_eq!(selection.warm_up, None);
+    assert_eq!(model.lead_in(), [train.input_range(0).1]);
+    assert!(model.ensemble().unwrap().members().iter().all(|member| member.lead_in().is_empty()));
+    assert!(model.notes().iter().any(|note| note.contains("initial state")), "{:?}", model.notes());
+    let virgin = fitted(&train, &auto.with_initial_state(Some(InitialState::Virgin)));
+    let error = |model: &Model| model.evaluate(&test).unwrap().rmse;
+    assert!(error(&model) < 0.5 * error(&virgin), "{} of {}", error(&model), error(&virgin));
+    assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
+}
+
+#[test]
+fn data_that_begin_virgin_keep_their_model() {
+    let data = untimed(["a", "b", "c"].map(|name| without_time(&record(150, name))).into());
+    let auto = small(ModelName::AUTO, None);
+    let model = fitted(&data, &auto);
+    assert!(model.lead_in().is_empty());
+    assert_eq!(model.provenance().selection.as_ref().unwrap().found_states, None);
+    // With the state decided, the same but for the option itself.
+    let decided = fitted(&data, &auto.with_initial_state(Some(InitialState::Virgin)));
+    let (plain, decided) = (model.to_json(), decided.to_json().replace("\"version\": 6", "\"version\": 5"));
+    let option = "      \"initial_state\": \"virgin\",\n";
+    let content = |text: &str| text[..text.rfind("\"checksum\"").unwrap()].to_string();
+    let (plain, decided) = (content(&plain), content(&decided));
+    assert!(decided.contains(option) && decided.replace(option, "") == plain, "two models");
+}
+
+#[test]
+fn bad_values_are_one_clear_error() {
+    let data = untimed(vec![without_time(&record(150, "a"))]);
+    let model = fitted(&data, &small(ModelName::Classical(ClassicalModel::Preisach), None));
+    let error = model.clone().with_initial_state(InitialState::Unknown).unwrap_err().to_string();
+    assert!(error.starts_with("initial_state unknown: choose one of virgin, saturated-up,"), "{error}");
+    assert!(model.stepper().reset_to(InitialState::Unknown).is_err());
+    let record = without_time(&record(20, "r"));
+    for value in [f64::NAN, f64::INFINITY, 1e101] {
+        let error = record.clone().with_lead_in(vec![0.0, value]).unwrap_err().to_string();
+        assert!(error.starts_with("record \"r\", input: the lead-in has the value"), "{error}");
+    }
+    let named = serde_json::json!({ "initial_state": "saturated" });
+    let serde_json::Value::Object(named) = named else { panic!("a map") };
+    let error = NamedOptions::of(named).unwrap_err().to_string();
+    assert!(error.contains("initial_state \"saturated\": choose one of virgin, saturated-up"), "{error}");
+    let up = model.with_initial_state(InitialState::SaturatedUp).unwrap().to_json();
+    let broken = up.replacen("\"lead_in\": [", "\"lead_in\": [1e200, ", 1);
+    assert_ne!(broken, up);
+    assert!(Model::from_json(&broken).is_err());
+}

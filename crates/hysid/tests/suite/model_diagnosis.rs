@@ -1,0 +1,166 @@
+//! The diagnosis of models against what their equations guarantee.
+
+use std::ops::ControlFlow;
+
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::diagnosis::model::TimeScale;
+use hysid::diagnosis::{ModelDiagnosis, Property, Verdict};
+use hysid::fit::identify;
+use hysid::model::Model;
+use hysid::network::Family;
+use hysid::options::ModelName;
+
+use crate::small_models::{record, small};
+
+fn data() -> Dataset {
+    Dataset::new(ColumnNames::plain(1), vec![record(180, "a"), record(120, "b")]).unwrap()
+}
+
+fn fitted(name: ModelName) -> Model {
+    fitted_to(&data(), name, Some(RateMethod::Central))
+}
+
+fn fitted_to(data: &Dataset, name: ModelName, rate: Option<RateMethod>) -> Model {
+    identify(data, &small(name, rate), &mut |_| ControlFlow::Continue(())).unwrap().model
+}
+
+use Property::*;
+
+/// What theory guarantees of each model whatever its parameters: properties it has and properties it has not.
+fn guaranteed(name: &str) -> (&'static [Property], &'static [Property]) {
+    match name {
+        "pnn" | "masing" | "prandtl-ishlinskii" => {
+            (&[WipingOut, Congruency, Masing, OddSymmetry, LoopClosure], &[RateDependence, Deterioration])
+        }
+        "preisach" | "generalized-prandtl-ishlinskii" => {
+            (&[WipingOut, Congruency, LoopClosure], &[RateDependence, Deterioration])
+        }
+        "preisach-nn" | "modified-prandtl-ishlinskii" => {
+            (&[WipingOut, LoopClosure], &[RateDependence, Deterioration])
+        }
+        "gpnn" => (&[OddSymmetry], &[RateDependence]),
+        "jiles-atherton" => (&[OddSymmetry], &[RateDependence, Deterioration]),
+        // At a vanishing speed.
+        "rate-dependent-prandtl-ishlinskii" => {
+            (&[WipingOut, Congruency, Masing, OddSymmetry, LoopClosure], &[Deterioration])
+        }
+        "bouc-wen" | "lugre" => (&[OddSymmetry], &[Deterioration]),
+        "peak-oriented" | "menegotto-pinto" => (&[OddSymmetry], &[RateDependence]),
+        "neuro-madelung" => (&[WipingOut], &[]),
+        "xpnn" | "xpnn+" | "duhem-nn" | "random-stops" => (&[], &[]),
+        "hysteretic-oscillator" | "hysteretic-state-space" => (&[], &[]),
+        other => panic!("what theory says of {other} is missing here"),
+    }
+}
+
+fn needs_time(name: ModelName) -> bool {
+    matches!(name, ModelName::Classical(law) if law.needs_time())
+}
+
+#[test]
+fn verdicts_of_all_models_are_those_that_theory_guarantees() {
+    for name in ModelName::all() {
+        let diagnosis = ModelDiagnosis::of(&fitted(name)).unwrap();
+        let (has, has_not) = guaranteed(name.name());
+        for (properties, expected) in [(has, Verdict::Yes), (has_not, Verdict::No)] {
+            for &property in properties {
+                let finding = diagnosis.finding(property);
+                assert_eq!(finding.verdict, expected, "{}: {}", name.name(), finding.statement);
+                let promise = diagnosis.promises.iter().find(|promise| promise.property == property);
+                assert_eq!(promise.map(|promise| promise.agrees), Some(Some(true)), "{}", name.name());
+            }
+        }
+        assert_eq!(diagnosis.promises.len(), has.len() + has_not.len(), "{}", name.name());
+        // The record has a loop that lags behind its input, of which an oscillator makes a vibration.
+        if needs_time(name) {
+            continue;
+        }
+        assert_eq!(diagnosis.verdict(StaticHysteresis), Verdict::Yes, "{}", name.name());
+        assert_eq!(diagnosis.verdict(Orientation), Verdict::No, "{}", name.name());
+        assert_eq!(diagnosis.properties.iter().map(|f| f.property).collect::<Vec<_>>(), Property::ALL);
+        assert_eq!(diagnosis.weights.is_some(), fitted(name).network().is_some());
+        serde_json::to_string(&diagnosis).unwrap();
+    }
+}
+
+#[test]
+fn what_sees_no_rate_is_the_same_at_every_speed_and_in_every_step() {
+    for name in ModelName::all() {
+        let diagnosis = ModelDiagnosis::of(&fitted(name)).unwrap();
+        let memory = &diagnosis.memory;
+        if !memory.rate_independent.holds {
+            assert!(name.uses_rate() || needs_time(name), "{}", name.name());
+            continue;
+        }
+        assert_eq!(diagnosis.finding(RateDependence).index, Some(0.0), "{}", name.name());
+        assert!(diagnosis.loop_widths.dynamic.iter().all(|at| at.widening == Some(0.0)));
+        // Stops, plays and turning points do not know the step; Jiles and Atherton's equation is solved in steps.
+        let refined = memory.refinement.by_two.max(memory.refinement.by_ten);
+        let expected = if name.name() == "jiles-atherton" { 1e-4 } else { 1e-12 };
+        assert!(refined <= expected, "{}: {refined}", name.name());
+    }
+}
+
+#[test]
+fn no_output_leaves_its_bound() {
+    for name in ModelName::all() {
+        let model = fitted(name);
+        let bound = ModelDiagnosis::of(&model).unwrap().memory.bound;
+        let (low, high) = bound.in_trained_ranges.unwrap();
+        assert!(low <= bound.reached.0 && high >= bound.reached.1, "{}: {bound:?}", name.name());
+        let (from, to) = model.trained_ranges().inputs[0];
+        let fastest = model.trained_ranges().rate.map_or(1.0, |(low, high)| high.min(-low));
+        for seed in 1..20u64 {
+            // Even numbers from a linear congruence.
+            let mut state = seed;
+            let mut even = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (state >> 11) as f64 / (1u64 << 53) as f64
+            };
+            let x: Vec<f64> =
+                (0..500).map(|_| from + (to - from) * (1.2 * even() - 0.1).clamp(0.0, 1.0)).collect();
+            let mut time = vec![0.0];
+            for pair in x.windows(2) {
+                let step = (pair[1] - pair[0]).abs() / fastest * (1.0 + even()) + 1e-6;
+                time.push(time[time.len() - 1] + step);
+            }
+            let record = Record::new("random", vec![x.clone()], vec![f64::NAN; x.len()]).unwrap();
+            for y in model.simulate(&record.with_time(time).unwrap()).unwrap() {
+                assert!(y >= low && y <= high, "{}: {y} beyond {low} to {high}", name.name());
+            }
+        }
+    }
+}
+
+/// Further inputs are held in the middle of what was trained; a rate that has to be given is given.
+#[test]
+fn everything_that_a_model_asks_for_is_provided() {
+    let one = record(180, "a");
+    let temperature: Vec<f64> = (0..one.len()).map(|k| 20.0 + 10.0 * (0.03 * k as f64).sin()).collect();
+    let inputs = vec![one.inputs()[0].to_vec(), temperature.clone()];
+    let time = one.time().unwrap().to_vec();
+    let two = Record::new("two inputs", inputs, one.output().to_vec()).unwrap().with_time(time).unwrap();
+    let two = Dataset::new(ColumnNames::plain(2), vec![two]).unwrap();
+    let middle = {
+        let (low, high) = two.input_range(1);
+        0.5 * low + 0.5 * high
+    };
+    for name in ModelName::all().filter(|name| name.takes_further_inputs()) {
+        let diagnosis = ModelDiagnosis::of(&fitted_to(&two, name, Some(RateMethod::Central))).unwrap();
+        assert_eq!(diagnosis.probing.held, [middle], "{}", name.name());
+    }
+    let rate = RateMethod::Central.rate(&one).unwrap();
+    let given = Record::new(
+        "given rate",
+        one.inputs().iter().map(|input| input.to_vec()).collect(),
+        one.output().to_vec(),
+    )
+    .unwrap();
+    let names = ColumnNames { time: None, rate: Some("v".into()), ..ColumnNames::plain(1) };
+    let given = Dataset::new(names, vec![given.with_given_rate(rate).unwrap()]).unwrap();
+    let name = ModelName::Network(Family::Xpnn);
+    let diagnosis = ModelDiagnosis::of(&fitted_to(&given, name, Some(RateMethod::Given))).unwrap();
+    assert_eq!(diagnosis.probing.time_scale, TimeScale::TrainedRates);
+    assert_eq!(diagnosis.loop_widths.dynamic.len(), 4);
+}

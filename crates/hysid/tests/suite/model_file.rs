@@ -1,0 +1,417 @@
+//! The model file: what is written comes back to the last bit, and what is damaged does not come back
+//! at all. And a model's two ways to run, whole and sample by sample.
+
+use std::ops::ControlFlow;
+use std::sync::LazyLock;
+
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::data::warning::Warning;
+use hysid::error::Error;
+use hysid::fit::network::fit;
+use hysid::model::{FORMAT_VERSION, Model, VIRGIN_FORMAT_VERSION};
+use hysid::network::{Family, Sizes};
+use hysid::operator::{Operator, Stop};
+use hysid::options::classical::ClassicalModel;
+use hysid::options::network::FitOptions;
+use hysid::options::{FitSpec, ModelName};
+
+/// Uneven steps in time, so that no two rows are alike.
+fn record(inputs: usize, rows: usize) -> Record {
+    let x: Vec<f64> =
+        (0..rows).map(|k| (0.21 * k as f64).sin() * (1.0 + 0.6 * (0.05 * k as f64).cos())).collect();
+    let mut y = Stop::new(0.4).unwrap().run(&x);
+    let mut columns = vec![x];
+    for c in 1..inputs {
+        columns.push((0..rows).map(|k| (0.07 * (c + 1) as f64 * k as f64).cos()).collect());
+    }
+    for (k, y) in y.iter_mut().enumerate() {
+        *y += 0.2 * columns.iter().map(|column| column[k]).sum::<f64>();
+    }
+    let time: Vec<f64> = (0..rows).map(|k| 0.1 * k as f64 + 0.02 * (1.3 * k as f64).sin()).collect();
+    let rate = (0..rows).map(|k| 2.1 * (0.21 * k as f64).cos()).collect();
+    Record::new("run 1", columns, y).unwrap().with_time(time).unwrap().with_given_rate(rate).unwrap()
+}
+
+fn dataset(inputs: usize) -> Dataset {
+    Dataset::new(ColumnNames::plain(inputs), vec![record(inputs, 120)]).unwrap()
+}
+
+fn model(family: Family, inputs: usize, rate: Option<RateMethod>) -> Model {
+    let sizes = Sizes { stops: 3, hidden: 2, relaxation: 1 };
+    let options = FitOptions { model: family, sizes, rate, starts: 1, epochs: 3, ..FitOptions::default() };
+    fit(&dataset(inputs), &options, &mut |_| ControlFlow::Continue(())).unwrap().model
+}
+
+/// One with all parts.
+static FULL: LazyLock<Model> = LazyLock::new(|| model(Family::XpnnPlus, 1, Some(RateMethod::Backward)));
+
+fn models() -> Vec<Model> {
+    let mut models = vec![FULL.clone(), model(Family::XpnnPlus, 3, None)];
+    for family in Family::ALL {
+        for rate in [None, Some(RateMethod::Given), Some(RateMethod::Central)] {
+            models.push(model(family, 1, rate));
+        }
+    }
+    models
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+fn refusal(text: &str) -> String {
+    match Model::from_json(text) {
+        Err(Error::ModelFile(text)) => text,
+        Err(other) => panic!("another kind of error: {other}"),
+        Ok(_) => panic!("accepted:\n{text}"),
+    }
+}
+
+/// The text with its checksum made to fit again, as the file module describes it: CRC 32 of all
+/// before the key, without the white space between its parts.
+fn with_fitting_checksum(text: &str) -> String {
+    let end = text.rfind("\"checksum\"").unwrap();
+    // No text of these files has a quotation mark within.
+    let parts = text[..end].split('"').enumerate().map(|(place, part)| match place % 2 {
+        0 => part.split_ascii_whitespace().collect(),
+        _ => part.to_string(),
+    });
+    let content = parts.collect::<Vec<String>>().join("\"");
+    format!("{}\"checksum\": \"{:08x}\"\n}}\n", &text[..end], crc32fast::hash(content.as_bytes()))
+}
+
+#[test]
+fn a_model_comes_back_to_the_last_bit() {
+    for model in models() {
+        let text = model.to_json();
+        let again = Model::from_json(&text).unwrap();
+        assert_eq!(again, model);
+        assert_eq!(again.to_json(), text);
+        assert_eq!(bits(again.network().unwrap().parameters()), bits(model.network().unwrap().parameters()));
+        assert_eq!(bits(again.network().unwrap().output()), bits(model.network().unwrap().output()));
+        let record = record(model.names().inputs.len(), 200);
+        assert_eq!(bits(&again.simulate(&record).unwrap()), bits(&model.simulate(&record).unwrap()));
+        assert_eq!(with_fitting_checksum(&text), text);
+    }
+}
+
+#[test]
+fn a_changed_byte_is_noticed() {
+    let text = FULL.to_json();
+    let places = 400;
+    let (mut refused, mut harmless) = (0, 0);
+    for n in 0..places {
+        // The start, the end with the checksum, and what lies between.
+        let place = match n {
+            0..40 => n,
+            40..80 => text.len() - 1 - (n - 40),
+            n => (n - 80) * text.len() / (places - 80),
+        };
+        for flip in [0x01, 0x02, 0x04, 0x08, 0x10, 0x20, 0x40, 0x80, 0x29, 0x2a, 0x2d] {
+            let mut bytes = text.clone().into_bytes();
+            let before = bytes[place];
+            bytes[place] ^= flip;
+            let after = bytes[place];
+            // What is no text is refused before it gets here.
+            let Ok(changed) = String::from_utf8(bytes) else { continue };
+            match Model::from_json(&changed) {
+                Err(_) => refused += 1,
+                Ok(model) => {
+                    let white = before.is_ascii_whitespace() && after.is_ascii_whitespace();
+                    assert!(white, "byte {place}: {before:#x} became {after:#x}");
+                    assert_eq!(model, *FULL);
+                    harmless += 1;
+                }
+            }
+        }
+    }
+    assert!(refused > 3000 && harmless > 50, "{refused} refused, {harmless} harmless");
+}
+
+/// A change that leaves sound JSON with sound numbers behind: only the checksum can tell.
+#[test]
+fn an_edited_number_is_noticed() {
+    let text = FULL.to_json();
+    let place = text.find("\"weights\"").unwrap();
+    let digit = place + text[place..].find(|c: char| c.is_ascii_digit()).unwrap();
+    let other = if &text[digit..digit + 1] == "1" { "2" } else { "1" };
+    let mut edited = text.clone();
+    edited.replace_range(digit..digit + 1, other);
+    assert!(refusal(&edited).contains("checksum does not match"));
+    let forced = Model::from_json(&with_fitting_checksum(&edited)).unwrap();
+    assert_ne!(forced, *FULL);
+}
+
+/// A blank in a name is part of the name.
+#[test]
+fn a_blank_within_a_text_is_noticed() {
+    let text = FULL.to_json();
+    for (name, with_blank) in
+        [("\"output\": \"y\"", "\"output\": \"y \""), ("\"hysid-model\"", "\"hysid-model\" ")]
+    {
+        let changed = text.replacen(name, with_blank, 1);
+        assert_ne!(changed, text);
+        match with_blank.ends_with(' ') {
+            true => assert_eq!(Model::from_json(&changed).unwrap(), *FULL),
+            false => assert!(refusal(&changed).contains("checksum does not match")),
+        }
+    }
+}
+
+/// Factors that no fit finds: the outputs would be infinite, or none.
+#[test]
+fn scales_that_nothing_can_be_divided_by_are_refused() {
+    let text = FULL.to_json();
+    let with = |part: &str, field: &str, value: &str| {
+        let begin = text.find(&format!("\"{part}\"")).unwrap();
+        let field = format!("\"{field}\": ");
+        let at = begin + text[begin..].find(&field).unwrap() + field.len();
+        let at = at + text[at..].find(|c: char| c.is_ascii_digit() || c == '-').unwrap();
+        let end = at + text[at..].find([',', '\n', ']']).unwrap();
+        let mut changed = text.clone();
+        changed.replace_range(at..end, value);
+        with_fitting_checksum(&changed)
+    };
+    for field in ["inputs", "rate", "output_deviation"] {
+        for value in ["0.0", "-1.0", "1e308", "5e-324"] {
+            let said = refusal(&with("scaling", field, value));
+            assert!(said.contains("its scaling has the factor"), "{field} {value}: {said}");
+        }
+    }
+    assert!(refusal(&with("scaling", "output_mean", "1e308")).contains("mean output"));
+    assert!(refusal(&with("trained_ranges", "inputs", "1e9")).contains("range"));
+    let preprocessing = text.replacen(
+        "\"trained_ranges\"",
+        "\"preprocessing\": {\"companding\": 5e-324, \"rate_companding\": null, \"history\": null}, \"trained_ranges\"",
+        1,
+    );
+    assert!(refusal(&with_fitting_checksum(&preprocessing)).contains("preprocessing has a scale"));
+}
+
+#[test]
+fn a_file_that_is_cut_off_says_so() {
+    let text = FULL.to_json();
+    let last = text.trim_end().len();
+    let lengths = (1..last).step_by(37).chain(last - 60..last);
+    for length in lengths {
+        let said = refusal(&text[..length]);
+        assert!(said.contains("cut off") || said.contains("damaged"), "{length}: {said}");
+        assert!(said.contains("restore the file"), "{said}");
+    }
+    assert_eq!(Model::from_json(&text[..last]).unwrap(), *FULL);
+    assert!(refusal("").contains("empty") && refusal(" \n").contains("empty"));
+}
+
+#[test]
+fn other_files_and_versions_are_told_apart() {
+    let text = FULL.to_json();
+    let version = format!("\"version\": {VIRGIN_FORMAT_VERSION}");
+    assert!(text.contains(&version));
+    let next = FORMAT_VERSION + 1;
+    let newer = with_fitting_checksum(&text.replacen(&version, &format!("\"version\": {next}"), 1));
+    assert!(
+        refusal(&newer).contains(&format!("version {next}")) && refusal(&newer).contains("use a newer hysid")
+    );
+    for none in ["0", "-1", "1.5", "\"1\"", "null"] {
+        let text = text.replacen(&version, &format!("\"version\": {none}"), 1);
+        assert!(refusal(&with_fitting_checksum(&text)).contains("no valid format version"), "{none}");
+    }
+    for other in ["x,y\n1,2\n", "[1, 2]", "{}", "{\"format\": \"other\"}", "7"] {
+        assert!(refusal(other).contains("not a Hysid model file"), "{other}");
+    }
+}
+
+#[test]
+fn an_unknown_field_is_another_layout() {
+    let text = FULL.to_json();
+    for place in ["\"format\"", "\"stops\": [", "\"weights\"", "\"output\": ["] {
+        let at = text.rfind(place).unwrap();
+        let mut extended = text.clone();
+        extended.insert_str(at, "\"novelty\": 1, ");
+        let said = refusal(&with_fitting_checksum(&extended));
+        assert!(
+            said.contains(&format!("layout of version {VIRGIN_FORMAT_VERSION}")) && said.contains("novelty"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn a_file_that_contradicts_itself_is_refused() {
+    let text = FULL.to_json();
+    let architecture = |field: &str, value: &str| {
+        let begin = text.find("\"architecture\"").unwrap();
+        let field = format!("\"{field}\": ");
+        let at = begin + text[begin..].find(&field).unwrap() + field.len();
+        let end = at + text[at..].find([',', '\n']).unwrap();
+        let mut changed = text.clone();
+        changed.replace_range(at..end, value);
+        assert_ne!(changed, text);
+        with_fitting_checksum(&changed)
+    };
+    let changes = [("inputs", "2"), ("rate", "false"), ("stops", "4"), ("hidden", "1"), ("relaxation", "0")];
+    for (field, value) in changes {
+        let said = refusal(&architecture(field, value));
+        assert!(said.contains("contradicts itself"), "{field}: {said}");
+    }
+    for field in ["deterioration", "linear", "direct", "constant"] {
+        refusal(&architecture(field, "false"));
+    }
+}
+
+#[test]
+fn a_file_of_absurd_size_is_refused_without_panic() {
+    let text = FULL.to_json();
+    let begin = text.find("\"architecture\"").unwrap();
+    for field in ["\"stops\": ", "\"hidden\": ", "\"relaxation\": "] {
+        let at = begin + text[begin..].find(field).unwrap() + field.len();
+        let end = at + text[at..].find([',', '\n']).unwrap();
+        let mut changed = text.clone();
+        changed.replace_range(at..end, "18446744073709551615");
+        refusal(&with_fitting_checksum(&changed));
+    }
+}
+
+#[test]
+fn line_ends_do_not_matter() {
+    let text = FULL.to_json();
+    assert_eq!(Model::from_json(&text.replace('\n', "\r\n")).unwrap(), *FULL);
+    assert_eq!(Model::from_json(&format!("\n{text}\n\n")).unwrap(), *FULL);
+    let compact: String = text.lines().map(str::trim_start).collect();
+    assert_eq!(Model::from_json(&compact).unwrap(), *FULL);
+}
+
+// -------------------------------------------------------------------------------- sample by sample
+
+#[test]
+fn a_stepper_fed_with_the_same_rates_gives_the_same_bits() {
+    for model in models() {
+        let record = record(model.names().inputs.len(), 200);
+        let rates = model.rate().map(|method| method.rate(&record).unwrap());
+        let whole = model.simulate(&record).unwrap();
+        let mut stepper = model.stepper();
+        for _ in 0..2 {
+            let stepped: Vec<f64> = (0..record.len())
+                .map(|k| {
+                    let inputs: Vec<f64> = record.inputs().iter().map(|input| input[k]).collect();
+                    stepper.step(&inputs, record.time().unwrap()[k], rates.as_ref().map(|r| r[k])).unwrap()
+                })
+                .collect();
+            assert_eq!(bits(&stepped), bits(&whole), "{:?} {:?}", model.name(), model.rate());
+            stepper.reset();
+        }
+    }
+}
+
+#[test]
+fn a_stepper_finds_backward_rates_itself() {
+    let record = record(1, 200);
+    let time = record.time().unwrap();
+    let steps = |model: &Model| {
+        let mut stepper = model.stepper();
+        let step = |k: usize| stepper.step(&[record.inputs()[0][k]], time[k], None).unwrap();
+        (0..record.len()).map(step).collect::<Vec<f64>>()
+    };
+    for family in [Family::Xpnn, Family::XpnnPlus] {
+        let backward = model(family, 1, Some(RateMethod::Backward));
+        assert_eq!(bits(&steps(&backward)), bits(&backward.simulate(&record).unwrap()));
+        let central = model(family, 1, Some(RateMethod::Central));
+        assert_ne!(bits(&steps(&central)), bits(&central.simulate(&record).unwrap()));
+    }
+}
+
+#[test]
+fn a_stepper_refuses_what_it_cannot_use_and_stays_as_it_was() {
+    let mut stepper = FULL.stepper();
+    stepper.step(&[0.1], 0.0, None).unwrap();
+    let mut undisturbed = stepper.clone();
+    for (inputs, time, rate) in [
+        (vec![], 1.0, None),
+        (vec![0.1, 0.2], 1.0, None),
+        (vec![f64::NAN], 1.0, None),
+        (vec![f64::INFINITY], 1.0, None),
+        (vec![0.2], 0.0, None),
+        (vec![0.2], -1.0, None),
+        (vec![0.2], f64::NAN, None),
+        (vec![0.2], 1.0, Some(f64::NAN)),
+    ] {
+        assert!(stepper.step(&inputs, time, rate).is_err(), "{inputs:?} at {time}, rate {rate:?}");
+    }
+    let next = stepper.step(&[0.5], 1.0, None).unwrap();
+    assert_eq!(next.to_bits(), undisturbed.step(&[0.5], 1.0, None).unwrap().to_bits());
+}
+
+#[test]
+fn warnings_give_the_share_of_samples_beyond_the_training() {
+    let beyond = |factor: f64, rows: usize| {
+        let record = record(1, 120);
+        let largest = record.inputs()[0].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let mut x = record.inputs()[0].to_vec();
+        x[..rows].fill(factor * largest);
+        let whole = Record::new("r", vec![x], vec![f64::NAN; 120])
+            .unwrap()
+            .with_time((0..120).map(|k| 0.1 * k as f64).collect())
+            .unwrap();
+        Dataset::new(ColumnNames::plain(1), vec![whole]).unwrap()
+    };
+    let model = model(Family::PreisachNn, 1, None);
+    assert_eq!(model.range_warnings(&dataset(1)).unwrap(), []);
+    assert_eq!(model.range_warnings(&beyond(0.9, 30)).unwrap(), []);
+    let warnings = model.range_warnings(&beyond(1.5, 30)).unwrap();
+    let [Warning::OutsideTrainedRange { name, share_percent, trained, seen }] = warnings.as_slice() else {
+        panic!("{warnings:?}");
+    };
+    assert_eq!((name.as_str(), *share_percent), ("x", 25.0));
+    assert_eq!(*trained, model.trained_ranges().inputs[0]);
+    assert!(seen.1 > 1.4 * trained.1);
+    // With a rate, the jump back into the path is one row in 120 of too fast an input.
+    let warnings = FULL.range_warnings(&beyond(0.9, 30)).unwrap();
+    let [Warning::OutsideTrainedRange { name, share_percent, .. }] = warnings.as_slice() else {
+        panic!("{warnings:?}");
+    };
+    assert_eq!(name, "the rate of x");
+    assert!((share_percent - 100.0 / 120.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_file_of_version_1_is_read() {
+    // Written by the program before its first change of layout; the outputs are what it simulated.
+    let model = Model::from_json(include_str!("../data/model-version-1.json")).unwrap();
+    assert_eq!(
+        (model.name(), model.rate()),
+        (ModelName::Network(Family::XpnnPlus), Some(RateMethod::Central))
+    );
+    let FitSpec::Network(options) = &model.provenance().options else { panic!("not a network") };
+    assert_eq!((options.training, options.epochs), (hysid::options::network::Trainer::LevenbergMarquardt, 6));
+    let x = vec![0.0, 0.05218, 0.10412, 0.15493];
+    let time = vec![0.0, 0.1, 0.2, 0.3];
+    let record = Record::new("r", vec![x], vec![f64::NAN; 4]).unwrap().with_time(time).unwrap();
+    let y = model.simulate(&record).unwrap();
+    // The last row's rate is one-sided here.
+    for (found, written) in y.iter().zip([-8.366994376950501e-4, 0.7297365547006063, 1.4568964414396568]) {
+        approx::assert_relative_eq!(*found, written, max_relative = 1e-12);
+    }
+    let again = model.to_json();
+    assert!(
+        again.contains(&format!("\"version\": {VIRGIN_FORMAT_VERSION}")) && !again.contains("\"trainer\"")
+    );
+    assert_eq!(Model::from_json(&again).unwrap(), model);
+}
+
+#[test]
+fn a_file_of_version_2_is_read() {
+    // Written before there were ensembles; the outputs are what it simulated.
+    let model = Model::from_json(include_str!("../data/model-version-2.json")).unwrap();
+    assert_eq!(model.name(), ModelName::Classical(ClassicalModel::PrandtlIshlinskii));
+    assert!(model.input_transform().is_none() && model.band().is_none());
+    let history = |k: usize| (0.19 * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs());
+    // The file's table had six decimals.
+    let x: Vec<f64> = (0..120).map(|k| (1e6 * history(k)).round() / 1e6).collect();
+    let record = Record::new("r", vec![x], vec![f64::NAN; 120]).unwrap();
+    let y = model.simulate(&record).unwrap();
+    for (row, written) in [(29, -1.7640965545054068), (59, -3.0102206180520863), (118, -1.284065683250112)] {
+        approx::assert_relative_eq!(y[row], written, max_relative = 1e-9);
+    }
+    assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
+}
