@@ -549,19 +549,6 @@ impl Model {
         Runner::of_model(self).record(excitation)
     }
 
-    /// As [`Model::response`], with networks in single precision: about half the time with AVX-512, for models
-    /// whose time is that of their networks. Classical laws are computed in double precision.
-    ///
-    /// The outputs differ from those in double precision by rounding: in 22 fits of `xpnn` and `xpnn+` to measured
-    /// records, by at most 9e-6 of the standard deviation of the output, and by less than 5e-6 in all but one.
-    ///
-    /// # Errors
-    /// As [`Model::simulate`].
-    pub fn response_in_single_precision(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
-        self.check_time(excitation)?;
-        Runner::of_model(self).in_single_precision().record(excitation)
-    }
-
     /// A simulation of records that are processed in blocks.
     pub fn simulation(&self) -> Simulation<'_> {
         Simulation::new(self, None)

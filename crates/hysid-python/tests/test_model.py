@@ -236,17 +236,6 @@ def test_pandas_goes_in_and_comes_out(spring_and_slider, quick_model):
     assert quick_model.evaluate(series, measured).samples == 300
 
 
-def test_single_precision_differs_by_rounding(spring_and_slider, quick_model, quick_ensemble):
-    x, _ = spring_and_slider
-    differences = []
-    for model in (quick_model, quick_ensemble):
-        double, single = (model.simulate(x, precision=precision) for precision in ("f64", "f32"))
-        differences.append(np.abs(double - single).max() / double.std())
-    assert 0 < differences[0] < 1e-5 and differences[1] < 1e-5
-    with pytest.raises(ValueError, match="precision 'half'"):
-        quick_model.simulate(x, precision="half")
-
-
 def test_each_record_begins_virgin(spring_and_slider, quick_model):
     x, y = spring_and_slider
     twice = np.concatenate([x, x])

@@ -91,7 +91,6 @@ class Model:
         inputs: list[_Column],
         rate: _Column | None,
         initial_state: str | None,
-        single_precision: bool,
     ) -> _Column: ...
     def predict(
         self,
