@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use workbench::Workbench;
 
 /// How the lines begin that are run.
-const PROGRAMS: [&str; 4] = ["hysid ", "cc ", "rustc ", "./"];
+const PROGRAMS: [&str; 3] = ["hysid ", "cc ", "./"];
 
 /// The commands of a page.
 fn commands(page: &str) -> Vec<&str> {

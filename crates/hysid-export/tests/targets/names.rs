@@ -26,13 +26,6 @@ fn run(target: Target, name: &str, folder: &Path) {
             };
             compiled(&compiler, &["-std=c99", "-ffp-contract=off", &c, &c_test, "-lm", "-o", "the_test"]);
         }
-        Target::Rust => {
-            let Some(compiler) = tool("exports to Rust", "rustc", &["--version"], "see https://rustup.rs")
-            else {
-                return;
-            };
-            compiled(&compiler, &["-O", &format!("{name}_test.rs"), "-o", "the_test"]);
-        }
         Target::Matlab => {
             let install = "run: sudo apt-get install octave";
             let probe = ["--no-gui", "--eval", "1;"];
@@ -69,7 +62,6 @@ fn words_of_the_language_are_refused() {
     for (target, words) in [
         (Target::Matlab, ["end", "function", "tanh"]),
         (Target::Python, ["class", "lambda", "numpy"]),
-        (Target::Rust, ["fn", "self", "std"]),
     ] {
         for name in words {
             let refused = export(model, target, &Options::named(name));
