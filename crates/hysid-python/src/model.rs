@@ -32,11 +32,6 @@ impl Model {
     pub fn new(model: model::Model) -> Self {
         Self { model: Arc::new(model) }
     }
-
-    /// The model itself.
-    pub fn shared(&self) -> Arc<model::Model> {
-        Arc::clone(&self.model)
-    }
 }
 
 #[pymethods]

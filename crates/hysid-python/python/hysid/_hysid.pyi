@@ -177,7 +177,6 @@ def folds(
 def plan(
     data: Dataset | None,
     kind: str | None,
-    model: Model | None,
     range: tuple[float, float] | None,
     length: int | None,
     step: float | None,
