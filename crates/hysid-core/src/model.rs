@@ -50,7 +50,7 @@ pub use band::{BAND_OF_TEN, BAND_PROBABILITIES, Band, BandLevel, Prediction};
 pub use band::{HeldOutRow, disagreement};
 pub use ensemble::{Ensemble, Group, Node, NodeKind, Weights};
 pub use ensemble::{Excursion, MedianBuffers, Predictions};
-pub use file::{FORMAT_VERSION, VIRGIN_FORMAT_VERSION};
+pub use file::FORMAT_VERSION;
 pub use inverse::{Inverse, Inversion, Inverted, MOST_TRIALS, Reach, Reference};
 use ranges::Ranges;
 use runner::{Runner, Spread};
@@ -217,7 +217,7 @@ pub struct Provenance {
     /// Errors on held-out data, of models that were fitted in the same way without them; `None` if none were
     /// held out.
     pub validation: Option<Errors>,
-    /// Penalties that a network was trained with; `None` for other models and in files of before version 4.
+    /// Penalties that a network was trained with; `None` for other models.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub penalties: Option<Regularisation>,
     /// Every training run.
