@@ -31,8 +31,7 @@ pub enum Target {
 
 impl Target {
     /// All targets.
-    pub const ALL: [Self; 6] =
-        [Self::C, Self::Fmu, Self::Matlab, Self::OpenSees, Self::Onnx, Self::Python];
+    pub const ALL: [Self; 6] = [Self::C, Self::Fmu, Self::Matlab, Self::OpenSees, Self::Onnx, Self::Python];
 
     /// The target of a name.
     pub fn named(name: &str) -> Option<Self> {

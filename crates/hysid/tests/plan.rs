@@ -130,7 +130,8 @@ fn after_tests_at_one_speed_several_are_run() {
     let random = plan.segments.iter().find(|segment| segment.kind == Kind::RandomReversals).unwrap();
     let steps: Vec<f64> =
         plan.input[random.rows.clone()].windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
-    let mut speeds: Vec<f64> = steps.chunks(40).map(|some| some.iter().copied().fold(0.0, f64::max)).collect();
+    let mut speeds: Vec<f64> =
+        steps.chunks(40).map(|some| some.iter().copied().fold(0.0, f64::max)).collect();
     speeds.sort_unstable_by(f64::total_cmp);
     assert!(speeds[speeds.len() - 1] > 1.7 * speeds[0], "{speeds:?}");
     assert!(plan.segments.iter().any(|segment| segment.kind == Kind::TwoSpeeds));

@@ -9,12 +9,12 @@ use hysid_files::{Destination, Kind};
 use hysid_records::header_line;
 use hysid_records::{Roles, understanding};
 
+use crate::Outcome;
 use crate::arguments;
 use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
 use crate::messages::{Usage, json_results, note_labelled, raw_results, results};
 use crate::planning::{self, Planned};
-use crate::Outcome;
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Plan) -> Result<Outcome> {

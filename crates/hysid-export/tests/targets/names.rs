@@ -59,10 +59,9 @@ fn every_name_that_is_not_refused_works() {
 #[test]
 fn words_of_the_language_are_refused() {
     let model = &MODELS[0].1;
-    for (target, words) in [
-        (Target::Matlab, ["end", "function", "tanh"]),
-        (Target::Python, ["class", "lambda", "numpy"]),
-    ] {
+    for (target, words) in
+        [(Target::Matlab, ["end", "function", "tanh"]), (Target::Python, ["class", "lambda", "numpy"])]
+    {
         for name in words {
             let refused = export(model, target, &Options::named(name));
             let expected = Error::Reserved { name: name.into(), target: target.name() };

@@ -147,8 +147,7 @@ impl Drive {
     fn add_test(&mut self, kind: Kind, legs: &[Leg]) -> bool {
         let (all, rows) = (self.path.limits.rows as f64, self.path.rows_of(self.now(), legs));
         let together = (self.inputs.len() + rows) as f64;
-        let may_be_run =
-            rows as f64 <= OF_A_TEST * all && together <= OF_ALL_TESTS * all && self.fits(legs);
+        let may_be_run = rows as f64 <= OF_A_TEST * all && together <= OF_ALL_TESTS * all && self.fits(legs);
         if may_be_run {
             self.add(kind, legs);
         }
