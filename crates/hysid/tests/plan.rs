@@ -177,11 +177,13 @@ fn a_seed_determines_the_plan() {
     assert!(of_seed(1) == of_seed(1) && of_seed(1) != of_seed(2));
 }
 
-/// Large swings may damage a structure, so that they come last.
+/// Large swings may damage a specimen that deteriorates, so that they come last.
 #[test]
-fn swings_of_a_structure_grow() {
-    let (t, x, y) = cycles(10.0, 0.0, 600, 0.1);
-    let data = Dataset::from_columns(Some(("t_s", &t)), &[("drift_mm", &x)], ("force_kN", &y)).unwrap();
+fn swings_of_a_specimen_that_deteriorates_grow() {
+    let (t, x, mut y) = cycles(10.0, 0.0, 600, 0.1);
+    y.iter_mut().enumerate().for_each(|(row, y)| *y *= (-0.003 * row as f64).exp());
+    let data = Dataset::from_columns(Some(("t", &t)), &[("x", &x)], ("y", &y)).unwrap();
+    assert_eq!(diagnose(&data).unwrap().verdict(Property::Deterioration), Verdict::Yes);
     let plan = Plan::of(&data, &PlanOptions::default()).unwrap();
     let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let random = plan.segments.iter().find(|segment| segment.kind == Kind::RandomReversals).unwrap();
