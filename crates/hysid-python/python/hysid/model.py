@@ -258,10 +258,7 @@ class Model(StoredModel):
         return tuple(np.concatenate(parts) for parts in zip(*runs))
 
     def _simulated(self, arranged: Columns, initial_state: str | None = None) -> np.ndarray:
-        outputs = [
-            self._native.simulate(name, *driving, initial_state)
-            for name, driving in _of_records(arranged)
-        ]
+        outputs = [self._native.simulate(name, *driving, initial_state) for name, driving in _of_records(arranged)]
         self._warn_of_range(arranged)
         return outputs[0] if len(outputs) == 1 else np.concatenate(outputs)
 
