@@ -6,7 +6,7 @@ mod text;
 use std::path::Path;
 
 use hysid::data::unit;
-use hysid::plan::{Disagreement, Gap, Limits, Plan, Segment, Wave};
+use hysid::plan::{Gap, Limits, Plan, Segment, Wave};
 use hysid_document::{Cell, Table, number};
 use hysid_tables::{DecimalSign, push_shortest};
 use serde::Serialize;
@@ -50,7 +50,6 @@ pub struct Printed<'a> {
     limits: Limits,
     segments: &'a [Segment],
     gaps: &'a [Gap],
-    disagreement: Option<Disagreement>,
     sources: &'a [&'static str],
 }
 
@@ -66,7 +65,6 @@ impl<'a> Printed<'a> {
             limits: plan.limits,
             segments: &plan.segments,
             gaps: &plan.gaps,
-            disagreement: plan.disagreement,
             sources: &plan.sources,
         }
     }
@@ -108,44 +106,18 @@ fn headline(plan: &Plan) -> String {
     )
 }
 
-/// What the disagreement says, if it is known.
-fn on_disagreement(plan: &Plan) -> Option<String> {
-    let Disagreement { plan: along, repeat } = plan.disagreement?;
-    let output = &plan.names.output;
-    let with_unit = |value: f64| hysid_document::unit::with(&number(value, 2), output);
-    Some(format!(
-        "The members of the ensemble differ by {} along the plan, and by {} along the data: {}",
-        with_unit(along),
-        with_unit(repeat),
-        if along > repeat {
-            "the plan tests where the models still disagree."
-        } else {
-            "the models do not differ more along the plan than along the data, so the plan may improve them little."
-        }
-    ))
-}
-
 /// The segments as a table.
 fn segments(plan: &Plan) -> Table {
-    let from_data = plan.segments.iter().any(|segment| segment.new_share.is_some());
-    let has_members = plan.disagreement.is_some();
-    let mut headings = vec!["", "segment", "rows", "amplitude", "mean", "rate"];
-    headings.extend(from_data.then_some("new %"));
-    headings.extend(has_members.then_some("members differ"));
-    let mut table = Table::new(headings);
+    let mut table = Table::new(["", "segment", "rows", "amplitude", "mean", "rate"]);
     for (index, segment) in plan.segments.iter().enumerate() {
-        let mut cells: Vec<Cell> = vec![
-            (index + 1).to_string().into(),
+        table.push([
+            Cell::from((index + 1).to_string()),
             segment.kind.words().into(),
             format!("{}-{}", segment.rows.start + 1, segment.rows.end).into(),
             Cell::number(segment.amplitude, 3),
             Cell::number(segment.mean, 3),
             Cell::number(segment.rate, 3),
-        ];
-        let percent = |share: f64| format!("{:.0}", 100.0 * share);
-        cells.extend(from_data.then(|| Cell::from(segment.new_share.map_or_else(String::new, percent))));
-        cells.extend(has_members.then(|| Cell::number(segment.disagreement, 2)));
-        table.push(cells);
+        ]);
     }
     table
 }

@@ -50,7 +50,7 @@ pub use band::{BAND_OF_TEN, BAND_PROBABILITIES, Band, BandLevel, Prediction};
 pub use band::{HeldOutRow, disagreement};
 pub use ensemble::{Ensemble, Group, Node, NodeKind, Weights};
 pub use ensemble::{Excursion, MedianBuffers, Predictions};
-pub use file::{FORMAT_VERSION, VIRGIN_FORMAT_VERSION};
+pub use file::FORMAT_VERSION;
 pub use inverse::{Inverse, Inversion, Inverted, MOST_TRIALS, Reach, Reference};
 use ranges::Ranges;
 use runner::{Runner, Spread};
@@ -217,7 +217,7 @@ pub struct Provenance {
     /// Errors on held-out data, of models that were fitted in the same way without them; `None` if none were
     /// held out.
     pub validation: Option<Errors>,
-    /// Penalties that a network was trained with; `None` for other models and in files of before version 4.
+    /// Penalties that a network was trained with; `None` for other models.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub penalties: Option<Regularisation>,
     /// Every training run.
@@ -547,19 +547,6 @@ impl Model {
     pub fn response(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
         self.check_time(excitation)?;
         Runner::of_model(self).record(excitation)
-    }
-
-    /// As [`Model::response`], with networks in single precision: about half the time with AVX-512, for models
-    /// whose time is that of their networks. Classical laws are computed in double precision.
-    ///
-    /// The outputs differ from those in double precision by rounding: in 22 fits of `xpnn` and `xpnn+` to measured
-    /// records, by at most 9e-6 of the standard deviation of the output, and by less than 5e-6 in all but one.
-    ///
-    /// # Errors
-    /// As [`Model::simulate`].
-    pub fn response_in_single_precision(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
-        self.check_time(excitation)?;
-        Runner::of_model(self).in_single_precision().record(excitation)
     }
 
     /// A simulation of records that are processed in blocks.

@@ -53,7 +53,6 @@ mod memory;
 mod parameters;
 mod readout;
 pub mod scaling;
-mod single_precision;
 mod sweep;
 pub(crate) mod tanh;
 mod transpose;
@@ -62,7 +61,6 @@ pub use architecture::{Architecture, Family, Sizes};
 pub use jacobian::Linearised;
 pub use memory::MemoryState;
 pub use parameters::Layout;
-pub use single_precision::SinglePrecisionSimulator;
 pub use sweep::Drive;
 
 pub use gradient::GradientOverRecords;
@@ -124,11 +122,6 @@ impl Network {
     /// The output weights: constant, tanh neurons, direct path.
     pub fn output(&self) -> &[f64] {
         &self.output
-    }
-
-    /// A simulator in the virgin state that computes in single precision.
-    pub fn simulator_in_single_precision(&self) -> SinglePrecisionSimulator {
-        SinglePrecisionSimulator::new(self)
     }
 
     /// A simulator in the virgin state.

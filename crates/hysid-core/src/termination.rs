@@ -20,13 +20,6 @@ pub enum Termination {
     Stopped,
 }
 
-impl Termination {
-    /// True if further iterations would bring no improvement.
-    pub fn is_converged(self) -> bool {
-        matches!(self, Self::Converged | Self::GradientVanished | Self::NoFurtherImprovement)
-    }
-}
-
 impl std::fmt::Display for Termination {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {

@@ -31,8 +31,8 @@ they must give: steps, and a state that is saved and restored.",
     let usage = (to.back_end().usage)(subject);
     let band = subject.half_width().map_or(String::new(), |place| {
         format!(
-            "\nHalf the width of the prediction band at the last row is number {} of the state. C, Rust and Python have \
-             a function `half_width` for it.\n",
+            "\nHalf the width of the prediction band at the last row is number {} of the state. C and Python have a \
+             function `half_width` for it.\n",
             place + 1
         )
     });

@@ -7,7 +7,6 @@ mod onnx;
 mod opensees;
 mod printer;
 mod python;
-mod rust;
 mod template;
 
 use crate::error::Error;
@@ -28,14 +27,11 @@ pub enum Target {
     OpenSees,
     /// Python with NumPy.
     Python,
-    /// Rust without the standard library.
-    Rust,
 }
 
 impl Target {
     /// All targets.
-    pub const ALL: [Self; 7] =
-        [Self::C, Self::Fmu, Self::Matlab, Self::OpenSees, Self::Rust, Self::Onnx, Self::Python];
+    pub const ALL: [Self; 6] = [Self::C, Self::Fmu, Self::Matlab, Self::OpenSees, Self::Onnx, Self::Python];
 
     /// The target of a name.
     pub fn named(name: &str) -> Option<Self> {
@@ -56,7 +52,6 @@ impl Target {
             Self::Onnx => "graphs of ONNX",
             Self::OpenSees => "material of OpenSees",
             Self::Python => "Python module that needs NumPy alone",
-            Self::Rust => "Rust without the standard library",
         }
     }
 
@@ -68,7 +63,6 @@ impl Target {
             Self::Onnx => &onnx::BACK_END,
             Self::OpenSees => &opensees::BACK_END,
             Self::Python => &python::BACK_END,
-            Self::Rust => &rust::BACK_END,
         }
     }
 }

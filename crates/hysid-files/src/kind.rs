@@ -11,23 +11,11 @@ pub const GENERATOR: &str = concat!("Hysid ", env!("CARGO_PKG_VERSION"));
 pub const PAGE_MARK: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
                              <meta name=\"generator\" content=\"Hysid ";
 
-/// Pages of version 0.1.0 carry no mark: they begin like this, and the style sheet follows the title.
-const OLD_PAGE: [&str; 2] = [
-    "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-     <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-     <meta name=\"color-scheme\" content=\"light dark\">\n<title>",
-    "</title>\n<style>\n:root { color-scheme: light dark; --page: #ffffff; --text: #1b1f24;",
-];
-
-/// How drawings begin, as SVG, PDF and PNG, and the marks of which each carries one soon after. The style sheet is the mark
-/// of version 0.1.0.
-const DRAWINGS: [(&[u8], &[&str]); 3] = [
-    (
-        b"<svg class=\"plot\" role=\"img\" aria-label=\"",
-        &[" data-generator=\"Hysid ", "><style>svg.plot { --ink: #1b1f24; --axis: "],
-    ),
-    (b"%PDF-", &["/Creator (Hysid "]),
-    (b"\x89PNG", &["Software\0Hysid "]),
+/// How drawings begin, as SVG, PDF and PNG, and the mark that each carries soon after.
+const DRAWINGS: [(&[u8], &str); 3] = [
+    (b"<svg class=\"plot\" role=\"img\" aria-label=\"", " data-generator=\"Hysid "),
+    (b"%PDF-", "/Creator (Hysid "),
+    (b"\x89PNG", "Software\0Hysid "),
 ];
 
 /// Names of columns in titles and labels may be long.
@@ -90,15 +78,9 @@ impl Kind {
         match self {
             Self::Model => is_model(text),
             Self::Checkpoint => text.starts_with(b"hysid checkpoint "),
-            Self::Page => {
-                text.starts_with(PAGE_MARK.as_bytes())
-                    || text.starts_with(OLD_PAGE[0].as_bytes()) && contains(text, OLD_PAGE[1])
-            }
+            Self::Page => text.starts_with(PAGE_MARK.as_bytes()),
             Self::Drawing => {
-                let is_marked = |(beginning, marks): &(&[u8], &[&str])| {
-                    text.starts_with(beginning) && marks.iter().any(|mark| contains(text, mark))
-                };
-                DRAWINGS.iter().any(is_marked)
+                DRAWINGS.iter().any(|(beginning, mark)| text.starts_with(beginning) && contains(text, mark))
             }
             Self::Beginning(beginning) => text.starts_with(beginning),
             Self::Marked(beginning, mark) => text.starts_with(beginning.as_bytes()) && contains(text, mark),
@@ -158,9 +140,6 @@ mod tests {
         let ours = format!("{PAGE_MARK}0.1.0\">");
         assert!(Kind::Page.is_begun_by(ours.as_bytes()));
         assert!(!Kind::Page.is_begun_by(format!("<html><pre>{ours}").as_bytes()));
-        let other = format!("{}notes</title>", OLD_PAGE[0]);
-        assert!(!Kind::Page.is_begun_by(other.as_bytes()));
-        assert!(Kind::Page.is_begun_by(format!("{}t{}", OLD_PAGE[0], OLD_PAGE[1]).as_bytes()));
     }
 
     #[test]

@@ -9,7 +9,6 @@ mod folds;
 mod identification;
 mod inverse;
 mod labels;
-mod minimiser;
 mod model;
 mod plan;
 mod progress;
@@ -35,8 +34,6 @@ mod _hysid {
     use crate::inverse::Inverse;
     #[pymodule_export]
     use crate::labels::{axis_label, figure_label, name_and_unit};
-    #[pymodule_export]
-    use crate::minimiser::minimise;
     #[pymodule_export]
     use crate::model::{Model, Stepper};
     #[pymodule_export]

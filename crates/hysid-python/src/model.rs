@@ -32,11 +32,6 @@ impl Model {
     pub fn new(model: model::Model) -> Self {
         Self { model: Arc::new(model) }
     }
-
-    /// The model itself.
-    pub fn shared(&self) -> Arc<model::Model> {
-        Arc::clone(&self.model)
-    }
 }
 
 #[pymethods]
@@ -120,7 +115,6 @@ impl Model {
 
     /// Free run over one record, whose columns are read where they lie. Without the name of an initial state it
     /// begins as the training records did.
-    #[allow(clippy::too_many_arguments)]
     fn simulate<'py>(
         &self,
         py: Python<'py>,
@@ -129,16 +123,9 @@ impl Model {
         inputs: Vec<Column<'_>>,
         rate: Option<Column<'_>>,
         initial_state: Option<&str>,
-        single_precision: bool,
     ) -> PyResult<NewColumn<'py>> {
         let lead_in = self.lead_in(initial_state)?;
-        let run = |excitation: &Excitation<'_>| {
-            let excitation = after(excitation, &lead_in)?;
-            match single_precision {
-                false => self.model.response(&excitation),
-                true => self.model.response_in_single_precision(&excitation),
-            }
-        };
+        let run = |excitation: &Excitation<'_>| self.model.response(&after(excitation, &lead_in)?);
         Ok(PyArray1::from_vec(py, driven(py, name, time, inputs, rate, run)?))
     }
 

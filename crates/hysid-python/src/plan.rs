@@ -7,17 +7,15 @@ use pyo3::prelude::*;
 
 use crate::data::Dataset;
 use crate::failure::refused;
-use crate::model::Model;
 
 /// A plan from data, or a protocol of a kind, as JSON.
 #[pyfunction]
-#[pyo3(signature = (data, kind, model, range, length, step, max_rate, wave, seed))]
+#[pyo3(signature = (data, kind, range, length, step, max_rate, wave, seed))]
 #[allow(clippy::too_many_arguments, reason = "one for each keyword of Python")]
 pub fn plan(
     py: Python<'_>,
     data: Option<&Dataset>,
     kind: Option<&str>,
-    model: Option<&Model>,
     range: Option<(f64, f64)>,
     length: Option<usize>,
     step: Option<f64>,
@@ -28,9 +26,9 @@ pub fn plan(
     let limits = Wanted { range, step, max_rate, length };
     let wave: Option<Wave> =
         wave.map(str::parse).transpose().map_err(|error: hysid::Error| refused(error))?;
-    let (set, model) = (data.map(|data| Arc::clone(&data.set)), model.map(Model::shared));
+    let set = data.map(|data| Arc::clone(&data.set));
     let made = py.detach(|| match (set, kind) {
-        (Some(set), _) => Plan::of(&set, model.as_deref(), &PlanOptions { limits, wave, seed }),
+        (Some(set), _) => Plan::of(&set, &PlanOptions { limits, wave, seed }),
         (None, kind) => Protocol::named(kind.unwrap_or_default())?.plan(&ProtocolOptions { limits, wave }),
     });
     serde_json::to_string(&made.map_err(|error: hysid::Error| refused(error))?).map_err(refused)

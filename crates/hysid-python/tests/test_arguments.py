@@ -20,10 +20,6 @@ def fit(**keywords):
     return hysid.fit(X, X, **{**LINEAR, **keywords})
 
 
-def minimise(function=lambda x: (abs(x[0]), np.sign(x)), x=(1.0,), **keywords):
-    return hysid.minimise(function, x, **keywords)
-
-
 @pytest.mark.parametrize(
     ("call", "kind", "text"),
     [
@@ -45,22 +41,6 @@ def minimise(function=lambda x: (abs(x[0]), np.sign(x)), x=(1.0,), **keywords):
             TypeError,
             "smallest_reversal 'a': a number is needed",
         ),
-        (lambda: minimise(iterations=2.5), TypeError, "iterations 2.5: a whole number is needed"),
-        (lambda: minimise(stall=-1), ValueError, "stall -1: choose 0 or more"),
-        (lambda: minimise(target="low"), TypeError, "target 'low': a number is needed"),
-        (lambda: minimise(growth=np.nan), ValueError, "growth nan: a finite number is needed"),
-        (
-            lambda: minimise(dilation="sum"),
-            ValueError,
-            "dilation 'sum': choose 'difference' or 'subgradient'",
-        ),
-        (lambda: minimise(lambda x: None), TypeError, "function: must return a number and an array, not None"),
-        (
-            lambda: minimise(lambda x: (0.0, [[1.0]])),
-            ValueError,
-            "function: a sub-gradient of one dimension is needed, not of 2",
-        ),
-        (lambda: minimise(x=[[1.0]]), ValueError, "x: a one-dimensional array is needed, not one of 2 dimensions"),
         (lambda: operators.play(X, "1"), TypeError, "r '1': a number is needed"),
         (lambda: operators.relaxation(X, X, None), TypeError, "tau None: a number is needed"),
         (lambda: classical.masing(X, ["a"], [1.0]), TypeError, "thresholds: an array of numbers is needed"),

@@ -243,21 +243,6 @@ def test_a_model_has_cycles_and_reversal_curves(spring_and_slider):
         hysid.cycles(*spring_and_slider, field=3)
 
 
-def test_a_minimum_at_a_kink_is_found():
-    def distance(x):
-        return np.abs(x - [3.0, -1.0]) @ [1.0, 100.0], np.sign(x - [3.0, -1.0]) * [1.0, 100.0]
-
-    minimum = hysid.minimise(distance, [0, 0], iterations=200, target=1e-9)
-    assert minimum.x == pytest.approx([3, -1], abs=1e-8)
-    assert minimum.termination == "converged"
-    with pytest.raises(ZeroDivisionError):
-        hysid.minimise(lambda x: (1 / 0, x), [1.0])
-    with pytest.raises(ValueError, match="a sub-gradient of 1 values for 2 variables"):
-        hysid.minimise(lambda x: (1.0, [1.0]), [1.0, 2.0])
-    with pytest.raises(ValueError, match="coefficient of dilatation"):
-        hysid.minimise(distance, [0, 0], coefficient=0.5)
-
-
 def test_warnings_are_those_of_the_caller(spring_and_slider, quick_model):
     x, y = spring_and_slider
     with warnings.catch_warnings(record=True) as warned:

@@ -18,9 +18,9 @@ def test_a_plan_is_that_of_the_program(cycles, program, tmp_path):
     x, y, time = cycles
     rows = "".join(f"{t!r},{a!r},{b!r}\n" for t, a, b in zip(time.tolist(), x.tolist(), y.tolist(), strict=True))
     (tmp_path / "data.csv").write_text("t,x,y\n" + rows)
-    said = program("plan", "--like", "data.csv", "--coverage-only", "--json", "--no-report", folder=tmp_path)
+    said = program("plan", "--like", "data.csv", "--json", "--no-report", folder=tmp_path)
     told = json.loads(said.stdout)
-    plan = hysid.plan(x, y, time, model=None)
+    plan = hysid.plan(x, y, time)
     assert len(plan.drive) == told["rows"] and plan.limits == told["limits"]
     assert [segment.reason for segment in plan.segments] == [segment["reason"] for segment in told["segments"]]
     plan.to_csv(tmp_path / "drive.csv")
@@ -31,14 +31,8 @@ def test_a_plan_is_that_of_the_program(cycles, program, tmp_path):
     assert np.array_equal(written[:, 1], plan.drive)
 
 
-@pytest.mark.filterwarnings("ignore::hysid.HysidWarning")
-def test_members_that_disagree_are_measured(cycles):
-    x, y, time = cycles
-    model = hysid.fit(
-        x, y, time, model="xpnn", members=3, starts=3, epochs=3, training="levenberg-marquardt"
-    )
-    plan = hysid.plan(x, y, time, model=model, length=300)
-    assert plan.disagreement["plan"] > plan.disagreement["repeat"] > 0
+def test_a_plan_has_at_most_the_wanted_rows(cycles):
+    plan = hysid.plan(*cycles, length=300)
     assert len(plan.drive) <= 300 and repr(plan).startswith(f"<plan of {len(plan.drive)} rows")
     assert plan.segments[0].rows.start == 1 and plan.segments[-1].rows.stop == len(plan.drive)
 
@@ -53,11 +47,10 @@ def test_a_kind_has_a_protocol_and_nonsense_is_refused(cycles):
         ({}, "or a kind"),
         ({"x": x, "y": y, "kind": "piezo"}, "or a kind"),
         ({"x": x}, "x and y"),
-        ({"x": x, "y": y, "model": "xpnn"}, "'auto' or None"),
-        ({"x": x, "y": y, "model": None, "length": 3}, "length 3"),
-        ({"x": x, "y": y, "model": None, "wave": "square"}, "square"),
+        ({"x": x, "y": y, "length": 3}, "length 3"),
+        ({"x": x, "y": y, "wave": "square"}, "square"),
     ]:
         with pytest.raises(ValueError, match=words):
             hysid.plan(**arguments)
     with pytest.raises(TypeError, match="range"):
-        hysid.plan(x, y, range=3, model=None)
+        hysid.plan(x, y, range=3)

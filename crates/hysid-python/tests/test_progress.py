@@ -128,6 +128,6 @@ def test_a_notebook_shows_a_line_that_goes_away(tmp_path):
 
 
 def test_progress_is_true_false_or_a_function(spring_and_slider):
-    for work in (hysid.fit, hysid.validate, hysid.compare, hysid.plan):
+    for work in (hysid.fit, hysid.validate, hysid.compare):
         with pytest.raises(TypeError, match="progress 'bar': True, False or a function is needed"):
             work(*spring_and_slider, progress="bar")

@@ -36,8 +36,8 @@ def test_a_list_is_the_concatenation_with_labels(records):
     assert hysid.compare(xs, ys, times, **chosen)[0].test == hysid.compare(x, y, time, records=labels, **chosen)[0].test
     table = hysid.cycles(xs, ys, times, records=["a", "b", "c"])
     assert list(dict.fromkeys(table["record"])) == ["a", "b", "c"]
-    plan = hysid.plan(xs, ys, times, model=None)
-    assert np.array_equal(plan.drive, hysid.plan(x, y, time, labels, model=None).drive)
+    plan = hysid.plan(xs, ys, times)
+    assert np.array_equal(plan.drive, hysid.plan(x, y, time, labels).drive)
 
 
 def test_a_list_of_series_gives_a_list_of_series(records):

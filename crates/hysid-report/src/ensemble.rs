@@ -164,15 +164,13 @@ fn held_out(selection: &Selection) -> Part {
     )
 }
 
-/// The places of a candidate's members. In ensembles of older files the groups of the candidates lie in groups of
-/// their kinds, whose names are those of no candidate.
+/// The places of a candidate's members.
 fn members_of(group: &Group, candidate: &CandidateResult) -> Vec<usize> {
     let of_node = |node: &Node| match &node.kind {
         NodeKind::Group(group) if group.name == candidate.name => {
             group.shares().into_iter().map(|(member, _)| member).collect()
         }
-        NodeKind::Group(group) => members_of(group, candidate),
-        NodeKind::Member(_) => Vec::new(),
+        NodeKind::Group(_) | NodeKind::Member(_) => Vec::new(),
     };
     group.nodes.iter().flat_map(of_node).collect()
 }

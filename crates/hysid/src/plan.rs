@@ -1,20 +1,11 @@
 //! Plans of experiments: what to measure next, so that a model is good on data that it has not seen.
 //!
-//! 1. *What the data do not cover*: properties that [`diagnosis`](hysid_diagnosis) cannot test, swings, pairs of turning
-//!    points and speeds that were not run.
+//! 1. The *survey*: properties that [`diagnosis`](hysid_diagnosis) cannot test, swings, pairs of turning points and
+//!    speeds that were not run.
 //! 2. *Tests* of such properties: a loop at two speeds, a repeated loop, holds.
-//! 3. *Pieces* of all kinds (loops, minor loops, reversal curves, nested loops, random reversals) at several speeds. The
-//!    one with the largest gain per row is added, again and again, until the length is reached.
+//! 3. *Random reversals* within the limits, at several speeds if the data have time, until the length is reached.
 //!
-//! ```text
-//! gain of a path = Σ_c v_c [h(n_c + a_c) - h(n_c)],    h(n) = n / (n + 1)             theory.md (14.1)
-//! v_c = mean over the rows in c of 1/2 + 1/2 min(d/D, 4)                              theory.md (14.2)
-//! ```
-//!
-//! A cell `c` is a state of the memory: the input, the reversal at which its branch began, the reversal before, and the
-//! speed. `n_c` is how often the data and the plan so far crossed the cell, `a_c` how often the path does. `d` is the
-//! disagreement of the members of an ensemble that was fitted to the data, each simulated along the path from the end of
-//! the plan so far, and `D` its mean over the first candidates. Without an ensemble `v_c` is 1.
+//! [`Protocol`] has first tests for specimens without data.
 //!
 //! ```
 //! use hysid::plan::{Plan, PlanOptions};
@@ -22,21 +13,16 @@
 //! // A test of one amplitude.
 //! let x: Vec<f64> = (0..600).map(|k| (0.1 * k as f64).sin()).collect();
 //! let y: Vec<f64> = (0..600).map(|k| (0.1 * k as f64 - 0.3).sin()).collect();
-//! let plan = Plan::of(&Dataset::from_slices(&x, &y)?, None, &PlanOptions::default())?;
+//! let plan = Plan::of(&Dataset::from_slices(&x, &y)?, &PlanOptions::default())?;
 //! assert!(plan.input.len() <= 600 && plan.input[0] == x[0]);
-//! assert!(plan.segments.iter().any(|segment| segment.amplitude < 0.5));
+//! assert!(plan.gaps.iter().any(|gap| gap.what == "amplitudes"));
 //! # Ok::<(), hysid::Error>(())
 //! ```
 
-mod candidates;
-mod choice;
-mod coverage;
-mod draft;
+mod drive;
 mod limits;
-mod members;
 mod path;
 mod protocol;
-mod reasons;
 mod segment;
 mod survey;
 
@@ -44,10 +30,7 @@ use serde::Serialize;
 
 use crate::data::record::{ColumnNames, Dataset};
 use crate::error::{Error, Result};
-use crate::model::Model;
-use coverage::Coverage;
-use draft::Draft;
-use members::Members;
+use drive::Drive;
 use survey::Survey;
 
 pub use limits::{FEWEST_ROWS, Limits, MOST_ROWS, Wanted};
@@ -73,15 +56,6 @@ impl Default for PlanOptions {
     }
 }
 
-/// Disagreement of the members of an ensemble: root mean square, in the unit of the output.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Disagreement {
-    /// Along the drive of the plan.
-    pub plan: f64,
-    /// Along the test that the data are of: what repeating it would show.
-    pub repeat: f64,
-}
-
 /// A plan: a drive, why it is so, and what it is for.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
@@ -99,19 +73,16 @@ pub struct Plan {
     pub segments: Vec<Segment>,
     /// What the data do not cover.
     pub gaps: Vec<Gap>,
-    /// Disagreement of the members along the plan, and along the test of the data; `None` without an ensemble.
-    pub disagreement: Option<Disagreement>,
     /// Sources of a protocol; empty for a plan from data.
     pub sources: Vec<&'static str>,
 }
 
 impl Plan {
-    /// A plan from data, and from an ensemble that was fitted to them, if there is one.
+    /// A plan from data.
     ///
     /// # Errors
-    /// Data from which nothing can be identified, with several inputs, or limits that leave no drive; a model that is
-    /// no ensemble.
-    pub fn of(data: &Dataset, ensemble: Option<&Model>, options: &PlanOptions) -> Result<Self> {
+    /// Data from which nothing can be identified, with several inputs, or limits that leave no drive.
+    pub fn of(data: &Dataset, options: &PlanOptions) -> Result<Self> {
         let inputs = data.names().inputs.len();
         if inputs > 1 {
             return Err(Error::Parts(format!(
@@ -119,30 +90,17 @@ impl Plan {
             )));
         }
         let limits = Limits::of(data, &options.limits)?;
-        let survey = Survey::of(data, limits.range)?;
+        let survey = Survey::of(data, limits)?;
         let wave = options.wave.unwrap_or(if data.has_time() { Wave::Smooth } else { Wave::Triangle });
-        let path = Path { limits, wave };
-        let by_speed = limits.step.is_some() && survey.rate_dependence != hysid_diagnosis::Verdict::No;
-        let mut coverage = Coverage::none(limits, path.fastest(), by_speed);
-        coverage.add_data(data);
-        let members = ensemble.map(|model| Members::new(model, limits.start, limits.step)).transpose()?;
-        let mut draft = Draft::new(path, coverage, members);
-        choice::fill(&mut draft, &survey, options.seed)?;
-        draft.go_back()?;
-        let repeat = ensemble.map(|model| members::along_data(model, data)).transpose()?;
-        let disagreement = draft.disagreement().zip(repeat);
-        let disagreement = disagreement.map(|(plan, repeat)| Disagreement { plan, repeat });
-        let mut segments = draft.segments();
-        reasons::give(&mut segments, data.names(), limits, disagreement);
+        let drive = Drive::for_data(Path { limits, wave }, &survey, options.seed);
         Ok(Self {
             names: data.names().clone(),
             limits,
             wave,
-            time: time(limits, draft.inputs.len()),
-            input: draft.inputs,
-            segments,
+            time: time(limits, drive.inputs.len()),
+            segments: drive.segments(),
+            input: drive.inputs,
             gaps: survey.gaps,
-            disagreement,
             sources: Vec::new(),
         })
     }

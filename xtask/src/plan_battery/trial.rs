@@ -99,8 +99,7 @@ pub fn trial(name: &'static str, first: FirstTest, seed: u64) -> Result<Trial> {
     let one = rig.measured("first", &first.drive(path), seed)?;
     let model = fit(&rig.data([one.clone()])?, seed)?;
     let unseen = rig.unseen(seed)?;
-    let plan =
-        Plan::of(&rig.data([one.clone()])?, Some(&model), &PlanOptions { seed, ..PlanOptions::default() })?;
+    let plan = Plan::of(&rig.data([one.clone()])?, &PlanOptions { seed, ..PlanOptions::default() })?;
     let after = |drive: &[f64], noise: u64| -> Result<f64> {
         let second = rig.measured("second", drive, noise)?;
         error_of(&fit(&rig.data([one.clone(), second])?, seed)?, &unseen)

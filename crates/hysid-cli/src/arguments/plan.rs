@@ -7,12 +7,12 @@ use hysid::options::network::SEED;
 use hysid::plan::Wave;
 
 use super::limits::{limits, slew};
-use super::{ColumnOptions, Overwriting, RUN, seconds, whole};
+use super::{ColumnOptions, Overwriting, RUN, whole};
 
 const PLAN_EXAMPLES: &str = "\
 Examples:
   hysid plan --like data.csv             data.drive.csv, page data.drive.html
-  hysid plan --like data.csv --model data.json --length 2000 -o drive.csv
+  hysid plan --like data.csv --length 2000 -o drive.csv
   hysid plan --for \"piezo stage\" --range 0:150 --step 0.001 --length 5000
 
 Method, protocols and what they are worth: docs/plan.md";
@@ -67,23 +67,9 @@ pub struct Plan {
     /// Shape of swings: smooth or triangle [default: smooth if there is time]
     #[arg(long, value_name = "NAME", value_parser = wave, help_heading = "Limits", hide_short_help = true)]
     pub wave: Option<Wave>,
-    /// Model file with an ensemble of these data [default: fit one]
-    ///
-    /// A model file of `hysid fit`. The default is `auto` with one start of each candidate.
-    #[arg(long, value_name = "MODEL.json", help_heading = "Method", conflicts_with = "kind")]
-    pub model: Option<PathBuf>,
-    /// Use no ensemble: plan only by what the data do not cover
-    #[arg(long, help_heading = "Method", hide_short_help = true, conflicts_with_all = ["model", "kind"])]
-    pub coverage_only: bool,
     /// Seed of all random numbers
-    #[arg(long, value_name = "N", default_value_t = SEED, value_parser = whole::<u64>, help_heading = "Method")]
+    #[arg(long, value_name = "N", default_value_t = SEED, value_parser = whole::<u64>, help_heading = RUN)]
     pub seed: u64,
-    /// Stop the fit of the ensemble after this time
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = RUN, hide_short_help = true)]
-    pub time_limit: Option<f64>,
-    /// Number of threads; the plan does not depend on it [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = RUN, hide_short_help = true)]
-    pub threads: Option<u16>,
     /// Print the result as one JSON object
     #[arg(long, help_heading = RUN)]
     pub json: bool,

@@ -115,14 +115,6 @@ fn speeds(instructions: &str) -> Result<BTreeMap<&'static str, Speed>> {
             ),
         ),
         (
-            "simulate_single_precision_ns_per_sample",
-            speed(
-                single_precision_ns(&fitted)?,
-                "ns",
-                format!("{network}, {SAMPLES} samples, 1 thread, inputs given scaled, in single precision"),
-            ),
-        ),
-        (
             "simulate_record_ns_per_sample",
             speed(
                 record_ns(&fitted.model)?,
@@ -311,14 +303,6 @@ fn network(fitted: &Fitted) -> Result<&Network> {
 /// The network alone: scaled inputs and rates in, scaled outputs out.
 fn network_ns(fitted: &Fitted) -> Result<Spread> {
     let mut simulator = network(fitted)?.simulator();
-    free_run_ns(|u, y| {
-        simulator.reset();
-        simulator.run(u, &[], y);
-    })
-}
-
-fn single_precision_ns(fitted: &Fitted) -> Result<Spread> {
-    let mut simulator = network(fitted)?.simulator_in_single_precision();
     free_run_ns(|u, y| {
         simulator.reset();
         simulator.run(u, &[], y);

@@ -2,27 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::Result;
 use hysid::data::summary::Summary;
-use hysid::model::Model;
-use hysid::options::FitSpec;
-use hysid::options::auto::AutoOptions;
 use hysid::plan::{MOST_ROWS, Plan, PlanOptions, Protocol, ProtocolOptions, Wanted};
 use hysid_files::{Destination, Kind};
 use hysid_records::header_line;
-use hysid_records::{Data, Roles, understanding};
+use hysid_records::{Roles, understanding};
 
+use crate::Outcome;
 use crate::arguments;
-use crate::commands::read_model;
-use crate::data::{data_with, factors, read_tables};
+use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
-use crate::identification::{Work, identify, thread_pool};
-use crate::messages::{Usage, json_results, note_labelled, raw_results, results, warning};
+use crate::messages::{Usage, json_results, note_labelled, raw_results, results};
 use crate::planning::{self, Planned};
-use crate::{Outcome, interrupt};
-
-/// Starts of each candidate of the ensemble: it only has to show where models disagree.
-const STARTS: usize = 1;
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Plan) -> Result<Outcome> {
@@ -68,7 +60,7 @@ fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
     let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let out = arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.like[0], ".drive.csv"));
     let outputs = Outputs::of(arguments, out, &roles.names())?;
-    let inputs: Vec<&Path> = arguments.like.iter().chain(&arguments.model).map(PathBuf::as_path).collect();
+    let inputs: Vec<&Path> = arguments.like.iter().map(PathBuf::as_path).collect();
     outputs.check(&inputs)?;
     let data = data_with(tables, roles, arguments.columns.reading.zero)?;
     let count = data.roles.inputs.len();
@@ -86,21 +78,17 @@ fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
     let of_data = || summary.records.iter().find_map(|record| Some(record.time_steps?.1));
     let limits = wanted(arguments, arguments.step.or_else(of_data))?;
     let options = PlanOptions { limits, wave: arguments.wave, seed: arguments.seed };
-    // What cannot be planned is said before the long fit.
-    hysid::plan::Limits::of(&data.set, &limits).map_err(|error| data.explain(error))?;
-    let ensemble = ensemble(arguments, &data, &summary)?;
-    let pool = thread_pool(arguments.threads)?;
-    let plan = pool.install(|| Plan::of(&data.set, ensemble.as_ref(), &options));
-    let plan = plan.map_err(|error| data.explain(error))?;
+    let understood = understanding::of_data(&data, &summary);
+    note_labelled(&understood);
+    let plan = Plan::of(&data.set, &options).map_err(|error| data.explain(error))?;
     let shown: Vec<String> = arguments.like.iter().map(|path| files::shown(path)).collect();
     let planned = Planned {
         plan: &plan,
         title: "What to measure next".into(),
-        understood: understanding::of_data(&data, &summary),
+        understood,
         next: format!("hysid fit {} NEW.csv", shown.join(" ")),
     };
-    tell(arguments, &outputs, &planned)?;
-    Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
+    tell(arguments, &outputs, &planned)
 }
 
 /// The limits that are asked for; `step` is the time between rows, for a duration.
@@ -117,41 +105,6 @@ fn wanted(arguments: &arguments::Plan, step: Option<f64>) -> Result<Wanted> {
         max_rate: arguments.max_rate,
         length: arguments.length.or(rows.map(|rows| rows as usize)),
     })
-}
-
-/// The ensemble whose members are compared: as given, or fitted now.
-fn ensemble(arguments: &arguments::Plan, data: &Data, summary: &Summary) -> Result<Option<Model>> {
-    if let Some(path) = &arguments.model {
-        let model = read_model(path)?;
-        note_labelled(&understanding::of_data(data, summary));
-        let factors = factors(&model, &data.roles, &data.source.tables[0].file, true, false)?;
-        let converted = factors.inputs.iter().chain([&factors.time, &factors.output]).any(Option::is_some);
-        if converted || model.names().inputs.len() != 1 {
-            let problem = "its columns must be those of the data, in the same units";
-            return Err(anyhow!("{}: {problem}", path.display()));
-        }
-        return Ok(Some(model));
-    }
-    if arguments.coverage_only {
-        note_labelled(&understanding::of_data(data, summary));
-        return Ok(None);
-    }
-    let auto = AutoOptions::default();
-    let rate = arguments
-        .columns
-        .rate
-        .method(&data.roles, FitSpec::Auto(auto.clone()).model())
-        .with_context(|| data.source.tables[0].file.clone())?;
-    let request = FitSpec::Auto(AutoOptions { starts: STARTS, seed: arguments.seed, rate, ..auto });
-    let work = Work { threads: arguments.threads, time_limit: arguments.time_limit, ..Work::new(&request) };
-    let model = identify(data, work)?.model;
-    if model.ensemble().is_none() {
-        warning(
-            "there was no time for an ensemble, or there are too few data: planned only by what the data do not cover",
-        );
-        return Ok(None);
-    }
-    Ok(Some(model))
 }
 
 /// Where the results go; no files if the table goes to stdout.
@@ -199,8 +152,7 @@ fn tell(arguments: &arguments::Plan, outputs: &Outputs, planned: &Planned<'_>) -
     };
     files::write(destination, &table)?;
     if let Some(page) = &outputs.page {
-        let inputs: Vec<&Path> =
-            arguments.like.iter().chain(&arguments.model).map(PathBuf::as_path).collect();
+        let inputs: Vec<&Path> = arguments.like.iter().map(PathBuf::as_path).collect();
         files::write_page(page, planning::page(planned), &inputs)?;
     }
     let page = outputs.page.as_ref().map(Destination::path);

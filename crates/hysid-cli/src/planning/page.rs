@@ -3,7 +3,7 @@
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Chart, Colour, Curve, Item, Page, Part, Table, unit};
 
-use super::{Planned, headline, on_disagreement, segments};
+use super::{Planned, headline, segments};
 
 /// Points of the drive at most.
 const POINTS: usize = 6000;
@@ -12,7 +12,6 @@ const POINTS: usize = 6000;
 pub fn page(planned: &Planned<'_>) -> Page {
     let plan = planned.plan;
     let mut parts = vec![Part::Lead((headline(plan) + ".").into())];
-    parts.extend(on_disagreement(plan).map(Part::paragraph));
     parts.push(Part::section("Drive", [Part::chart(drive(planned))]));
     parts.push(Part::section("Segments", [Part::Table(segments(plan)), Part::Table(reasons(planned))]));
     if !plan.gaps.is_empty() {

@@ -4,7 +4,7 @@ use hysid::plan::{Kind, Plan};
 use hysid_document::plain::{WIDTH, indented, rendered, wrapped};
 use hysid_document::{Part, capitalised};
 
-use super::{Planned, headline, on_disagreement, segments};
+use super::{Planned, headline, segments};
 
 /// All of it within 80 columns.
 pub fn text(planned: &Planned<'_>) -> String {
@@ -19,7 +19,6 @@ pub fn text(planned: &Planned<'_>) -> String {
         let gaps = list(&mut plan.gaps.iter().map(|gap| format!("{}: {}", gap.what, gap.statement)));
         blocks.push(format!("what the data do not cover\n{gaps}"));
     }
-    blocks.extend(on_disagreement(plan).map(|words| lines(&words)));
     if !plan.sources.is_empty() {
         let sources = list(&mut plan.sources.iter().map(|source| (*source).to_string()));
         blocks.push(format!("sources\n{sources}"));

@@ -2,7 +2,7 @@
 //! written: one line that says where and what helps, and the right exit status.
 
 use crate::workbench::{Workbench, csv, error_line, rows, table, with_column};
-use hysid::model::{FORMAT_VERSION, VIRGIN_FORMAT_VERSION};
+use hysid::model::FORMAT_VERSION;
 
 /// Runs the program and compares exit status and last line of stderr.
 /// The last line of stderr and the exit status of each run.
@@ -24,7 +24,7 @@ fn model_files() {
     bench.put("flipped.json", format!("{}{flipped}{}", &model[..digit], &model[digit + 1..]));
     bench.put("cut.json", &model[..model.len() / 2]);
     bench.put("empty.json", "");
-    let version = format!("\"version\": {VIRGIN_FORMAT_VERSION}");
+    let version = format!("\"version\": {FORMAT_VERSION}");
     bench.put("later.json", model.replacen(&version, "\"version\": 99", 1));
     let later = format!(
         "later.json: the model file has format version 99, this program reads up to {FORMAT_VERSION}: use a newer hysid"

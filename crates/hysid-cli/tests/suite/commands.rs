@@ -342,7 +342,6 @@ fn bench_tells_value_unit_and_setting() {
     let bench = json(&Workbench::new().run("bench --json"));
     let promised = [
         "simulate_ns_per_sample",
-        "simulate_single_precision_ns_per_sample",
         "simulate_record_ns_per_sample",
         "step_ns",
         "duhem_nn_fit_s",

@@ -81,7 +81,11 @@ fn bad_requests_are_one_line_and_leave_nothing() {
         ("--to c --fmi 2", 2, "--fmi is a version of --to fmu"),
         ("--to fmu --fmi 1", 2, "--fmi"),
         ("--to cobol", 2, "cobol"),
-        ("--to rust --inverse", 2, "--inverse: exports to rust have no inverse: those to c and fmu have one"),
+        (
+            "--to python --inverse",
+            2,
+            "--inverse: exports to python have no inverse: those to c and fmu have one",
+        ),
         ("--to c --limits 0:1", 2, "--limits is for the input of an inverse: add --inverse"),
         ("--to c --slew 1", 2, "--slew is for the input of an inverse: add --inverse"),
         ("--to c --inverse --limits 3:1", 2, "'3:1' for '--limits <LOW:HIGH>': the low limit 3 is not below"),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::workbench::Workbench;
 
 /// How the lines begin that are run.
-const PROGRAMS: [&str; 4] = ["hysid ", "cc ", "rustc ", "./"];
+const PROGRAMS: [&str; 3] = ["hysid ", "cc ", "./"];
 
 /// The commands of a page.
 fn commands(page: &str) -> Vec<&str> {
@@ -70,7 +70,6 @@ pages! {
     export_to_onnx: "how-to/export-to-onnx.md",
     export_to_opensees: "how-to/export-to-opensees.md",
     export_to_python: "how-to/export-to-python.md",
-    export_to_rust: "how-to/export-to-rust.md",
     figures_for_a_paper: "how-to/figures-for-a-paper.md",
     how_far_to_trust: "how-to/how-far-to-trust.md",
     initial_state: "how-to/initial-state.md",

@@ -42,7 +42,7 @@ fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
 #[test]
 fn a_drive_has_the_columns_of_the_data_and_a_page_beside_it() {
     let bench = bench();
-    let said = ran(&bench, "plan --like data.csv --coverage-only");
+    let said = ran(&bench, "plan --like data.csv");
     let (header, columns) = columns(&bench.text("data.drive.csv"));
     assert_eq!(header, ["t_s", "disp_mm"]);
     let [t, x] = &columns[..] else { panic!("two columns") };
@@ -53,16 +53,17 @@ fn a_drive_has_the_columns_of_the_data_and_a_page_beside_it() {
     for expected in ["what the data do not cover", "amplitudes: no swing", "hysid fit data.csv NEW.csv"] {
         assert!(said.stdout.contains(expected), "{expected}: {}", said.stdout);
     }
+    assert!(said.stdout.contains("random reversals: many pairs of turning points"), "{}", said.stdout);
     let widest = said.stdout.lines().map(|line| line.chars().count()).max().unwrap();
     assert!(widest <= 80, "{}", said.stdout);
     // The same again replaces the files of before.
-    assert_eq!(ran(&bench, "plan --like data.csv --coverage-only").stdout, said.stdout);
+    assert_eq!(ran(&bench, "plan --like data.csv").stdout, said.stdout);
 }
 
 #[test]
 fn data_without_time_give_a_drive_without_time() {
     let bench = bench();
-    let said = ran(&bench, "plan --like slow.csv --coverage-only -o -");
+    let said = ran(&bench, "plan --like slow.csv -o -");
     let (header, columns) = columns(&said.stdout);
     assert_eq!(header, ["disp_mm"]);
     assert!(columns[0].len() > 300);
@@ -71,27 +72,15 @@ fn data_without_time_give_a_drive_without_time() {
 }
 
 #[test]
-fn an_ensemble_says_where_its_members_differ() {
+fn the_json_object_has_the_segments_with_their_reasons() {
     let bench = bench();
-    let model = "--model xpnn --members 3 --starts 3 --training levenberg-marquardt --epochs 3";
-    ran(&bench, &format!("fit data.csv {model} -o model.json --no-report"));
-    let said = ran(&bench, "plan --like data.csv --model model.json --json -o drive.csv --no-report");
+    let said = ran(&bench, "plan --like data.csv --json -o drive.csv --no-report");
     let told: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
     assert_eq!(told["drive"], "drive.csv");
     assert!(told["page"].is_null());
-    let [plan, repeat] = ["plan", "repeat"].map(|name| told["disagreement"][name].as_f64().unwrap());
-    assert!(plan > repeat && repeat > 0.0, "{plan} {repeat}");
     let segments = told["segments"].as_array().unwrap();
     assert!(segments.iter().all(|segment| segment["reason"].as_str().is_some_and(|why| !why.is_empty())));
     assert_eq!(segments.last().unwrap()["rows"][1].as_u64().unwrap() + 1, told["rows"].as_u64().unwrap());
-}
-
-#[test]
-fn without_a_model_an_ensemble_is_fitted() {
-    let bench = bench();
-    // The time limit keeps the test short; whatever was fitted until then is used.
-    let said = ran(&bench, "plan --like data.csv --time-limit 2");
-    assert!(said.stdout.contains("next") && said.stderr.contains("auto"), "{}", said.stderr);
 }
 
 #[test]
@@ -126,7 +115,7 @@ fn what_cannot_be_planned_is_said_in_one_line() {
     refused("plan --for piezo --range 0:1 --length 60", 2, "too few");
     refused("plan --for piezo --like data.csv", 2, "cannot be used with");
     refused("plan --like none.csv", 1, "none.csv");
-    refused("plan --like constant.csv --coverage-only", 1, "constant");
+    refused("plan --like constant.csv", 1, "constant");
     refused("plan --like two.csv --input a --input b --output force", 2, "--input");
     refused("plan --like data.csv --length 50", 2, "too few");
     refused("plan --like data.csv --length 5", 2, "length 5");

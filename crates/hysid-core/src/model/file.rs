@@ -17,17 +17,8 @@ use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Layout, Network};
 use crate::options::ModelName;
 
-/// Latest version of the layout. A model is written in the earliest that has all that it needs.
-pub const FORMAT_VERSION: u64 = 6;
-
-/// Version of the layout of a model that begins in the virgin state: the same without initial states.
-pub const VIRGIN_FORMAT_VERSION: u64 = 5;
-
-/// The only version with another layout: it knew networks only.
-const NETWORK_FORMAT_VERSION: u64 = 1;
-
-/// Up to this version the checksum passed over all white space, in texts too.
-const LOOSE_CHECKSUM: u64 = 4;
+/// Version of the layout.
+pub const FORMAT_VERSION: u64 = 1;
 
 const FORMAT: &str = "hysid-model";
 const CHECKSUM_KEY: &str = "\"checksum\"";
@@ -142,14 +133,14 @@ struct Readout {
 
 /// Checksum of a file's text up to the checksum itself, white space between its parts aside: it notices any
 /// change of content, and no change of layout or line ends.
-fn checksum(text: &str, version: u64) -> Option<u32> {
+fn checksum(text: &str) -> Option<u32> {
     let end = text.rfind(CHECKSUM_KEY)?;
     let (mut is_within_text, mut is_escaped) = (false, false);
     let counts = |byte: &u8| {
         let is_quote = *byte == b'"' && !is_escaped;
         is_escaped = *byte == b'\\' && is_within_text && !is_escaped;
         is_within_text ^= is_quote;
-        !byte.is_ascii_whitespace() || is_within_text && version > LOOSE_CHECKSUM
+        !byte.is_ascii_whitespace() || is_within_text
     };
     let content: Vec<u8> = text[..end].bytes().filter(counts).collect();
     Some(crc32fast::hash(&content))
@@ -244,15 +235,6 @@ impl MemberParts {
     }
 }
 
-/// True if the file says anything of an initial state.
-fn has_initial_state(model: &Model) -> bool {
-    let Provenance { options, selection, lead_ins, .. } = &model.provenance;
-    !model.lead_in.is_empty()
-        || !lead_ins.is_empty()
-        || options.initial_state().is_some()
-        || selection.as_ref().is_some_and(|selection| selection.found_states.is_some())
-}
-
 /// Indented JSON with the numbers of a list in one line instead of a line for each, which would double the file.
 fn with_numbers_in_line(indented: &str) -> String {
     let is_number = |line: &str| line.starts_with(|first: char| first == '-' || first.is_ascii_digit());
@@ -273,10 +255,9 @@ fn with_numbers_in_line(indented: &str) -> String {
 
 pub(super) fn write(model: &Model) -> String {
     let (network, law, ensemble) = parts(&model.body);
-    let version = if has_initial_state(model) { FORMAT_VERSION } else { VIRGIN_FORMAT_VERSION };
     let file = File {
         format: FORMAT.into(),
-        version,
+        version: FORMAT_VERSION,
         written_by: format!("hysid {}", env!("CARGO_PKG_VERSION")),
         model: model.name(),
         columns: model.names.clone(),
@@ -294,7 +275,7 @@ pub(super) fn write(model: &Model) -> String {
     };
     let text = serde_json::to_string_pretty(&file).expect("a model has no map with keys other than strings");
     let mut text = with_numbers_in_line(&text);
-    let sum = checksum(&text, version).expect("the key is there");
+    let sum = checksum(&text).expect("the key is there");
     let end = text.rfind("00000000").expect("the value is there");
     text.replace_range(end..end + 8, &format!("{sum:08x}"));
     text.push('\n');
@@ -334,37 +315,16 @@ pub(super) fn read(text: &str) -> Result<Model> {
         _ => return Err(damaged("the model file has no valid format version".into())),
     };
     let written = value.get("checksum").and_then(|sum| sum.as_str()).unwrap_or_default();
-    if checksum(text, version).map(|sum| format!("{sum:08x}")).as_deref() != Some(written) {
+    if checksum(text).map(|sum| format!("{sum:08x}")).as_deref() != Some(written) {
         return Err(damaged(
             "the model file was changed after it was written: its checksum does not match".into(),
         ));
     }
-    // From text in every version: the text tells the place of an error, and reading values instead would compile the
-    // reader of every part a second time.
-    let file = match version {
-        NETWORK_FORMAT_VERSION => serde_json::from_str(&upgraded(value).to_string()),
-        _ => serde_json::from_str(text),
-    };
-    let file: File = file.map_err(|error| {
+    // From the text, not from the value: the text tells the place of an error.
+    let file: File = serde_json::from_str(text).map_err(|error| {
         damaged(format!("the model file does not have the layout of version {version}: {error}"))
     })?;
     assemble(file).map_err(|error| damaged(format!("the model file contradicts itself: {error}")))
-}
-
-/// A file of [`NETWORK_FORMAT_VERSION`] in the layout of the present one.
-fn upgraded(mut value: serde_json::Value) -> serde_json::Value {
-    if let Some(file) = value.as_object_mut() {
-        // Networks had their parts side by side.
-        let parts = ["scaling", "architecture", "memory", "readout"];
-        let parts: serde_json::Map<_, _> =
-            parts.into_iter().filter_map(|part| Some((part.to_string(), file.remove(part)?))).collect();
-        file.insert("network".into(), parts.into());
-        // The trainer was named beside the options, and there was but one.
-        if let Some(training) = file.get_mut("training").and_then(serde_json::Value::as_object_mut) {
-            training.remove("trainer");
-        }
-    }
-    value
 }
 
 fn single(network: Option<NetworkParts>, law: Option<Classical>) -> Result<Predictor> {

@@ -12,7 +12,6 @@ pub enum Phase {
     /// Starts on the training part of a fold.
     Starts,
     /// The starts on all data; the history is that of the best one.
-    #[serde(alias = "refit")]
     AllData,
 }
 
@@ -21,8 +20,7 @@ pub enum Phase {
 pub struct HistoryPoint {
     /// Epoch: an iteration, or a generation.
     pub epoch: usize,
-    /// Evaluations of the objective so far, including gradients; 0 in old files, which did not count them.
-    #[serde(default)]
+    /// Evaluations of the objective so far, including gradients.
     pub evaluations: usize,
     /// Error on the training rows, in percent of the output's standard deviation.
     pub train_nrmse_percent: f64,
@@ -36,14 +34,13 @@ pub struct Run {
     /// Start, counted from 0.
     pub start: usize,
     /// The method; those of a hybrid are two runs.
-    #[serde(default)]
     pub method: Method,
     /// Error after each epoch. If there are many epochs, only those at which it decreased noticeably, and the
     /// last. Epochs and evaluations of a hybrid's second method continue those of the first.
     pub history: Vec<HistoryPoint>,
     /// Why it ended.
     pub termination: Termination,
-    /// The fold of its training data, counted from 0; `None` for all data, and in files before version 4.
+    /// The fold of its training data, counted from 0; `None` for all data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fold: Option<usize>,
     /// Error on the held-out data of the fold, in percent of their standard deviation.

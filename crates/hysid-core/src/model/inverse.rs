@@ -217,11 +217,6 @@ impl<'m> Inverse<'m> {
         self.model().needs_time() || self.model().rate().is_some()
     }
 
-    /// Lowest and highest input.
-    pub fn input_limits(&self) -> (f64, f64) {
-        self.limits
-    }
-
     /// Largest rate of the training data, for a model with a rate.
     pub fn trained_rate(&self) -> Option<f64> {
         self.trained_rate

@@ -122,16 +122,6 @@ impl<'m> Runner<'m> {
         }
     }
 
-    /// The same, in which networks compute in single precision.
-    pub fn in_single_precision(mut self) -> Self {
-        for single in self.body.singles_mut() {
-            if let Mechanism::Network(network) = &mut single.mechanism {
-                **network = network.as_ref().clone().in_single_precision();
-            }
-        }
-        self
-    }
-
     /// The same, which compares the rows with the ranges that the model was trained on.
     pub fn watching(mut self, model: &Model) -> Self {
         self.ranges = Some((Ranges::of(model), model.rate));

@@ -122,16 +122,6 @@ impl<'m> Stepper<'m> {
         Ok(band.half_width(level, disagreement, outside))
     }
 
-    /// Disagreement of the members of an ensemble at the last trial or step, in the unit of the output: half the distance
-    /// between the 15.9 % and 84.1 % quantiles of their outputs. 0 for a model that is no ensemble.
-    pub fn disagreement(&mut self) -> f64 {
-        let outside = match &self.state.memory {
-            Memory::Ensemble(memory) => memory.excursion.outside(),
-            Memory::Network(..) | Memory::Law(_) => 0.0,
-        };
-        disagreement_at(&self.model, &mut self.state.memory, outside)
-    }
-
     fn advance(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
         self.state.check(&self.model, inputs, time, rate)?;
         if self.state.last.is_none() && !self.lead_in.is_empty() {

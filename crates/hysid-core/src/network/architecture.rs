@@ -231,15 +231,6 @@ impl Architecture {
     pub fn parameters(&self) -> usize {
         self.searched_parameters() + self.output_weights()
     }
-
-    /// The paper's count of free parameters of a network with the inputs `x` and `x'`: `n_s n_t + 2 (n_s +
-    /// n_t + 1)`, with `n_s` stops and `n_t` hidden (tanh) neurons (theory.md (2.7)).
-    ///
-    /// It includes the connection weights and biases, but neither the output weights nor the capacities `β`
-    /// of the stops.
-    pub fn paper_count(stops: usize, hidden: usize) -> usize {
-        stops * hidden + 2 * (stops + hidden + 1)
-    }
 }
 
 #[cfg(test)]
@@ -252,12 +243,12 @@ mod tests {
     }
 
     #[test]
-    fn the_papers_count_is_ours_without_the_betas() {
+    fn parameters_are_the_papers_and_the_capacities() {
         for stops in 1..12 {
             for hidden in 1..12 {
                 let ours = xpnn(stops, hidden, true).searched_parameters();
-                assert_eq!(ours, stops * hidden + 3 * stops + 2 * hidden + 2);
-                assert_eq!(Architecture::paper_count(stops, hidden), ours - stops);
+                // (2.7), and the capacity of each stop.
+                assert_eq!(ours, stops * hidden + 2 * (stops + hidden + 1) + stops);
                 let without_rate = xpnn(stops, hidden, false).searched_parameters();
                 assert_eq!(without_rate, stops * hidden + stops + 2 * hidden + 1 + stops);
             }

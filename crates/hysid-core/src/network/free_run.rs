@@ -5,7 +5,7 @@ use crate::data::rate::RateMethod;
 use crate::data::record::Excitation;
 use crate::error::{DataProblem, Result};
 use crate::network::scaling::Scaling;
-use crate::network::{Network, Simulator, SinglePrecisionSimulator};
+use crate::network::{Network, Simulator};
 
 /// Rows scaled at a time: they stay in the first-level cache.
 pub(crate) const CHUNK: usize = 1024;
@@ -14,33 +14,11 @@ pub(crate) const CHUNK: usize = 1024;
 #[derive(Debug, Clone)]
 pub struct FreeRun<'a> {
     network: &'a Network,
-    engine: Engine,
+    simulator: Simulator,
     scaling: &'a Scaling,
     rate: Option<RateMethod>,
     /// Scaled inputs of a chunk.
     channels: Vec<Vec<f64>>,
-}
-
-#[derive(Debug, Clone)]
-enum Engine {
-    Double(Box<Simulator>),
-    Single(Box<SinglePrecisionSimulator>),
-}
-
-impl Engine {
-    fn reset(&mut self) {
-        match self {
-            Self::Double(simulator) => simulator.reset(),
-            Self::Single(simulator) => simulator.reset(),
-        }
-    }
-
-    fn run(&mut self, u: &[&[f64]], steps: &[f64], y: &mut [f64]) {
-        match self {
-            Self::Double(simulator) => simulator.run(u, steps, y),
-            Self::Single(simulator) => simulator.run(u, steps, y),
-        }
-    }
 }
 
 impl<'a> FreeRun<'a> {
@@ -48,12 +26,7 @@ impl<'a> FreeRun<'a> {
     /// `None` for a network without rate.
     pub fn new(network: &'a Network, scaling: &'a Scaling, rate: Option<RateMethod>) -> Self {
         let channels = vec![Vec::new(); network.architecture().channels()];
-        Self { network, engine: Engine::Double(Box::new(network.simulator())), scaling, rate, channels }
-    }
-
-    /// The same in single precision, from the virgin state.
-    pub fn in_single_precision(self) -> Self {
-        Self { engine: Engine::Single(Box::new(self.network.simulator_in_single_precision())), ..self }
+        Self { network, simulator: network.simulator(), scaling, rate, channels }
     }
 
     /// Number of inputs of a record.
@@ -63,7 +36,7 @@ impl<'a> FreeRun<'a> {
 
     /// Returns to the virgin state.
     pub fn reset(&mut self) {
-        self.engine.reset();
+        self.simulator.reset();
     }
 
     /// Drives the memory along a lead-in: the first input at each of its rows, and the further inputs at the
@@ -73,7 +46,7 @@ impl<'a> FreeRun<'a> {
         self.scaling.fill_lead_in(first, others, &mut self.channels);
         let u: Vec<&[f64]> = self.channels.iter().map(Vec::as_slice).collect();
         let steps = vec![f64::INFINITY; first.len()];
-        self.engine.run(&u, &steps, &mut vec![0.0; first.len()]);
+        self.simulator.run(&u, &steps, &mut vec![0.0; first.len()]);
     }
 
     /// Simulates the rows of the excitation from `first` on, with the time step before each.
@@ -87,7 +60,7 @@ impl<'a> FreeRun<'a> {
         self.channels.iter_mut().for_each(|channel| channel.resize(y.len(), 0.0));
         self.scaling.fill_channels(excitation, self.rate, first, y.len(), &mut self.channels)?;
         let u: Vec<&[f64]> = self.channels.iter().map(Vec::as_slice).collect();
-        self.engine.run(&u, steps, y);
+        self.simulator.run(&u, steps, y);
         y.iter_mut().for_each(|y| *y = self.scaling.output(*y));
         Ok(())
     }

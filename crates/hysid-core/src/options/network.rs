@@ -121,7 +121,6 @@ pub struct FitOptions {
     #[serde(default, skip_serializing_if = "InputOptions::is_none")]
     pub shaping: InputOptions,
     /// The trainer.
-    #[serde(default = "trainer_of_old_files")]
     pub training: Trainer,
     /// Number of random networks, or populations, to start from. The one with the lowest objective becomes
     /// the model, and a few of them are cross-validated.
@@ -130,41 +129,23 @@ pub struct FitOptions {
     /// sub-gradient method. In a hybrid each of its two methods has half of them.
     pub epochs: usize,
     /// Individuals of the genetic algorithm.
-    #[serde(default = "default_population")]
     pub population: usize,
     /// Epochs without a relative improvement of 1e-4 after which the genetic algorithm or the
     /// sub-gradient method ends; 0 for never.
-    #[serde(default = "default_stall")]
     pub stall: usize,
     /// Seed of the random starts.
     pub seed: u64,
     /// Share of the data that is held out for the validation error; `None` for cross-validation.
-    #[serde(default)]
     pub validation: Option<f64>,
     /// λ: penalty `½ λ ‖c‖²` on the output weights `c`, in scaled units (theory.md (3.1)). `None` for the
     /// default, which is left out if cross-validation gives a smaller error without it.
-    #[serde(default)]
     pub ridge: Option<f64>,
     /// κ: penalty `½ κ ‖θ‖²` on the weights of stops, linear neuron and tanh neurons (theory.md (3.1)).
     /// `None` as for `ridge`.
-    #[serde(default)]
     pub decay: Option<f64>,
     /// Largest number of scored rows of the iterations. If there are more rows, those on straight parts of the path of
     /// the inputs are left out. The output weights, and the last iterations of Levenberg-Marquardt, use all rows.
     pub thin: usize,
-}
-
-/// Files without a trainer come from a version that had one.
-fn trainer_of_old_files() -> Trainer {
-    Trainer::LevenbergMarquardt
-}
-
-fn default_population() -> usize {
-    50
-}
-
-fn default_stall() -> usize {
-    50
 }
 
 impl Default for FitOptions {
@@ -185,8 +166,8 @@ impl FitOptions {
             training,
             starts: training.default_starts(),
             epochs: training.default_epochs(),
-            population: default_population(),
-            stall: default_stall(),
+            population: 50,
+            stall: 50,
             seed: SEED,
             validation: None,
             ridge: None,

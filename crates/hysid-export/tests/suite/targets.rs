@@ -12,5 +12,4 @@ mod names;
 mod onnx;
 mod opensees;
 mod python;
-mod rust;
 mod tools;

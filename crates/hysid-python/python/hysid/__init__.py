@@ -19,7 +19,6 @@ from hysid._cycles import Cycles, cycles
 from hysid._diagnosis import Diagnosis, Finding, ModelDiagnosis, diagnose
 from hysid._fitting import fit
 from hysid._inverse import Inverse, Inversion, Inverted
-from hysid._minimiser import Minimum, minimise
 from hysid._plan import Plan, Segment, plan
 from hysid._progress import Progress
 from hysid._record_split import RecordSplit
@@ -56,7 +55,6 @@ __all__ = [
     "Inversion",
     "Inverted",
     "Member",
-    "Minimum",
     "Model",
     "ModelDiagnosis",
     "ParameterInterval",
@@ -78,7 +76,6 @@ __all__ = [
     "cycles",
     "diagnose",
     "fit",
-    "minimise",
     "models",
     "operators",
     "plan",

@@ -21,7 +21,6 @@ __all__ = [
     "folds",
     "identify",
     "law",
-    "minimise",
     "model_names",
     "name_and_unit",
     "option_names",
@@ -91,7 +90,6 @@ class Model:
         inputs: list[_Column],
         rate: _Column | None,
         initial_state: str | None,
-        single_precision: bool,
     ) -> _Column: ...
     def predict(
         self,
@@ -179,7 +177,6 @@ def folds(
 def plan(
     data: Dataset | None,
     kind: str | None,
-    model: Model | None,
     range: tuple[float, float] | None,
     length: int | None,
     step: float | None,
@@ -217,14 +214,6 @@ def validate(
 def model_names() -> list[str]: ...
 def option_names() -> list[str]: ...
 def option_table() -> list[tuple[str, str, str]]: ...
-def minimise(
-    function: Callable[[np.ndarray], tuple[float, np.ndarray]],
-    x: _Column,
-    options: str,
-    iterations: int,
-    target: float,
-    stall: int,
-) -> tuple[_Column, float, int, int, str]: ...
 def specimens() -> list[tuple[str, str | None, str, str, str, str, str]]: ...
 def specimen(name: str, test: bool, noise: float, seed: int) -> Dataset: ...
 def relay(x: _Column, r: float, s: float) -> _Column: ...

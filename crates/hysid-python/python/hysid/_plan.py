@@ -12,8 +12,6 @@ import numpy as np
 from hysid import _hysid
 from hysid._arguments import name_of, pair, real, whole
 from hysid._data import columns
-from hysid._fitting import fit
-from hysid._progress import Listener
 
 if TYPE_CHECKING:
     import os
@@ -21,7 +19,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from hysid._data import Values
-    from hysid.model import Model
 
 
 @dataclass(frozen=True)
@@ -40,10 +37,6 @@ class Segment:
         Largest rate of the input there.
     turning_points : list of float
         The turning points, the end included.
-    new_share : float or None
-        Share of its path on branches that neither the data nor earlier segments have.
-    disagreement : float or None
-        Root mean square of the disagreement of the members along it.
     reason : str
         Why it is run.
     """
@@ -54,8 +47,6 @@ class Segment:
     mean: float
     rate: float
     turning_points: list[float]
-    new_share: float | None
-    disagreement: float | None
     reason: str
 
     @classmethod
@@ -78,8 +69,6 @@ class Plan:
         What is run and why; the first row belongs to none.
     gaps : dict
         What the data do not cover: statements by their subject.
-    disagreement : dict or None
-        Root mean square of the disagreement of the members along the drive (``"plan"``) and along the data (``"repeat"``).
     limits : dict
         What the drive keeps: range, start, step, max_rate, rows.
     names : dict
@@ -92,7 +81,6 @@ class Plan:
     time: np.ndarray | None
     segments: list[Segment]
     gaps: dict[str, str]
-    disagreement: dict[str, float] | None
     limits: dict[str, Any]
     names: dict[str, Any]
     sources: list[str]
@@ -105,7 +93,6 @@ class Plan:
             time=None if told["time"] is None else np.array(told["time"]),
             segments=[Segment._of(segment) for segment in told["segments"]],
             gaps={gap["what"]: gap["statement"] for gap in told["gaps"]},
-            disagreement=told["disagreement"],
             limits=told["limits"],
             names=told["names"],
             sources=told["sources"],
@@ -138,16 +125,14 @@ def plan(
     records: ArrayLike | str | None = None,
     *,
     kind: str | None = None,
-    model: Model | str | None = "auto",
     range: tuple[float, float] | None = None,
     length: int | None = None,
     step: float | None = None,
     max_rate: float | None = None,
     wave: str | None = None,
     seed: int = 1,
-    progress: Listener = True,
 ) -> Plan:
-    """Plan what to measure next: a drive from what the data do not cover and where the members of an ensemble disagree.
+    """Plan what to measure next: tests of properties that the data cannot test, then random reversals.
 
     Parameters
     ----------
@@ -162,9 +147,6 @@ def plan(
     kind : str, optional
         In the place of data: a kind of specimen, for a first test. ``"structure"``, ``"damper"``, ``"rubber"``,
         ``"actuator"``, ``"magnet"``, or words such as ``"piezo stage"``.
-    model : Model, "auto" or None
-        The ensemble whose members are compared; ``"auto"`` fits one, with one start of each candidate; None plans by what
-        was not run alone.
     range : pair of float, optional
         Lowest and highest input; that of the data by default, needed for a kind.
     length : int, optional
@@ -177,8 +159,6 @@ def plan(
         ``"smooth"`` or ``"triangle"``; smooth if there is time by default.
     seed : int
         Seed of all random numbers.
-    progress : bool or callable, default True
-        As of `hysid.fit`, while the ensemble is fitted.
 
     Returns
     -------
@@ -195,7 +175,7 @@ def plan(
     >>> import hysid
     >>> import numpy as np
     >>> x = 3 * np.sin(np.linspace(0, 6 * np.pi, 601))
-    >>> plan = hysid.plan(x, hysid.operators.stop(x, 1.0), model=None)
+    >>> plan = hysid.plan(x, hysid.operators.stop(x, 1.0))
     >>> bool(abs(plan.drive).max() <= 3 and plan.drive[0] == plan.drive[-1] == x[0])
     True
     >>> plan.gaps["amplitudes"]
@@ -212,13 +192,8 @@ def plan(
     if (kind is None) == (x is None and y is None):
         raise ValueError("give measured data, x and y, or a kind of specimen")
     if kind is not None:
-        return Plan._of(_hysid.plan(None, name_of("kind", kind), None, *limits))
+        return Plan._of(_hysid.plan(None, name_of("kind", kind), *limits))
     if x is None or y is None:
         raise ValueError("x and y are needed")
     arranged = columns(x, y, time, None, records)
-    if model == "auto":
-        model = fit(x, y, time, records=records, starts=1, seed=seed, progress=progress)
-    elif isinstance(model, str):
-        raise ValueError(f"model {model!r}: a Model, 'auto' or None is needed")
-    native = None if model is None else model._native
-    return Plan._of(_hysid.plan(arranged.dataset(), None, native, *limits))
+    return Plan._of(_hysid.plan(arranged.dataset(), None, *limits))

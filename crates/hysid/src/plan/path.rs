@@ -77,11 +77,6 @@ pub struct Path {
 }
 
 impl Path {
-    /// Mean speed of a swing at the largest rate.
-    pub fn fastest(&self) -> f64 {
-        self.limits.max_rate / self.wave.peak()
-    }
-
     /// Number of rows of a leg from an input.
     pub fn rows(&self, from: f64, leg: Leg) -> usize {
         match leg {

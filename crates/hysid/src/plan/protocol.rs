@@ -3,7 +3,7 @@
 use super::limits::{Limits, Wanted};
 use super::path::{Leg, Path, Wave};
 use super::segment::Kind;
-use super::{Plan, coverage::Coverage, draft::Draft, reasons, time};
+use super::{Plan, drive::Drive, time};
 use crate::data::record::ColumnNames;
 use crate::error::{Error, OptionError, Result};
 
@@ -229,24 +229,18 @@ impl Protocol {
         let limits = self.limits(range, &wanted, wave)?;
         let path = Path { limits, wave };
         let legs = legs(self.pieces(), limits);
-        let mut draft = Draft::new(path, Coverage::none(limits, path.fastest(), limits.step.is_some()), None);
-        for (kind, legs) in legs {
-            draft.add(kind, &legs)?;
-        }
-        draft.go_back()?;
-        let mut segments = draft.segments();
+        let mut drive = Drive::new(path);
+        legs.iter().for_each(|(kind, legs)| drive.add(*kind, legs));
+        drive.go_back();
         let names = ColumnNames { time: limits.step.map(|_| "t".into()), ..ColumnNames::plain(1) };
-        segments.iter_mut().for_each(|segment| segment.new_share = None);
-        reasons::give(&mut segments, &names, limits, None);
         Ok(Plan {
             names,
             limits,
             wave,
-            time: time(limits, draft.inputs.len()),
-            input: draft.inputs,
-            segments,
+            time: time(limits, drive.inputs.len()),
+            segments: drive.segments(),
+            input: drive.inputs,
             gaps: Vec::new(),
-            disagreement: None,
             sources: self.sources().to_vec(),
         })
     }

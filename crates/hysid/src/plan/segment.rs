@@ -67,6 +67,17 @@ impl Kind {
             Self::Return => "back to the beginning",
         }
     }
+
+    /// Why it is run at this share of the largest rate.
+    pub(super) fn reason(self, share: f64) -> String {
+        let words = self.purpose();
+        match share {
+            _ if matches!(self, Self::TwoSpeeds | Self::Return | Self::Hold) => words.into(),
+            share if share > 0.0 && share < 0.3 => format!("{words} at low speed"),
+            share if share > 0.0 && share < 0.67 => format!("{words} at medium speed"),
+            _ => words.into(),
+        }
+    }
 }
 
 impl fmt::Display for Kind {
@@ -91,10 +102,6 @@ pub struct Segment {
     pub rate: f64,
     /// Turning points within it, the end included.
     pub turning_points: Vec<f64>,
-    /// Share of its path on branches that neither the data nor the segments before it have.
-    pub new_share: Option<f64>,
-    /// Root mean square of the disagreement of the members along it.
-    pub disagreement: Option<f64>,
     /// Why it is run.
     pub reason: String,
 }

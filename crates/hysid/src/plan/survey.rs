@@ -4,11 +4,15 @@ use hysid_diagnosis::cycles::Field;
 use hysid_diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
 use serde::Serialize;
 
-use super::coverage::{self, DataSwing, SMALLEST_REVERSAL};
-use crate::data::record::Dataset;
+use super::limits::Limits;
+use crate::data::record::{Dataset, Record};
+use crate::data::turning_points::turning_points;
 use crate::error::Result;
 use crate::property::Property;
 use crate::significant::Significant;
+
+/// Reversals below this share of the range are noise.
+const SMALLEST_REVERSAL: f64 = 0.02;
 
 /// Intervals of the amplitude, and of each axis of the plane of turning points.
 const INTERVALS: usize = 8;
@@ -42,7 +46,10 @@ pub(super) struct Survey {
     pub gaps: Vec<Gap>,
     pub rate_dependence: Verdict,
     pub deterioration: Verdict,
-    pub is_structure: bool,
+    /// True if the specimen deteriorates, or is a structure whose data cannot tell.
+    pub may_deteriorate: bool,
+    /// True if the data have time and do not exclude rate dependence.
+    pub speed_matters: bool,
     /// True if the state of the memory at the beginning of the data is not known.
     pub unknown_start: bool,
     /// True if the input never stood still.
@@ -50,8 +57,8 @@ pub(super) struct Survey {
 }
 
 impl Survey {
-    /// Examines data, for a plan over this range.
-    pub fn of(data: &Dataset, range: (f64, f64)) -> Result<Self> {
+    /// Examines data, for a plan within these limits.
+    pub fn of(data: &Dataset, Limits { range, step, .. }: Limits) -> Result<Self> {
         use hysid_diagnosis::DataIssueKind::{NotVirgin, UnknownStart};
         let diagnosis = Diagnosis::of(data, &DiagnosisOptions::default())?;
         let swings = Swings::of(data, range);
@@ -65,11 +72,16 @@ impl Survey {
         gaps.extend(range_gap(data, range));
         let untested = diagnosis.properties.iter().filter(|finding| finding.verdict == Verdict::NotTestable);
         gaps.extend(untested.map(|finding| gap(finding.property.name(), finding.statement.clone())));
+        let rate_dependence = diagnosis.verdict(Property::RateDependence);
+        let deterioration = diagnosis.verdict(Property::Deterioration);
+        let is_structure = Field::of(data.names()) == Field::Structure;
         Ok(Self {
             gaps,
-            rate_dependence: diagnosis.verdict(Property::RateDependence),
-            deterioration: diagnosis.verdict(Property::Deterioration),
-            is_structure: Field::of(data.names()) == Field::Structure,
+            rate_dependence,
+            deterioration,
+            may_deteriorate: deterioration == Verdict::Yes
+                || is_structure && deterioration == Verdict::NotTestable,
+            speed_matters: step.is_some() && rate_dependence != Verdict::No,
             unknown_start: diagnosis
                 .doctor
                 .iter()
@@ -105,9 +117,7 @@ impl Swings {
     fn of(data: &Dataset, range: (f64, f64)) -> Self {
         let mut swings = Vec::new();
         for record in data.records() {
-            let x = &record.inputs()[0];
-            let of_record = coverage::swings(record, range.1 - range.0).into_iter();
-            swings.extend(of_record.map(|DataSwing { start, end, speed }| (x[start], x[end], speed)));
+            swings.extend(swings_of(record, range.1 - range.0));
         }
         Self { range, swings }
     }
@@ -176,6 +186,19 @@ impl Swings {
     }
 }
 
+/// From, to and mean speed of the swings of a record, for a plan over a range of this width.
+fn swings_of(record: &Record, width: f64) -> Vec<(f64, f64, f64)> {
+    let x = &record.inputs()[0];
+    let turns = turning_points(x, SMALLEST_REVERSAL * width);
+    let ends: Vec<usize> = std::iter::once(0).chain(turns).chain([x.len() - 1]).collect();
+    let swing = |pair: &[usize]| {
+        let (start, end) = (pair[0], pair[1]);
+        let elapsed = record.time().map_or((end - start) as f64, |time| time[end] - time[start]);
+        (x[start], x[end], (x[end] - x[start]).abs() / elapsed)
+    };
+    ends.windows(2).map(swing).collect()
+}
+
 /// The longest run of `false`: where it begins and its length.
 fn longest_false(run: &[bool]) -> Option<(usize, usize)> {
     let mut longest: Option<(usize, usize)> = None;
@@ -218,7 +241,9 @@ mod tests {
         let x: Vec<f64> = t.iter().map(|t| angle(t).sin()).collect();
         let y: Vec<f64> = t.iter().map(|t| (angle(t) - 0.2).sin()).collect();
         let data = Dataset::from_columns(Some(("t", &t)), &[("x", &x)], ("y", &y)).unwrap();
-        let survey = Survey::of(&data, (-1.0, 1.0)).unwrap();
+        let limits =
+            Limits { range: (-1.0, 1.0), start: 0.0, step: Some(0.01), max_rate: 8.0, rows: data.rows() };
+        let survey = Survey::of(&data, limits).unwrap();
         let statement =
             |what| survey.gaps.iter().find(|gap| gap.what == what).map(|gap| gap.statement.as_str());
         assert_eq!(statement("amplitudes"), Some("no swing of 0 % to 50 % of the range was run"));

@@ -9,12 +9,10 @@ use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::data::warning::Warning;
 use hysid::error::Error;
 use hysid::fit::network::fit;
-use hysid::model::{FORMAT_VERSION, Model, VIRGIN_FORMAT_VERSION};
+use hysid::model::{FORMAT_VERSION, Model};
 use hysid::network::{Family, Sizes};
 use hysid::operator::{Operator, Stop};
-use hysid::options::classical::ClassicalModel;
 use hysid::options::network::FitOptions;
-use hysid::options::{FitSpec, ModelName};
 
 /// Uneven steps in time, so that no two rows are alike.
 fn record(inputs: usize, rows: usize) -> Record {
@@ -206,7 +204,7 @@ fn a_file_that_is_cut_off_says_so() {
 #[test]
 fn other_files_and_versions_are_told_apart() {
     let text = FULL.to_json();
-    let version = format!("\"version\": {VIRGIN_FORMAT_VERSION}");
+    let version = format!("\"version\": {FORMAT_VERSION}");
     assert!(text.contains(&version));
     let next = FORMAT_VERSION + 1;
     let newer = with_fitting_checksum(&text.replacen(&version, &format!("\"version\": {next}"), 1));
@@ -231,7 +229,7 @@ fn an_unknown_field_is_another_layout() {
         extended.insert_str(at, "\"novelty\": 1, ");
         let said = refusal(&with_fitting_checksum(&extended));
         assert!(
-            said.contains(&format!("layout of version {VIRGIN_FORMAT_VERSION}")) && said.contains("novelty"),
+            said.contains(&format!("layout of version {FORMAT_VERSION}")) && said.contains("novelty"),
             "{said}"
         );
     }
@@ -372,46 +370,4 @@ fn warnings_give_the_share_of_samples_beyond_the_training() {
     };
     assert_eq!(name, "the rate of x");
     assert!((share_percent - 100.0 / 120.0).abs() < 1e-9);
-}
-
-#[test]
-fn a_file_of_version_1_is_read() {
-    // Written by the program before its first change of layout; the outputs are what it simulated.
-    let model = Model::from_json(include_str!("../data/model-version-1.json")).unwrap();
-    assert_eq!(
-        (model.name(), model.rate()),
-        (ModelName::Network(Family::XpnnPlus), Some(RateMethod::Central))
-    );
-    let FitSpec::Network(options) = &model.provenance().options else { panic!("not a network") };
-    assert_eq!((options.training, options.epochs), (hysid::options::network::Trainer::LevenbergMarquardt, 6));
-    let x = vec![0.0, 0.05218, 0.10412, 0.15493];
-    let time = vec![0.0, 0.1, 0.2, 0.3];
-    let record = Record::new("r", vec![x], vec![f64::NAN; 4]).unwrap().with_time(time).unwrap();
-    let y = model.simulate(&record).unwrap();
-    // The last row's rate is one-sided here.
-    for (found, written) in y.iter().zip([-8.366994376950501e-4, 0.7297365547006063, 1.4568964414396568]) {
-        approx::assert_relative_eq!(*found, written, max_relative = 1e-12);
-    }
-    let again = model.to_json();
-    assert!(
-        again.contains(&format!("\"version\": {VIRGIN_FORMAT_VERSION}")) && !again.contains("\"trainer\"")
-    );
-    assert_eq!(Model::from_json(&again).unwrap(), model);
-}
-
-#[test]
-fn a_file_of_version_2_is_read() {
-    // Written before there were ensembles; the outputs are what it simulated.
-    let model = Model::from_json(include_str!("../data/model-version-2.json")).unwrap();
-    assert_eq!(model.name(), ModelName::Classical(ClassicalModel::PrandtlIshlinskii));
-    assert!(model.input_transform().is_none() && model.band().is_none());
-    let history = |k: usize| (0.19 * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs());
-    // The file's table had six decimals.
-    let x: Vec<f64> = (0..120).map(|k| (1e6 * history(k)).round() / 1e6).collect();
-    let record = Record::new("r", vec![x], vec![f64::NAN; 120]).unwrap();
-    let y = model.simulate(&record).unwrap();
-    for (row, written) in [(29, -1.7640965545054068), (59, -3.0102206180520863), (118, -1.284065683250112)] {
-        approx::assert_relative_eq!(y[row], written, max_relative = 1e-9);
-    }
-    assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
 }

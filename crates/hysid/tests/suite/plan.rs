@@ -1,5 +1,5 @@
-//! Plans of experiments: limits of the machine, what single amplitudes and single speeds leave out, the same plan for any
-//! number of threads, and a lower error than by repeating a test.
+//! Plans of experiments: limits of the machine, what single amplitudes and single speeds leave out, and a lower error than
+//! by repeating a test.
 
 use hysid::data::record::{Dataset, Record};
 use hysid::diagnosis::Verdict;
@@ -8,7 +8,7 @@ use hysid::plan::{Kind, Leg, Limits, Path, Plan, PlanOptions, Wanted, Wave};
 use hysid::property::Property;
 use hysid::specimens::cases::{DrivenSpecimen, driven_specimen};
 use hysid::specimens::with_noise;
-use hysid::{Fit, Model, diagnose};
+use hysid::{Fit, diagnose};
 use proptest::prelude::*;
 
 /// Cycles of a spring and a lag, `rows` rows, `step` between them.
@@ -69,7 +69,7 @@ proptest! {
             step: None,
         };
         let wave = Some(if is_smooth { Wave::Smooth } else { Wave::Triangle });
-        match Plan::of(&data, None, &PlanOptions { limits, wave, seed }) {
+        match Plan::of(&data, &PlanOptions { limits, wave, seed }) {
             Ok(plan) => keeps_its_limits(&plan)?,
             // Only a length too short for the rate may be refused.
             Err(error) => prop_assert!(error.to_string().contains("too few"), "{error}"),
@@ -81,7 +81,7 @@ proptest! {
 #[test]
 fn the_limits_of_the_data_are_kept() {
     let data = timed(2.0, 5.0, 600, 0.01);
-    let plan = Plan::of(&data, None, &PlanOptions::default()).unwrap();
+    let plan = Plan::of(&data, &PlanOptions::default()).unwrap();
     keeps_its_limits(&plan).unwrap();
     assert_eq!(plan.limits.range, data.input_range(0));
     assert!(plan.limits.max_rate <= 2.0 * 0.12 / 0.01 && plan.rows() > 550);
@@ -89,7 +89,7 @@ fn the_limits_of_the_data_are_kept() {
 
 #[test]
 fn after_cycles_of_one_amplitude_smaller_ones_are_run() {
-    let plan = Plan::of(&timed(1.0, 0.0, 600, 0.1), None, &PlanOptions::default()).unwrap();
+    let plan = Plan::of(&timed(1.0, 0.0, 600, 0.1), &PlanOptions::default()).unwrap();
     let swings: Vec<f64> = plan
         .segments
         .iter()
@@ -100,7 +100,12 @@ fn after_cycles_of_one_amplitude_smaller_ones_are_run() {
     assert!(between(0.1, 0.7) && between(0.7, 1.4), "{swings:?}");
     assert!(plan.gaps.iter().any(|gap| gap.what == "amplitudes"));
     // Away from the middle too.
-    assert!(plan.segments.iter().any(|segment| segment.mean.abs() > 0.2 && segment.amplitude < 0.6));
+    let middles: Vec<f64> = plan
+        .segments
+        .iter()
+        .flat_map(|segment| segment.turning_points.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])))
+        .collect();
+    assert!(middles.iter().any(|middle| middle.abs() > 0.2), "{middles:?}");
 }
 
 /// All amplitudes at one speed: the data cannot test the rate, and the plan runs several speeds.
@@ -119,13 +124,16 @@ fn after_tests_at_one_speed_several_are_run() {
     let rate = |data: &Dataset| diagnose(data).unwrap().verdict(Property::RateDependence);
     assert_eq!(rate(&data), Verdict::NotTestable);
     let limits = Wanted { length: Some(2400), ..Wanted::default() };
-    let plan = Plan::of(&data, None, &PlanOptions { limits, ..PlanOptions::default() }).unwrap();
+    let plan = Plan::of(&data, &PlanOptions { limits, ..PlanOptions::default() }).unwrap();
     assert!(plan.gaps.iter().any(|gap| gap.what == "speeds" || gap.what == "rate-dependence"));
-    let fast = plan.segments.iter().map(|segment| segment.rate).fold(0.0, f64::max);
-    let slow = |segment: &&hysid::plan::Segment| {
-        segment.rate < 0.25 * fast && segment.rate > 0.0 && segment.kind != Kind::Return
-    };
-    assert!(plan.segments.iter().any(|segment| slow(&segment)), "{:?}", plan.segments);
+    // The longest step of each random swing.
+    let random = plan.segments.iter().find(|segment| segment.kind == Kind::RandomReversals).unwrap();
+    let steps: Vec<f64> =
+        plan.input[random.rows.clone()].windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    let mut speeds: Vec<f64> =
+        steps.chunks(40).map(|some| some.iter().copied().fold(0.0, f64::max)).collect();
+    speeds.sort_unstable_by(f64::total_cmp);
+    assert!(speeds[speeds.len() - 1] > 1.7 * speeds[0], "{speeds:?}");
     assert!(plan.segments.iter().any(|segment| segment.kind == Kind::TwoSpeeds));
     // What the plan is for: now the property can be tested, and the law has none.
     assert_eq!(rate(&spring_and_slider(&plan.input, 0.1)), Verdict::No);
@@ -143,7 +151,7 @@ fn spring_and_slider(x: &[f64], step: f64) -> Dataset {
 fn data_that_cannot_be_planned_from_are_refused_in_one_line() {
     let refused = |x: &[f64], y: &[f64]| {
         let data = Dataset::from_slices(x, y).unwrap();
-        let error = Plan::of(&data, None, &PlanOptions::default()).unwrap_err().to_string();
+        let error = Plan::of(&data, &PlanOptions::default()).unwrap_err().to_string();
         assert!(!error.contains('\n') && !error.is_empty());
         error
     };
@@ -156,44 +164,31 @@ fn data_that_cannot_be_planned_from_are_refused_in_one_line() {
     let (t, x, mut y) = cycles(1e90, 0.0, 400, 1.0);
     y[100..180].fill(f64::NAN);
     let data = Dataset::from_columns(Some(("t", &t)), &[("x", &x)], ("y", &y)).unwrap();
-    keeps_its_limits(&Plan::of(&data, None, &PlanOptions::default()).unwrap()).unwrap();
+    keeps_its_limits(&Plan::of(&data, &PlanOptions::default()).unwrap()).unwrap();
     // A small swing far from 0.
     let data = timed(1e-3, 1e3, 400, 0.1);
-    keeps_its_limits(&Plan::of(&data, None, &PlanOptions::default()).unwrap()).unwrap();
+    keeps_its_limits(&Plan::of(&data, &PlanOptions::default()).unwrap()).unwrap();
 }
 
 #[test]
-fn a_model_that_cannot_disagree_is_refused() {
-    let data = timed(1.0, 0.0, 300, 0.1);
-    let single = Fit::new().model("prandtl-ishlinskii").run(&data).unwrap();
-    let error = Plan::of(&data, Some(&single), &PlanOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("no ensemble"), "{error}");
-}
-
-fn ensemble(data: &Dataset) -> Model {
-    let fit = Fit::new().model("xpnn").option("members", 3).option("starts", 3).option("epochs", 4);
-    fit.option("training", "levenberg-marquardt").run(data).unwrap()
-}
-
-#[test]
-fn the_plan_is_the_same_for_any_number_of_threads() {
+fn a_seed_determines_the_plan() {
     let data = timed(1.0, 0.0, 400, 0.1);
-    let model = ensemble(&data);
-    let of_threads = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Plan::of(&data, Some(&model), &PlanOptions::default()).unwrap())
-    };
-    let one = of_threads(1);
-    assert_eq!(one, of_threads(3));
-    keeps_its_limits(&one).unwrap();
-    let disagreement = one.disagreement.unwrap();
-    assert!(disagreement.plan > disagreement.repeat && disagreement.repeat > 0.0, "{disagreement:?}");
-    // Another seed, another plan.
-    let of_seed = |seed| {
-        let limits = Wanted { length: Some(4000), ..Wanted::default() };
-        Plan::of(&data, None, &PlanOptions { seed, limits, wave: None }).unwrap()
-    };
+    let of_seed = |seed| Plan::of(&data, &PlanOptions { seed, ..PlanOptions::default() }).unwrap();
     assert!(of_seed(1) == of_seed(1) && of_seed(1) != of_seed(2));
+}
+
+/// Large swings may damage a specimen that deteriorates, so that they come last.
+#[test]
+fn swings_of_a_specimen_that_deteriorates_grow() {
+    let (t, x, mut y) = cycles(10.0, 0.0, 600, 0.1);
+    y.iter_mut().enumerate().for_each(|(row, y)| *y *= (-0.003 * row as f64).exp());
+    let data = Dataset::from_columns(Some(("t", &t)), &[("x", &x)], ("y", &y)).unwrap();
+    assert_eq!(diagnose(&data).unwrap().verdict(Property::Deterioration), Verdict::Yes);
+    let plan = Plan::of(&data, &PlanOptions::default()).unwrap();
+    let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let random = plan.segments.iter().find(|segment| segment.kind == Kind::RandomReversals).unwrap();
+    assert!(largest(&plan.input[..300]) < 0.9 * largest(&plan.input), "{random:?}");
+    assert!(random.amplitude > 8.0, "{random:?}");
 }
 
 /// A specimen, after cycles over its whole range: error of a Preisach model on random reversals after the same cycles
@@ -221,7 +216,7 @@ fn errors_after(name: &str) -> (f64, f64) {
     };
     let unseen = data(vec![specimen.run("unseen", &unseen, None).unwrap()]);
     let one = measured(&specimen, &first, 1);
-    let plan = Plan::of(&data(vec![one.clone()]), None, &PlanOptions::default()).unwrap();
+    let plan = Plan::of(&data(vec![one.clone()]), &PlanOptions::default()).unwrap();
     assert!(plan.rows() <= first.len());
     let error = |x: &[f64], seed| {
         let data = data(vec![one.clone(), measured(&specimen, x, seed)]);

@@ -26,13 +26,6 @@ fn run(target: Target, name: &str, folder: &Path) {
             };
             compiled(&compiler, &["-std=c99", "-ffp-contract=off", &c, &c_test, "-lm", "-o", "the_test"]);
         }
-        Target::Rust => {
-            let Some(compiler) = tool("exports to Rust", "rustc", &["--version"], "see https://rustup.rs")
-            else {
-                return;
-            };
-            compiled(&compiler, &["-O", &format!("{name}_test.rs"), "-o", "the_test"]);
-        }
         Target::Matlab => {
             let install = "run: sudo apt-get install octave";
             let probe = ["--no-gui", "--eval", "1;"];
@@ -66,11 +59,9 @@ fn every_name_that_is_not_refused_works() {
 #[test]
 fn words_of_the_language_are_refused() {
     let model = &MODELS[0].1;
-    for (target, words) in [
-        (Target::Matlab, ["end", "function", "tanh"]),
-        (Target::Python, ["class", "lambda", "numpy"]),
-        (Target::Rust, ["fn", "self", "std"]),
-    ] {
+    for (target, words) in
+        [(Target::Matlab, ["end", "function", "tanh"]), (Target::Python, ["class", "lambda", "numpy"])]
+    {
         for name in words {
             let refused = export(model, target, &Options::named(name));
             let expected = Error::Reserved { name: name.into(), target: target.name() };

@@ -8,7 +8,7 @@ use crate::fit::network::fitting::State;
 use crate::options::network::FitOptions;
 
 /// First bytes of a checkpoint, with the version of its layout. Only a program with the same layout reads it.
-const MAGIC: &[u8] = b"hysid checkpoint 4\n";
+const MAGIC: &[u8] = b"hysid checkpoint 1\n";
 
 /// The state of an unfinished fit, without the data.
 #[derive(Debug, Clone, Serialize, Deserialize)]
