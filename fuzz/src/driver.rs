@@ -1,4 +1,4 @@
-//! The seeded driver: mutations of a corpus, the same for the same seed, for so many seconds.
+//! The seeded driver: mutations of a corpus, the same for the same seed.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,6 +16,15 @@ use crate::mutation::mutated;
 /// An input that takes longer is one that runs for ever.
 const LONGEST: Duration = Duration::from_secs(30);
 
+/// When a run of the driver ends; the corpus is run in any case.
+#[derive(Debug, Clone, Copy)]
+pub enum Limit {
+    /// So long.
+    Time(Duration),
+    /// So many mutated inputs.
+    Mutations(usize),
+}
+
 /// What a run of the driver came to.
 pub struct Outcome {
     /// Inputs that were run.
@@ -31,13 +40,13 @@ struct Watched {
     is_done: bool,
 }
 
-/// Runs a target on its corpus, and then on mutations of it until the time is over. An input that fails is stored
+/// Runs a target on its corpus, and then on mutations of it up to the limit. An input that fails is stored
 /// among the artifacts; one that does not end, ends the process.
 pub fn run(
     target: &Target,
     corpus: &Path,
     artifacts: &Path,
-    time: Duration,
+    limit: Limit,
     seed: u64,
 ) -> std::io::Result<Outcome> {
     let mut inputs = stored(&corpus.join(target.name))?;
@@ -49,7 +58,11 @@ pub fn run(
     watch(Arc::clone(&watched), artifacts.to_path_buf(), target.name);
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
     let (began, mut outcome) = (Instant::now(), Outcome { inputs: 0, failures: Vec::new() });
-    while outcome.inputs < inputs.len() || began.elapsed() < time {
+    let goes_on = |run: usize| match limit {
+        Limit::Time(time) => run < inputs.len() || began.elapsed() < time,
+        Limit::Mutations(count) => run < inputs.len() + count,
+    };
+    while goes_on(outcome.inputs) {
         let input = match inputs.get(outcome.inputs) {
             Some(stored) => stored.clone(),
             None => mutated(&inputs, target.words, &mut generator),

@@ -1,7 +1,7 @@
 //! Fuzz targets: functions of any bytes that must neither panic nor run for ever, and what holds of their results.
 //!
-//! One set of targets serves two drivers: the seeded one of this crate (`cargo xtask fuzz`, stable toolchain,
-//! repeatable), and libFuzzer with coverage (`fuzz/coverage`, `cargo xtask fuzz --coverage`).
+//! One set of targets serves two drivers: the seeded one of this crate (`cargo run --profile fuzz -p hysid-fuzz`, stable
+//! toolchain, repeatable), and libFuzzer with coverage (`fuzz/coverage/run TARGET`).
 
 mod bytes;
 mod checkpoint;

@@ -1,55 +1,51 @@
-//! `hysid-fuzz TARGET|all SECONDS [SEED]`: the seeded driver, and `hysid-fuzz TARGET FILE`: one input.
+//! The fuzz targets on mutated inputs: `cargo run --profile fuzz -p hysid-fuzz -- [TARGET] [--seconds N] [--seed N]`.
 
-use std::path::Path;
-use std::process::ExitCode;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use hysid_fuzz::{TARGETS, Target, driver, target};
+use anyhow::{Context, Result, ensure};
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
+use hysid_fuzz::driver::{self, Limit};
+use hysid_fuzz::{TARGETS, Target};
 
-fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let (name, what, seed) = match arguments.as_slice() {
-        [name, what] => (*name, *what, Some(1)),
-        [name, what, seed] => (*name, *what, seed.parse().ok()),
-        _ => ("", "", None),
-    };
-    let targets: Vec<&Target> = match name {
-        "all" => TARGETS.iter().collect(),
-        name => target(name).into_iter().collect(),
-    };
-    let Some(seed) = seed.filter(|_| !targets.is_empty()) else {
-        let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
-        eprintln!("hysid-fuzz TARGET|all SECONDS|FILE [SEED], with a target of {}", names.join(", "));
-        return ExitCode::from(2);
-    };
-    let Ok(seconds) = what.parse::<f64>() else {
-        return match std::fs::read(what) {
-            Ok(input) => {
-                targets.iter().for_each(|target| (target.run)(&input));
-                ExitCode::SUCCESS
-            }
-            Err(error) => {
-                eprintln!("{what}: {error}");
-                ExitCode::FAILURE
-            }
-        };
-    };
+/// Run the fuzz targets on mutated inputs
+#[derive(Parser)]
+#[command(max_term_width = 100)]
+struct CommandLine {
+    /// Target; all without
+    #[arg(value_parser = PossibleValuesParser::new(TARGETS.map(|target| target.name)))]
+    target: Option<String>,
+    /// Seconds for each target
+    #[arg(long, default_value_t = 60, value_name = "NUMBER")]
+    seconds: u64,
+    /// Seed of the mutations; the same seed gives the same inputs
+    #[arg(long, default_value_t = 1, value_name = "NUMBER")]
+    seed: u64,
+    /// Run this input only
+    #[arg(long, value_name = "FILE", requires = "target")]
+    input: Option<PathBuf>,
+}
+
+fn main() -> Result<()> {
+    let arguments = CommandLine::parse();
+    let is_wanted = |target: &&Target| arguments.target.as_ref().is_none_or(|name| name == target.name);
+    let targets = TARGETS.iter().filter(is_wanted);
+    if let Some(path) = &arguments.input {
+        let input = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        targets.for_each(|target| (target.run)(&input));
+        return Ok(());
+    }
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (corpus, artifacts) = (root.join("corpus"), root.join("artifacts"));
-    let mut failed = false;
+    let limit = Limit::Time(Duration::from_secs(arguments.seconds));
+    let mut failures = 0;
     for target in targets {
-        match driver::run(target, &corpus, &artifacts, Duration::from_secs_f64(seconds), seed) {
-            Ok(outcome) => {
-                println!("{:13} {:8} inputs, {} failed", target.name, outcome.inputs, outcome.failures.len());
-                outcome.failures.iter().for_each(|path| println!("  {}", path.display()));
-                failed |= !outcome.failures.is_empty();
-            }
-            Err(error) => {
-                eprintln!("{}: {error}", target.name);
-                failed = true;
-            }
-        }
+        let outcome = driver::run(target, &corpus, &artifacts, limit, arguments.seed).context(target.name)?;
+        println!("{:13} {:8} inputs, {} failed", target.name, outcome.inputs, outcome.failures.len());
+        outcome.failures.iter().for_each(|path| println!("  {}", path.display()));
+        failures += outcome.failures.len();
     }
-    if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+    ensure!(failures == 0, "{failures} inputs failed");
+    Ok(())
 }

@@ -4,12 +4,12 @@ use std::ffi::OsString;
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
+use crate::cargo::{built_program, workspace_root};
+use crate::environment::{Environment, step};
 use crate::proofs::Proofs;
-use crate::{program, python, workspace_root};
 
 /// Names of Chromium, in the order in which they are looked for.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
@@ -29,9 +29,9 @@ pub fn test(proofs: &Proofs) -> Result<()> {
         return writeln!(list, "{missing}").context("the list of what was not proved cannot be written");
     };
     let tests = workspace_root().join("crates").join("hysid-cli").join("tests").join("browser");
-    let mut pytest = Command::new(python::environment()?);
+    let mut pytest = Environment::of_package()?.python();
     pytest.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]).arg(tests);
-    python::step("browser", pytest.env(NAMED, browser).env("HYSID_PROGRAM", program::build()?))
+    step("browser", pytest.env(NAMED, browser).env("HYSID_PROGRAM", built_program()?))
 }
 
 /// The browser that the environment names, or the first of the known names in the search path.

@@ -7,7 +7,7 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
 
-use crate::workspace_root;
+use crate::cargo::{program, workspace_root};
 
 /// Licences whose terms allow all that ours allow.
 const ALLOWED: [&str; 8] = [
@@ -37,7 +37,7 @@ const NOT_NEEDED: [(&str, &[&str]); 5] = [
 
 pub fn run() -> Result<()> {
     println!("==> dependencies");
-    let output = Command::new(env!("CARGO"))
+    let output = Command::new(program())
         .args(["metadata", "--format-version", "1", "--locked"])
         .current_dir(workspace_root())
         .output()

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-use crate::program;
+use crate::cargo::target;
 
 /// The list that the tests add lines to.
 pub struct Proofs {
@@ -16,7 +16,7 @@ pub struct Proofs {
 impl Proofs {
     /// An empty list.
     pub fn begin() -> Result<Self> {
-        let path = program::target()?.join("unproved.txt");
+        let path = target()?.join("unproved.txt");
         if path.exists() {
             fs::remove_file(&path).context("the list of what was not proved cannot be removed")?;
         }

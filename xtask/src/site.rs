@@ -1,27 +1,21 @@
 //! `cargo xtask site`: the documentation as a site that is read in a browser, on the net or from the disk.
 //!
-//! mdBook turns pages into HTML. It is a tool and no dependency: a pinned version is installed once, beside the build,
-//! because as a library it would be compiled with every developer command. The pages are copied to
-//! `target/site-source` with their links rewritten ([`book`]); mdBook writes `target/site`, whose links are checked.
+//! The pages are copied to `target/site-source` with their links rewritten ([`book`]), notebooks by nbconvert; mdBook
+//! writes `target/site`, whose links lychee checks. The tools are pinned in `xtask/requirements.txt`.
 
 mod book;
-mod html;
-mod links;
-mod notebook;
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
 
 use self::book::{Book, SUMMARY, place};
-use self::links::Site;
-use crate::{program, repository, workspace_root};
-
-/// The version of mdBook. Another one may write other anchors.
-const MDBOOK: &str = "0.5.4";
+use crate::cargo::{target, workspace_root};
+use crate::environment::Environment;
+use crate::repository;
 
 /// The settings of mdBook and what it adds to each page, by their path in the repository.
 const SETTINGS: [&str; 2] = ["docs/book.toml", "docs/site.css"];
@@ -29,57 +23,62 @@ const SETTINGS: [&str; 2] = ["docs/book.toml", "docs/site.css"];
 /// The folder of the pages in the source of the book; `book.toml` names it too.
 const PAGES: &str = "pages";
 
-pub fn run() -> Result<()> {
-    let target = program::target()?;
-    let (source, site) = (target.join("site-source"), target.join("site"));
-    let mdbook = mdbook(&target.join("tools"))?;
+/// Kinds of an output that a page shows, the best first.
+const OUTPUTS: &str = "--NbConvertBase.display_data_priority=['image/png', 'text/plain']";
 
+/// What nbconvert writes in the place of an image's description.
+const UNDESCRIBED: &str = "![png](";
+
+pub fn run() -> Result<()> {
+    let tools = Environment::of_tools()?;
     println!("==> site");
-    write_source(&workspace_root(), &source)?;
+    let (source, site) = (target()?.join("site-source"), target()?.join("site"));
+    write_source(&tools, &workspace_root(), &source)?;
     // What an earlier build left would hide a page that is gone.
     remove(&site)?;
-    let build = Command::new(mdbook).arg("build").arg(&source).arg("--dest-dir").arg(&site).output();
-    let build = build.context("step `site`: mdbook could not be started")?;
-    let said = String::from_utf8_lossy(&build.stderr);
-    ensure!(build.status.success(), "step `site`: mdbook failed:\n{said}");
-
-    let broken = Site::read(&site).context("step `site`")?.broken_links();
-    for link in &broken {
-        eprintln!("{link}");
+    said(tools.program("mdbook").arg("build").arg(&source).arg("--dest-dir").arg(&site))?;
+    let pages = pages(&site)?;
+    // Links to other sites are not followed.
+    let check = ["--offline", "--include-fragments", "--no-progress", "--quiet"];
+    said(tools.program("lychee").args(check).args(&pages))?;
+    for page in &pages {
+        let text = fs::read_to_string(page).with_context(|| page.display().to_string())?;
+        // The site is also read without a network.
+        let is_foreign = text.contains("src=\"http") || text.contains("src=\"//");
+        ensure!(!is_foreign, "step `site`: {} loads a part from another site", page.display());
     }
-    ensure!(broken.is_empty(), "step `site` failed: broken links of the site: {}", broken.len());
     println!("{}", site.join("index.html").display());
     Ok(())
 }
 
-/// The pinned mdBook, installed if need be.
-fn mdbook(tools: &Path) -> Result<PathBuf> {
-    let program = tools.join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
-    let version = Command::new(&program).arg("--version").stdin(Stdio::null()).output();
-    if version.is_ok_and(|said| String::from_utf8_lossy(&said.stdout).trim() == format!("mdbook v{MDBOOK}")) {
-        return Ok(program);
+/// Runs a tool; what it prints is shown if it fails.
+fn said(tool: &mut Command) -> Result<()> {
+    let name = tool.get_program().to_string_lossy().into_owned();
+    let output = tool.output().with_context(|| format!("step `site`: {name} could not be started"))?;
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let printed = text(&output.stdout) + &text(&output.stderr);
+    ensure!(output.status.success(), "step `site`: {name} failed:\n{printed}");
+    Ok(())
+}
+
+/// The pages below a folder.
+fn pages(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+        let path = entry?.path();
+        if path.is_dir() {
+            found.extend(pages(&path)?);
+        } else if path.extension().is_some_and(|ending| ending == "html") {
+            found.push(path);
+        }
     }
-    println!("==> cargo install mdbook {MDBOOK}");
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo)
-        .args(["install", "mdbook", "--locked", "--force", "--version", &format!("={MDBOOK}")])
-        .args(["--no-default-features", "--features", "search", "--root"])
-        .arg(tools)
-        // Built in a folder of its own that is removed, not among our crates.
-        .env_remove("CARGO_TARGET_DIR")
-        .status()
-        .context("step `site`: cargo install could not be started")?;
-    ensure!(
-        status.success(),
-        "step `site`: mdbook could not be installed ({status}); it needs crates.io once: is there a network?"
-    );
-    Ok(program)
+    Ok(found)
 }
 
 /// Writes the source of the book from the files of the repository.
-fn write_source(root: &Path, source: &Path) -> Result<()> {
+fn write_source(tools: &Environment, root: &Path, source: &Path) -> Result<()> {
     let paths = repository::paths(root).context("step `site`")?;
-    let book = Book::of_summary(&read(root, SUMMARY)?)?;
+    let book = Book::of_summary(&read(&root.join(SUMMARY))?)?;
     let left_out = book.left_out(&paths);
     ensure!(left_out.is_empty(), "step `site`: {SUMMARY} does not list {}", left_out.join(", "));
 
@@ -87,38 +86,35 @@ fn write_source(root: &Path, source: &Path) -> Result<()> {
     let pages = source.join(PAGES);
     let mut files = BTreeSet::new();
     for (path, place) in book.pages().chain([(SUMMARY, "SUMMARY.md")]) {
-        let mut text = read(root, path)?;
-        if path.ends_with(".ipynb") {
-            text = write_images_of_notebook(path, &text, &pages)?;
-        }
+        let to = pages.join(place);
+        let text = match path.ends_with(".ipynb") {
+            true => converted(tools, &root.join(path), &to)?,
+            false => read(&root.join(path))?,
+        };
         let page = book.page(path, &text);
         files.extend(page.files);
-        write(&pages.join(place), page.text.as_bytes())?;
+        write(&to, page.text.as_bytes())?;
     }
     // A file that is neither there nor written with a notebook is found by the check of links.
     for path in files.intersection(&paths) {
         copy(&root.join(path), &pages.join(place(path)))?;
     }
     for path in SETTINGS {
-        copy(&root.join(path), &source.join(crate::files::name(Path::new(path))))?;
+        copy(&root.join(path), &source.join(path.rsplit('/').next().unwrap_or(path)))?;
     }
     Ok(())
 }
 
-/// Writes the images of a notebook; returns its text.
-fn write_images_of_notebook(path: &str, notebook: &str, pages: &Path) -> Result<String> {
-    let stem = Path::new(path).file_stem().unwrap_or_default().to_string_lossy();
-    let page = notebook::page(&stem, notebook)?;
-    for (name, image) in &page.images {
-        let bytes = notebook::bytes(image).with_context(|| format!("{path}: an image is not in base64"))?;
-        write(&pages.join(place(path)).with_file_name(name), &bytes)?;
-    }
-    Ok(page.text)
+/// The text of a notebook as a page at this place, beside which its images are written.
+fn converted(tools: &Environment, notebook: &Path, place: &Path) -> Result<String> {
+    let folder = place.parent().context("a page lies in a folder")?;
+    let arguments = ["-m", "nbconvert", "--to", "markdown", OUTPUTS, "--output-dir"];
+    said(tools.python().args(arguments).arg(folder).arg(notebook))?;
+    Ok(read(place)?.replace(UNDESCRIBED, "![Output of the cell above]("))
 }
 
-/// The text of a file below `root`.
-fn read(root: &Path, path: &str) -> Result<String> {
-    fs::read_to_string(root.join(path)).with_context(|| format!("step `site`: {path} could not be read"))
+fn read(path: &Path) -> Result<String> {
+    fs::read_to_string(path).with_context(|| format!("step `site`: {} could not be read", path.display()))
 }
 
 fn write(path: &Path, content: &[u8]) -> Result<()> {

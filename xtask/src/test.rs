@@ -3,13 +3,14 @@
 
 use anyhow::Result;
 
+use crate::cargo::cargo;
+use crate::environment::Environment;
 use crate::proofs::Proofs;
-use crate::{browser, cargo, fuzz, python, site};
+use crate::{browser, python, site};
 
 pub fn run() -> Result<()> {
     let proofs = Proofs::begin()?;
     rust(&proofs)?;
-    fuzz::in_tests()?;
     python::test()?;
     browser::test(&proofs)?;
     site::run()?;
@@ -29,7 +30,7 @@ pub fn quick() -> Result<()> {
 /// Unit, integration and documentation tests. Those of exported models run the tools of each target. The Python package
 /// has its own.
 fn rust(proofs: &Proofs) -> Result<()> {
-    let python = python::environment()?;
+    let python = Environment::of_package()?.python_path();
     let environment =
         [("HYSID_PYTHON", &*python.to_string_lossy()), ("HYSID_UNPROVED", &*proofs.path().to_string_lossy())];
     cargo(&["test", "--workspace", "--exclude", "hysid-python", "--locked"], &environment)

@@ -12,7 +12,8 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 
-use crate::{repository, workspace_root};
+use crate::cargo::workspace_root;
+use crate::repository;
 
 /// A broken rule and where. The line counts from 1.
 #[derive(Debug, PartialEq, Eq)]

@@ -139,8 +139,6 @@ pub enum Command {
     Generate(Generate),
     /// Write a model as source code for other programs, with tests and test vectors
     Export(Export),
-    /// Measure the speed of Hysid on this machine
-    Bench(Bench),
     /// List all models, or show what a model file holds
     Models(Models),
     /// Print a script by which a shell completes commands and options
@@ -762,15 +760,6 @@ pub struct Export {
 fn target() -> impl TypedValueParser<Value = Target> {
     let names = Target::ALL.map(Target::name);
     PossibleValuesParser::new(names).map(|name| Target::named(&name).expect("one of the possible values"))
-}
-
-/// Arguments of `bench`.
-#[derive(Debug, Args)]
-#[command(after_help = BENCH_EXAMPLES)]
-pub struct Bench {
-    /// Print the result as one JSON object
-    #[arg(long)]
-    pub json: bool,
 }
 
 #[cfg(test)]

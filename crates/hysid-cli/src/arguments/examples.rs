@@ -77,8 +77,3 @@ Examples:
   hysid export model.json --to c --name piezo -o src/piezo --precision f32
   hysid export model.json --to fmu --fmi 2            for tools with FMI 2.0
   hysid export model.json --to c --inverse --limits 0:150 --slew 2000";
-
-pub(super) const BENCH_EXAMPLES: &str = "\
-Examples:
-  hysid bench                    a table: median, lowest and highest of several runs
-  hysid bench --json             one JSON object, for scripts";

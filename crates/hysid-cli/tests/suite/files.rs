@@ -1,5 +1,5 @@
 //! Files as instruments and tools write them: each has the same record, and is read without an option, or with the first
-//! hint that the error gives. `cargo xtask generate-files crates/hysid-cli/tests/files` writes them.
+//! hint that the error gives. `generate-files` of the laboratory (`lab/`) writes them.
 
 use std::fs;
 use std::path::Path;

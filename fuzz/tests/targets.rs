@@ -1,0 +1,35 @@
+//! Every target on its corpus and on a fixed number of mutations of it; the program `hysid-fuzz` runs for longer.
+
+use std::path::Path;
+
+use hysid_fuzz::driver::{Limit, run};
+use hysid_fuzz::target;
+
+/// Mutated inputs of a target; those of `checkpoint` and `differential` fit models.
+const MUTATIONS: usize = 200;
+
+fn holds(name: &str) {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
+    let artifacts = tempfile::tempdir().unwrap();
+    let target = target(name).unwrap();
+    let outcome = run(target, &corpus, artifacts.path(), Limit::Mutations(MUTATIONS), 1).unwrap();
+    let failed: Vec<_> = outcome.failures.iter().map(|path| std::fs::read(path).unwrap()).collect();
+    assert!(failed.is_empty(), "{failed:?}");
+}
+
+macro_rules! targets {
+    ($($name:ident)*) => {
+        $(#[test]
+        fn $name() {
+            holds(stringify!($name));
+        })*
+    };
+}
+
+targets!(table model_file checkpoint options steps differential);
+
+#[test]
+fn every_target_is_tested() {
+    let tested = ["table", "model_file", "checkpoint", "options", "steps", "differential"];
+    assert_eq!(hysid_fuzz::TARGETS.map(|target| target.name), tested);
+}
