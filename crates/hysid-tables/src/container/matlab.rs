@@ -2,7 +2,8 @@
 
 mod version_5;
 
-use hdf5_pure::{DType, File, Group};
+use hdf5_reader::group::Group;
+use hdf5_reader::{Dataset, Datatype, Hdf5File, OpenOptions};
 
 use crate::number::shortest;
 
@@ -119,37 +120,57 @@ fn columns_of(variable: &Variable) -> Vec<(String, &Vec<f64>)> {
     }
 }
 
+/// Largest variable that is read, in bytes: a small file may claim any size.
+const MOST_BYTES: usize = 1 << 32;
+
 fn of_hdf5(bytes: Vec<u8>) -> Result<Vec<Variable>, String> {
-    let file = File::from_bytes(bytes).map_err(|error| error.to_string())?;
+    let options = OpenOptions::default().with_max_read_bytes(MOST_BYTES);
+    let file = Hdf5File::from_vec_with_options(bytes, options).map_err(words)?;
     let mut variables = Vec::new();
-    collect_group("", &file.root(), DEEPEST, &mut variables)?;
+    collect_group("", &file.root_group().map_err(words)?, DEEPEST, &mut variables)?;
     Ok(variables)
 }
 
+fn words(error: hdf5_reader::error::Error) -> String {
+    error.to_string()
+}
+
 fn collect_group(path: &str, group: &Group, depth: usize, found: &mut Vec<Variable>) -> Result<(), String> {
-    let words = |error: hdf5_pure::Error| error.to_string();
-    for name in group.datasets().map_err(words)? {
-        let dataset = group.dataset(&name).map_err(words)?;
-        let is_numeric = matches!(
-            dataset.dtype(),
-            Ok(DType::F32 | DType::F64 | DType::I8 | DType::I16 | DType::I32 | DType::I64)
-                | Ok(DType::U8 | DType::U16 | DType::U32 | DType::U64)
-        );
-        if !is_numeric {
-            continue;
+    let (groups, datasets) = group.members().map_err(words)?;
+    for dataset in datasets {
+        if let Some(values) = numbers(&dataset)? {
+            // MATLAB writes its columns as the rows of HDF5.
+            let mut sizes: Vec<usize> = dataset.shape().iter().map(|&size| size as usize).collect();
+            sizes.reverse();
+            found.extend(Variable::new(format!("{path}{}", dataset.name()), &sizes, values));
         }
-        // MATLAB writes its columns as the rows of HDF5.
-        let mut sizes: Vec<usize> =
-            dataset.shape().map_err(words)?.iter().map(|&size| size as usize).collect();
-        sizes.reverse();
-        let values = dataset.read_f64().map_err(words)?;
-        found.extend(Variable::new(format!("{path}{name}"), &sizes, values));
     }
     // What MATLAB needs for itself begins with a number sign.
-    for name in group.groups().map_err(words)?.into_iter().filter(|name| !name.starts_with('#') && depth > 0)
-    {
-        let inner = group.group(&name).map_err(words)?;
-        collect_group(&format!("{path}{name}."), &inner, depth - 1, found)?;
+    for inner in groups.into_iter().filter(|group| !group.name().starts_with('#') && depth > 0) {
+        collect_group(&format!("{path}{}.", inner.name()), &inner, depth - 1, found)?;
     }
     Ok(())
+}
+
+/// The values of a dataset as numbers; `None` for what holds none.
+fn numbers(dataset: &Dataset) -> Result<Option<Vec<f64>>, String> {
+    macro_rules! read {
+        ($type:ty) => {
+            dataset.read_array::<$type>().map(|all| all.iter().map(|&value| value as f64).collect())
+        };
+    }
+    let values: Result<Vec<f64>, _> = match *dataset.dtype() {
+        Datatype::FloatingPoint { size: 4, .. } => read!(f32),
+        Datatype::FloatingPoint { size: 8, .. } => read!(f64),
+        Datatype::FixedPoint { size: 1, signed: true, .. } => read!(i8),
+        Datatype::FixedPoint { size: 1, signed: false, .. } => read!(u8),
+        Datatype::FixedPoint { size: 2, signed: true, .. } => read!(i16),
+        Datatype::FixedPoint { size: 2, signed: false, .. } => read!(u16),
+        Datatype::FixedPoint { size: 4, signed: true, .. } => read!(i32),
+        Datatype::FixedPoint { size: 4, signed: false, .. } => read!(u32),
+        Datatype::FixedPoint { size: 8, signed: true, .. } => read!(i64),
+        Datatype::FixedPoint { size: 8, signed: false, .. } => read!(u64),
+        _ => return Ok(None),
+    };
+    values.map(Some).map_err(words)
 }
