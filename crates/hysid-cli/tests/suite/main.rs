@@ -33,7 +33,5 @@ mod program;
 mod quiet;
 mod reproduce;
 mod residuals;
-mod tutorial_data;
-mod tutorial_figures;
 mod units;
 mod workbench;

@@ -1,5 +1,5 @@
 //! The data of `docs/tutorials/data`: records of synthetic specimens in the form in which a laboratory writes them.
-//! `HYSID_WRITE=1 cargo test -p hysid-cli --test suite tutorial_data` writes them anew.
+//! `HYSID_WRITE=1 cargo test --test tutorial_data` writes them anew.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -15,7 +15,7 @@ const NOISE: f64 = 1.0;
 const COIL_NOISE: f64 = 0.3;
 
 fn file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/tutorials/data").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/tutorials/data").join(name)
 }
 
 /// Compares a file with what it must be.

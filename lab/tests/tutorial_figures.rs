@@ -1,5 +1,5 @@
-//! The figures of `docs/tutorials`, drawn from the data in `docs/tutorials/data` alone. `HYSID_WRITE=1 cargo test -p
-//! hysid-cli --test suite tutorial_figures` draws them anew.
+//! The figures of `docs/tutorials`, drawn from the data in `docs/tutorials/data` alone. `HYSID_WRITE=1 cargo test
+//! --test tutorial_figures` draws them anew.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use hysid_document::chart::{Chart, Colour, Curve};
 const SIZE: (f64, f64) = (640.0, 360.0);
 
 fn docs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs")
 }
 
 /// The rows of a table of data as cells; `separator` is that of its columns.
@@ -35,7 +35,7 @@ fn points(rows: &[Vec<String>], [x, y]: [usize; 2], record: Option<&str>) -> Vec
 
 fn check(name: &str, chart: &Chart) {
     let place = docs().join("images").join(name);
-    let drawn = chart.file("hysid-cli/tests/tutorial_figures.rs");
+    let drawn = chart.file("lab/tests/tutorial_figures.rs");
     if std::env::var_os("HYSID_WRITE").is_some() {
         fs::write(&place, &drawn).unwrap();
     }
