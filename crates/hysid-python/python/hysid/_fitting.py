@@ -95,48 +95,52 @@ def fit(
         Model to fit. `auto` cross-validates networks and classical models and combines the best. Default: auto.
     members : int, optional
         Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts
-        that are combined. Default: 6 for auto, otherwise 1.
+        that are combined. Default: 6 for auto; otherwise 1.
     stops : int, optional
         Stop neurons of a network. Default: 10.
     hidden : int, optional
         Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100), of random-stops, or of each
-        hysteretic element (at most 60). Default: 10; neuro-madelung, duhem-nn and hysteretic elements 8, or 4
-        with degradation; random-stops none.
+        hysteretic element (at most 60). Default: 10 for networks; set by each candidate for auto; 8 for
+        neuro-madelung and duhem-nn; 8 (4 with degradation) for hysteretic-oscillator and
+        hysteretic-state-space; chosen by cross-validation for random-stops.
     relaxation : int, optional
-        Relaxation neurons of each input of xpnn+, for data with time stamps; 0 for none. Default: 4.
+        Relaxation neurons of each input of xpnn+, for data with time stamps; 0 for none. Default: 4 for
+        networks; set by each candidate for auto.
     no_deterioration : bool, optional
-        Use stops that do not deteriorate. Default: gpnn, xpnn and xpnn+ have stops that deteriorate; chosen by
-        cross-validation for auto.
+        Use stops that do not deteriorate. Default: off for networks; chosen by cross-validation for auto and
+        random-stops.
     history : bool, optional
-        Add the running peak and the travelled path of the input as inputs. Default: chosen by cross-validation
-        for auto, otherwise off.
+        Add the running peak and the travelled path of the input as inputs. Default: off for networks and
+        random-stops; chosen by cross-validation for auto.
     companding : float, optional
         Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as
-        0.1; 0 for off. Default: chosen by cross-validation for auto, otherwise off.
+        0.1; 0 for off. Default: chosen by cross-validation for auto; otherwise off.
     rate_companding : float, optional
         Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all
         rows stay below; 0 for off. Default: off.
     warm_up : int, optional
         Rows at the beginning of each record that drive the memory and are not trained on, for records that do
-        not begin in the virgin state. Default: chosen by cross-validation for auto, otherwise 0.
+        not begin in the virgin state. Default: chosen by cross-validation for auto; otherwise 0.
     initial_state : str, optional
         State of the memory at the beginning of each record: without history, after a visit of the upper or the
-        lower end of the input range, demagnetised, or unknown and found for each record. Default: virgin; for
-        auto, cross-validation chooses among virgin, a warm-up and unknown.
+        lower end of the input range, demagnetised, or unknown and found for each record. Default: chosen by
+        cross-validation for auto; otherwise virgin.
     training : str, optional
         Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic
         algorithm, or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default:
-        subgradient; levenberg-marquardt for the networks of auto.
+        subgradient.
     starts : int, optional
         Number of random starts: networks, populations or parameter sets from which the training begins.
-        Default: 2; 8 for levenberg-marquardt; 1 for hybrid and genetic; 16 for
-        rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for
-        generalized-prandtl-ishlinskii, 4 for models with inertia.
+        Default: 2 for subgradient and auto; 8 for levenberg-marquardt, bouc-wen, jiles-atherton and lugre; 1
+        for hybrid and genetic; 32 for generalized-prandtl-ishlinskii; 16 for rate-dependent-prandtl-ishlinskii,
+        neuro-madelung, peak-oriented and menegotto-pinto; 6 for duhem-nn; 4 for hysteretic-oscillator and
+        hysteretic-state-space.
     epochs : int, optional
         Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
-        iterations of the sub-gradient method; the hybrid uses half of them for each. Default: 400; 2000 for
-        hybrid and genetic; 40 for levenberg-marquardt, 25 for the networks of auto; 60 for
-        generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn, 200 for models with inertia.
+        iterations of the sub-gradient method; the hybrid uses half of them for each. Default: 400 for
+        subgradient; 2000 for hybrid and genetic; set by each candidate for auto; 60 for
+        generalized-prandtl-ishlinskii and neuro-madelung; 45 for duhem-nn; 200 for hysteretic-oscillator and
+        hysteretic-state-space; otherwise 40.
     population : int, optional
         Individuals of the genetic algorithm. Default: 50.
     stall : int, optional
@@ -149,23 +153,26 @@ def fit(
         all data. Default: the folds of a cross-validation.
     ridge : float, optional
         Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as in
-        the paper. Default: 1e-6, or nearly 0 where that lowers the cross-validation error; chosen by
-        cross-validation for auto.
+        the paper. Default: 1e-6, or nearly 0 where that lowers the cross-validation error for networks; chosen
+        by cross-validation for auto.
     decay : float, optional
-        Penalty on the squared weights of stops and tanh neurons. Default: 1e-7, otherwise as for ridge.
+        Penalty on the squared weights of stops and tanh neurons. Default: 1e-7, or nearly 0 where that lowers
+        the cross-validation error for networks; chosen by cross-validation for auto.
     operators : int, optional
         Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of
         duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none).
-        Default: 10 for generalized- and rate-dependent-prandtl-ishlinskii, 20 for modified-prandtl-ishlinskii,
-        300 for random-stops, 6 for duhem-nn and for hysteretic elements with degradation, none for others,
-        otherwise 30.
+        Default: set by each candidate for auto; 30 for masing, prandtl-ishlinskii and preisach; 20 for
+        modified-prandtl-ishlinskii; 10 for generalized-prandtl-ishlinskii and
+        rate-dependent-prandtl-ishlinskii; 6 for duhem-nn; 0 (6 with degradation) for hysteretic-oscillator and
+        hysteretic-state-space; 300 for random-stops.
     states : int, optional
         States of duhem-nn, driven by the input and by time (1 to 20), or memory states of each hysteretic
         element, which change only when its displacement changes (0 to 10; an element without memory states and
-        stops has no hysteresis). Default: 3; 2 for hysteretic elements, or 0 with degradation.
-    modes : int, optional
-        Modes of vibration of hysteretic-oscillator and hysteretic-state-space. Default: 1; 2 for
+        stops has no hysteresis). Default: 3 for duhem-nn; 2 (0 with degradation) for hysteretic-oscillator and
         hysteretic-state-space.
+    modes : int, optional
+        Modes of vibration of hysteretic-oscillator and hysteretic-state-space. Default: set by each candidate
+        for auto; 1 for hysteretic-oscillator; 2 for hysteretic-state-space.
     thresholds : array of numbers, optional
         Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of the
         input. Default: chosen by cross-validation.
@@ -178,7 +185,7 @@ def fit(
         own, in place of an exponential law. Default: true.
     logarithmic_thresholds : bool, optional
         Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate. Default:
-        linear.
+        off.
     degradation : bool, optional
         Use bouc-wen with the degradation and pinching of Baber and Noori, peak-oriented with softening and
         deterioration, or hysteretic-oscillator and hysteretic-state-space with stops that deteriorate. Default:
