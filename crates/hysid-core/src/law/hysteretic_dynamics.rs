@@ -333,7 +333,8 @@ pub(super) const fn defaults(modes: usize, degradation: bool) -> Defaults {
     }
 }
 
-/// Makes a law of a type that holds [`Dynamics`]: its form, its default number of modes, its words in errors, its name and its summary.
+/// Makes a law of a type that holds [`Dynamics`]: its form, its default number of modes, its words in errors, its name
+/// and its summary.
 macro_rules! law_of_dynamics {
     ($law:ident, $form:expr, $modes:literal, $words:literal, $name:literal, $summary:literal) => {
         impl $crate::law::Law for $law {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::model::Weights;
+use crate::options::preset::listed;
 use crate::significant::Significant;
 
 /// Cross-validation of candidates: the folds, and the error of each candidate.
@@ -106,14 +107,6 @@ fn counted(count: usize, kind: &str) -> String {
         (1, _) => format!("1 {one}"),
         (_, "dynamic") => format!("{count} models with inertia"),
         _ => format!("{count} {one}s"),
-    }
-}
-
-/// `a, b and c`.
-fn listed(parts: &[String]) -> String {
-    match parts {
-        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
-        _ => parts.concat(),
     }
 }
 

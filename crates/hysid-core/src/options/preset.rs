@@ -1,5 +1,6 @@
 //! Default values of options, typed: what the code takes and what help, pages and the Python package print.
 
+use std::borrow::Borrow;
 use std::fmt;
 
 use crate::options::ModelName;
@@ -36,7 +37,7 @@ impl fmt::Display for Preset {
             Self::Count(count) => write!(f, "{count}"),
             Self::WithDegradation(plain, degrading) => write!(f, "{plain} ({degrading} with degradation)"),
             Self::Penalty(penalty) => {
-                write!(f, "{penalty:e}, or nearly 0 where that lowers the cross-validation error")
+                write!(f, "{penalty:e} (nearly 0 where that lowers the cross-validation error)")
             }
             Self::Name(name) => f.write_str(name),
             Self::On => f.write_str("true"),
@@ -61,15 +62,15 @@ pub(super) fn in_words(option: &FitOption) -> String {
             None => groups.push((text, vec![name])),
         }
     }
-    let [(only, _)] = &groups[..] else {
-        let longest = groups.iter().map(|group| group.1.len()).max().unwrap_or_default();
-        let (mut named, otherwise): (Vec<_>, Vec<_>) =
-            groups.into_iter().partition(|group| group.1.len() < longest.max(MOST_NAMES + 1));
-        let otherwise = otherwise.into_iter().map(|(text, _)| format!("otherwise {text}"));
-        let named = named.drain(..).map(|(text, names)| format!("{text} for {}", listed(&names)));
-        return named.chain(otherwise).collect::<Vec<_>>().join("; ");
-    };
-    only.clone()
+    if let [(only, _)] = &groups[..] {
+        return only.clone();
+    }
+    let longest = groups.iter().map(|group| group.1.len()).max().unwrap_or_default();
+    let (named, otherwise): (Vec<_>, Vec<_>) =
+        groups.into_iter().partition(|group| group.1.len() < longest.max(MOST_NAMES + 1));
+    let named = named.into_iter().map(|(text, names)| format!("{text} for {}", listed(&names)));
+    let otherwise = otherwise.into_iter().map(|(text, _)| format!("otherwise {text}"));
+    named.chain(otherwise).collect::<Vec<_>>().join("; ")
 }
 
 /// The defaults of an option with the name of the model, or of the trainer where networks differ by it.
@@ -106,12 +107,11 @@ fn counts(law: ClassicalModel, option: &str) -> [usize; 2] {
         .map(|defaults| defaults.of(option).expect("an option that counts something"))
 }
 
-/// Names with commas, and `and` before the last.
-fn listed(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => (*one).into(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+/// `a, b and c`.
+pub(crate) fn listed<S: Borrow<str>>(parts: &[S]) -> String {
+    match parts {
+        [first @ .., last] if !first.is_empty() => format!("{} and {}", first.join(", "), last.borrow()),
+        _ => parts.concat(),
     }
 }
 

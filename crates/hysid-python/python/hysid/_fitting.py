@@ -153,11 +153,11 @@ def fit(
         all data. Default: the folds of a cross-validation.
     ridge : float, optional
         Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as in
-        the paper. Default: 1e-6, or nearly 0 where that lowers the cross-validation error for networks; chosen
-        by cross-validation for auto.
+        the paper. Default: 1e-6 (nearly 0 where that lowers the cross-validation error) for networks; chosen by
+        cross-validation for auto.
     decay : float, optional
-        Penalty on the squared weights of stops and tanh neurons. Default: 1e-7, or nearly 0 where that lowers
-        the cross-validation error for networks; chosen by cross-validation for auto.
+        Penalty on the squared weights of stops and tanh neurons. Default: 1e-7 (nearly 0 where that lowers the
+        cross-validation error) for networks; chosen by cross-validation for auto.
     operators : int, optional
         Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of
         duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none).
