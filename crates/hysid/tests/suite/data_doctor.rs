@@ -118,12 +118,10 @@ fn sound_data_are_not_complained_of() {
     assert_eq!(kinds(&rebuilt(time, x, y)), []);
     for law in [sliders as Law, friction, steel] {
         for wave in [Wave::Sine, Wave::Triangle] {
-            for seed in 0..4 {
-                let data = dataset(vec![delayed(law, wave, 1.0, 0.0025, 0.0, 6.0)]);
-                for percent in [0.0, 0.5, 2.0] {
-                    let found = doctor(&noisy(&data, percent, seed));
-                    assert!(found.is_empty(), "{wave:?} {percent} % {seed}: {found:#?}");
-                }
+            let data = dataset(vec![delayed(law, wave, 1.0, 0.0025, 0.0, 6.0)]);
+            for percent in [0.0, 2.0] {
+                let found = doctor(&noisy(&data, percent, 1));
+                assert!(found.is_empty(), "{wave:?} {percent} %: {found:#?}");
             }
         }
     }
@@ -146,16 +144,12 @@ fn specimens_are_not_complained_of_without_reason() {
             "terfenol-rod" => &[NotVirgin],
             _ => &[],
         };
-        for percent in [0.0, 0.5, 2.0] {
-            for seed in 0..5 {
-                for complaint in doctor(&noisy(&specimen.train(), percent, seed)) {
-                    let text = format!("{} {percent} % seed {seed}: {complaint:#?}", specimen.name);
-                    assert!(true_of_it.contains(&complaint.kind), "{text}");
-                    if complaint.kind == Lag {
-                        // A lag of 0.15 ms and a resonance that adds 0.02 ms.
-                        assert!((0.1e-3..0.25e-3).contains(&complaint.value.unwrap()), "{text}");
-                    }
-                }
+        for complaint in doctor(&noisy(&specimen.train(), 0.5, 1)) {
+            let text = format!("{}: {complaint:#?}", specimen.name);
+            assert!(true_of_it.contains(&complaint.kind), "{text}");
+            if complaint.kind == Lag {
+                // A lag of 0.15 ms and a resonance that adds 0.02 ms.
+                assert!((0.1e-3..0.25e-3).contains(&complaint.value.unwrap()), "{text}");
             }
         }
     }
@@ -180,32 +174,27 @@ fn ahead(law: Law, wave: Wave, frequency: f64, step: f64, delay: f64, periods: f
 
 const LAWS: [(&str, Law); 3] = [("sliders", sliders), ("friction", friction), ("steel", steel)];
 
+/// Every seventh of the 108 cases, in which each law, wave, speed, sign and noise occurs with several of the others.
 #[test]
 fn a_delay_of_half_a_millisecond_is_found_at_one_speed() {
-    for (name, law) in LAWS {
-        for wave in [Wave::Sine, Wave::Triangle] {
-            for (frequency, step) in [(1.0, 1e-3), (10.0, 2e-4), (50.0, 5e-5)] {
-                for sign in [1.0, -1.0, 0.0] {
-                    let record = match sign {
-                        -1.0 => ahead(law, wave, frequency, step, DELAY, 10.0),
-                        _ => delayed(law, wave, frequency, step, sign * DELAY, 10.0),
-                    };
-                    for percent in [0.0, 0.5] {
-                        let found = lag(&noisy(&dataset(vec![record.clone()]), percent, 7));
-                        let text = format!(
-                            "{name} {wave:?} {frequency} Hz, step {step}, {sign}, {percent} %: {found:?}"
-                        );
-                        println!("{text}");
-                        // What is said is right, however little there is to say it from.
-                        assert!(found.is_none_or(|lag| (lag / DELAY - sign).abs() < 0.1), "{text}");
-                        // A corner of the input between two rows, and a delay to the next of them, are a jump.
-                        let corner_between = wave == Wave::Triangle && step > DELAY && sign == -1.0;
-                        let tells = percent == 0.0 && !corner_between || frequency == 50.0 && name != "steel";
-                        assert!(found.is_some() || sign == 0.0 || !tells, "{text}");
-                    }
-                }
-            }
-        }
+    for case in (0..108).step_by(7) {
+        let (name, law) = LAWS[case % 3];
+        let wave = [Wave::Sine, Wave::Triangle][case / 3 % 2];
+        let (frequency, step) = [(1.0, 1e-3), (10.0, 2e-4), (50.0, 5e-5)][case / 6 % 3];
+        let sign = [1.0, -1.0, 0.0][case / 18 % 3];
+        let percent = [0.0, 0.5][case / 54];
+        let record = match sign {
+            -1.0 => ahead(law, wave, frequency, step, DELAY, 10.0),
+            _ => delayed(law, wave, frequency, step, sign * DELAY, 10.0),
+        };
+        let found = lag(&noisy(&dataset(vec![record]), percent, 7));
+        let text = format!("{name} {wave:?} {frequency} Hz, step {step}, {sign}, {percent} %: {found:?}");
+        // What is said is right, however little there is to say it from.
+        assert!(found.is_none_or(|lag| (lag / DELAY - sign).abs() < 0.1), "{text}");
+        // A corner of the input between two rows, and a delay to the next of them, are a jump.
+        let corner_between = wave == Wave::Triangle && step > DELAY && sign == -1.0;
+        let tells = percent == 0.0 && !corner_between || frequency == 50.0 && name != "steel";
+        assert!(found.is_some() || sign == 0.0 || !tells, "{text}");
     }
 }
 
@@ -216,17 +205,11 @@ fn at_speeds(law: Law, wave: Wave, delay: f64) -> Dataset {
 
 #[test]
 fn a_delay_of_half_a_millisecond_is_found_at_three_speeds() {
-    for (name, law) in LAWS {
-        for wave in [Wave::Sine, Wave::Triangle] {
-            for percent in [0.0, 0.5] {
-                let text = format!("{name} {wave:?} {percent} %");
-                let found = lag(&noisy(&at_speeds(law, wave, DELAY), percent, 3)).expect(&text);
-                println!("{text}: {found}");
-                assert!((found / DELAY - 1.0).abs() < 0.1, "{text}: {found}");
-                assert_eq!(kinds(&noisy(&at_speeds(law, wave, 0.0), percent, 3)), [], "{text}");
-            }
-        }
+    for ((name, law), wave) in LAWS.into_iter().zip([Wave::Sine, Wave::Triangle, Wave::Sine]) {
+        let found = lag(&noisy(&at_speeds(law, wave, DELAY), 0.5, 3)).expect(name);
+        assert!((found / DELAY - 1.0).abs() < 0.1, "{name} {wave:?}: {found}");
     }
+    assert_eq!(kinds(&noisy(&at_speeds(friction, Wave::Triangle, 0.0), 0.5, 3)), []);
 }
 
 /// The output with a viscous part, `c x'`, or with that of a spring behind a dashpot, `z' = k x' - z/T`.
@@ -246,15 +229,10 @@ fn with_rate(record: &Record, viscous: bool) -> Record {
 
 #[test]
 fn what_depends_on_the_rate_is_no_delay() {
-    for wave in [Wave::Sine, Wave::Triangle] {
-        for viscous in [true, false] {
-            for percent in [0.0, 0.5] {
-                let sound = at_speeds(sliders, wave, 0.0);
-                let data = dataset(sound.records().iter().map(|r| with_rate(r, viscous)).collect());
-                let found = lag(&noisy(&data, percent, 3));
-                assert_eq!(found, None, "{wave:?}, viscous {viscous}, {percent} %");
-            }
-        }
+    for (wave, viscous, percent) in [(Wave::Sine, true, 0.0), (Wave::Triangle, false, 0.5)] {
+        let sound = at_speeds(sliders, wave, 0.0);
+        let data = dataset(sound.records().iter().map(|r| with_rate(r, viscous)).collect());
+        assert_eq!(lag(&noisy(&data, percent, 3)), None, "{wave:?}, viscous {viscous}, {percent} %");
     }
 }
 

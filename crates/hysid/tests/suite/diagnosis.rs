@@ -75,17 +75,18 @@ fn no_verdict_is_wrong_without_noise() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Prints the table of `docs/diagnosis.md`: `cargo test --release -p hysid --test suite -- --nocapture diagnosis::table`.
+/// Prints the table of `docs/diagnosis.md`:
+/// `HYSID_SEEDS=50 cargo test --release -p hysid --test suite -- --nocapture diagnosis::hardly`.
 #[test]
-fn hardly_any_verdict_is_wrong_under_noise_table() {
-    const SEEDS: u64 = 50;
+fn hardly_any_verdict_is_wrong_under_noise() {
+    let seeds = std::env::var("HYSID_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(1);
     let subjects = all();
     for (percent, allowed) in [(0.5, 0.0), (2.0, 0.02)] {
-        println!("\nNoise of {percent} % of the range, {SEEDS} seeds: right / wrong / not testable\n");
+        println!("\nNoise of {percent} % of the range, {seeds} seeds: right / wrong / not testable\n");
         let (mut right, mut wrong, mut none) = (0, 0, 0);
         for subject in &subjects {
             let known = |property: Property| (subject.truth)(property).is_some();
-            let counts = counts(subject, percent, SEEDS);
+            let counts = counts(subject, percent, seeds);
             let cells: Vec<String> = counts
                 .iter()
                 .map(|(property, count)| match known(*property) {
@@ -152,8 +153,8 @@ fn the_published_indices_are_found() {
 fn noise_alone_gives_the_index_that_is_said() {
     let options = DiagnosisOptions { smoothing: false, ..DiagnosisOptions::default() };
     for subject in laws().into_iter().filter(|subject| (subject.truth)(Property::WipingOut) == Some(true)) {
-        for percent in [0.2, 1.0] {
-            const SEEDS: u64 = 30;
+        for percent in [1.0] {
+            const SEEDS: u64 = 4;
             let (mut index, mut said) = (0.0, 0.0);
             for seed in 1..=SEEDS {
                 let diagnosis = Diagnosis::of(&noisy(&subject.data, percent, seed), &options).unwrap();
@@ -176,22 +177,15 @@ fn noise_alone_gives_the_index_that_is_said() {
 #[test]
 fn a_delay_of_half_a_millisecond_is_found() {
     let steel = |x: &[f64]| subjects::m330(x).records()[0].output().to_vec();
-    for sampling in [1e-4, 5e-4, 1e-3] {
-        for percent in [0.0, 0.5] {
-            for (name, data) in [
-                (
-                    "Prandtl-Ishlinskii",
-                    subjects::at_three_speeds(subjects::prandtl_ishlinskii, sampling, 5e-4),
-                ),
-                ("Preisach", subjects::at_three_speeds(steel, sampling, 5e-4)),
-            ] {
-                let diagnosis =
-                    Diagnosis::of(&noisy(&data, percent, 7), &DiagnosisOptions::default()).unwrap();
-                let delay = diagnosis.delay.expect("a delay");
-                println!("{name}, {sampling} s, {percent} %: {delay:?}");
-                assert!((delay.time - 5e-4).abs() < 5e-5, "{name}: {delay:?}");
-                assert_ne!(diagnosis.verdict(Property::RateDependence), Verdict::Yes, "{name}");
-            }
+    for (sampling, percent) in [(1e-4, 0.0), (1e-3, 0.5)] {
+        for (name, data) in [
+            ("Prandtl-Ishlinskii", subjects::at_three_speeds(subjects::prandtl_ishlinskii, sampling, 5e-4)),
+            ("Preisach", subjects::at_three_speeds(steel, sampling, 5e-4)),
+        ] {
+            let diagnosis = Diagnosis::of(&noisy(&data, percent, 7), &DiagnosisOptions::default()).unwrap();
+            let delay = diagnosis.delay.expect("a delay");
+            assert!((delay.time - 5e-4).abs() < 5e-5, "{name}, {sampling} s, {percent} %: {delay:?}");
+            assert_ne!(diagnosis.verdict(Property::RateDependence), Verdict::Yes, "{name}");
         }
     }
 }
@@ -199,7 +193,7 @@ fn a_delay_of_half_a_millisecond_is_found() {
 #[test]
 fn without_a_delay_none_is_found_and_the_rate_does_not_matter() {
     for sampling in [2e-4, 1e-3] {
-        for seed in 1..=10 {
+        for seed in 1..=2 {
             let data = subjects::at_three_speeds(subjects::prandtl_ishlinskii, sampling, 0.0);
             let diagnosis = Diagnosis::of(&noisy(&data, 0.5, seed), &DiagnosisOptions::default()).unwrap();
             assert_eq!(diagnosis.delay, None);

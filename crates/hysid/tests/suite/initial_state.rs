@@ -338,17 +338,21 @@ fn a_forecast_begins_with_the_state_of_its_record() {
     assert!(found < told + 0.1 && found < virgin - 0.5, "{found} found, {told} told, {virgin} virgin");
 }
 
-#[test]
-fn auto_finds_states_where_they_matter_and_says_so() {
-    let (train, test) = remanent();
+/// The automatic model with few candidates, so that it is quick.
+fn few_candidates() -> FitSpec {
     let FitSpec::Auto(options) = small(ModelName::AUTO, None) else { panic!("auto was asked for") };
-    // Few candidates, so that it is quick.
-    let auto = FitSpec::Auto(AutoOptions {
+    FitSpec::Auto(AutoOptions {
         companding: Some(false),
         history: Some(false),
         deterioration: Some(false),
         ..options
-    });
+    })
+}
+
+#[test]
+fn auto_finds_states_where_they_matter_and_says_so() {
+    let (train, test) = remanent();
+    let auto = few_candidates();
     let model = fitted(&train, &auto);
     let selection = model.provenance().selection.as_ref().unwrap();
     let found = selection.found_states.expect("states that were found");
@@ -366,7 +370,7 @@ fn auto_finds_states_where_they_matter_and_says_so() {
 #[test]
 fn data_that_begin_virgin_keep_their_model() {
     let data = untimed(["a", "b", "c"].map(|name| without_time(&record(150, name))).into());
-    let auto = small(ModelName::AUTO, None);
+    let auto = few_candidates();
     let model = fitted(&data, &auto);
     assert!(model.lead_in().is_empty());
     assert_eq!(model.provenance().selection.as_ref().unwrap().found_states, None);

@@ -40,7 +40,7 @@ fn errors_are_the_same_wherever_the_input_is() {
         let there = shifted(0.0);
         let expected = error(&fitted(&there, model), &there);
         // The automatic model takes the others' time together.
-        let offsets: &[f64] = if model == ModelName::AUTO { &[1e3] } else { &[1.5, -30.0, 1e3, 1e6] };
+        let offsets: &[f64] = if model == ModelName::AUTO { &[1e3] } else { &[-30.0, 1e6] };
         for offset in offsets {
             let data = shifted(offset * half);
             let model = fitted(&data, model);
