@@ -4,6 +4,7 @@ pub mod genetic;
 pub mod levenberg_marquardt;
 pub(crate) mod multi_start;
 pub(crate) mod non_negative;
+pub(crate) mod parallel;
 pub(crate) mod random;
 pub(crate) mod ridge;
 pub mod space_dilatation;

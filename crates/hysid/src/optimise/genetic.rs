@@ -15,11 +15,11 @@
 
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, OptionError, Result};
 use crate::optimise::MOST_COUNTED;
+use crate::optimise::parallel;
 use crate::optimise::random::mix;
 use crate::options::network::POPULATIONS;
 
@@ -82,10 +82,8 @@ impl Genetic {
         if problem.bounds.is_empty() || !problem.bounds.iter().all(sound) {
             return Err(Error::Parts("a genetic search needs finite bounds, the lower one first".into()));
         }
-        let population = (0..size)
-            .into_par_iter()
-            .map(|index| problem.individual(draw(&mut generator(problem.seed, 0, index))))
-            .collect();
+        let drawn = |index| problem.individual(draw(&mut generator(problem.seed, 0, index)));
+        let population = parallel::numbered(size, drawn);
         Ok(Self { population, generation: 0, evaluations: size })
     }
 
@@ -110,11 +108,11 @@ impl Genetic {
         let elite: Vec<Individual> =
             order[..ELITE].iter().map(|&index| self.population[index].clone()).collect();
         let parents = &self.population;
-        let children = (ELITE..size).into_par_iter().map(|index| {
-            let mut generator = generator(problem.seed, self.generation, index);
+        let children = parallel::numbered(size - ELITE, |child| {
+            let mut generator = generator(problem.seed, self.generation, ELITE + child);
             problem.individual(problem.child(parents, &mut generator))
         });
-        self.population = elite.into_par_iter().chain(children).collect();
+        self.population = [elite, children].concat();
         self.evaluations += size - ELITE;
     }
 

@@ -8,8 +8,7 @@
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
-use rayon::prelude::*;
-
+use crate::optimise::parallel;
 use crate::termination::Termination;
 
 /// A start on its way.
@@ -60,7 +59,7 @@ impl<S: Start> MultiStart<S> {
         mut tell: impl FnMut(&Self, usize) -> ControlFlow<()>,
     ) -> Termination {
         for round in 1..=plan.rounds {
-            self.starts.par_iter_mut().for_each(|start| advance(start, round));
+            parallel::each_taken(&mut self.starts, |start| advance(start, round));
             self.sort();
             let judged = round.saturating_sub(plan.spared);
             if judged > 0 && judged.is_multiple_of(plan.to_prove_itself) {

@@ -5,8 +5,6 @@
 
 use std::borrow::Cow;
 
-use rayon::prelude::*;
-
 use crate::data::initial_state::InitialState;
 use crate::data::record::{Dataset, Record};
 use crate::error::Result;
@@ -19,6 +17,7 @@ use crate::fit::initial_state::{self, QUICK_INTERVALS, found_on, known};
 use crate::fit::law::hysteretic_dynamics::first_second_difference;
 use crate::law::facts::Origin;
 use crate::model::selection::{FoundStates, WarmUp};
+use crate::optimise::parallel;
 use crate::options::FitSpec;
 use crate::options::auto::AutoOptions;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -171,8 +170,9 @@ fn found(
     let is_to_stop = || work.is_to_stop();
     let stop = StopCheck::new(&is_to_stop);
     let (rate, seed) = (options.rate, options.seed);
-    let begun: Vec<Fold> =
-        folds.par_iter().map(|fold| found_on(fold, rate, seed, stop).ok()?).collect::<Option<_>>()?;
+    let begun: Vec<Fold> = parallel::each(folds, |fold| found_on(fold, rate, seed, stop).ok()?)
+        .into_iter()
+        .collect::<Option<_>>()?;
     let data = initial_state::found(data, rate, seed, stop).ok()??;
     let percent = |folds: &[Fold]| -> Option<f64> {
         let held_out: Vec<HeldOut> = folds.iter().cloned().map(HeldOut::of).collect();

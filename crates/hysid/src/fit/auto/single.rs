@@ -12,8 +12,6 @@
 //! at a half and three quarters of their size, and `σ` the standard deviation of the measured output. A network can
 //! predict all held-out rows well and still diverge on other paths.
 
-use rayon::prelude::*;
-
 use crate::data::record::{Dataset, Record, Thinning};
 use crate::error::Result;
 use crate::fit::auto::candidates::{Candidate, Kind};
@@ -26,6 +24,7 @@ use crate::fit::law::search::spread;
 use crate::model::input_transform::{InputTransform, origin};
 use crate::model::selection::SingleModel;
 use crate::model::{HeldOutRow, Model, Predictor};
+use crate::optimise::parallel;
 use crate::options::auto::AutoOptions;
 
 /// Starts from which a model is distilled, on everything and on each fold.
@@ -62,7 +61,9 @@ struct Taught {
 
 impl Taught {
     fn of(records: Vec<Record>, ensemble: &Model) -> Result<Self> {
-        let predicted = records.par_iter().map(|record| ensemble.simulate(record)).collect::<Result<_>>()?;
+        let predicted = parallel::each(&records, |record| ensemble.simulate(record))
+            .into_iter()
+            .collect::<Result<_>>()?;
         Ok(Self { records, predicted })
     }
 
@@ -91,8 +92,9 @@ impl Taught {
             let output = model.simulate(record)?;
             Ok(output.iter().zip(predicted).map(|(a, b)| (a - b) * (a - b)).sum())
         };
-        let squares: Vec<f64> =
-            self.records.par_iter().zip(&self.predicted).map(of_record).collect::<Result<_>>()?;
+        let squares: Vec<f64> = parallel::each_taken(self.records.iter().zip(&self.predicted), of_record)
+            .into_iter()
+            .collect::<Result<_>>()?;
         Ok(squares.iter().sum())
     }
 
@@ -264,13 +266,12 @@ fn distilled(
     let distance = |model: &Model| -> Result<f64> {
         Ok(measured.square_distance(model)? + unmeasured.square_distance(model)?)
     };
-    let fitted: Vec<Option<(f64, Model)>> = (0..starts)
-        .into_par_iter()
-        .map(|start| {
-            let Some(fitted) = work.fit(candidate, &taught, start)? else { return Ok(None) };
-            Ok(Some((distance(&fitted.model)?, fitted.model)))
-        })
-        .collect::<Result<_>>()?;
+    let of_start = |start| {
+        let Some(fitted) = work.fit(candidate, &taught, start)? else { return Ok(None) };
+        Ok(Some((distance(&fitted.model)?, fitted.model)))
+    };
+    let fitted: Vec<Option<(f64, Model)>> =
+        parallel::numbered(starts, of_start).into_iter().collect::<Result<_>>()?;
     let nearest = fitted.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
     Ok(nearest.map(|(_, model)| model))
 }

@@ -3,8 +3,6 @@
 //! further starts and members come last. Candidates with errors far above the best are dropped after their
 //! first folds.
 
-use rayon::prelude::*;
-
 use crate::fit::auto::candidates::{Candidate, Kind};
 use crate::fit::auto::combination::Combination;
 use crate::fit::auto::prior::Evidence;
@@ -13,6 +11,7 @@ use crate::fit::auto::trial::{Bench, Trial};
 use crate::fit::auto::tried::{Standing, Tried};
 use crate::fit::network::Progress;
 use crate::model::Model;
+use crate::optimise::parallel;
 use crate::options::auto::AutoOptions;
 
 /// Candidates that are tried side by side. It does not depend on the number of threads, nor does the result.
@@ -279,7 +278,7 @@ impl Stages<'_, '_, '_> {
             let next = if is_without_noise { law.thorough() } else { law.near(searched) };
             Hasty { law: next, model, is_worth }
         };
-        let tried: Vec<Hasty> = laws.into_par_iter().map(fit).collect();
+        let tried: Vec<Hasty> = parallel::each_taken(laws, fit);
         let (worth, not): (Vec<Hasty>, Vec<Hasty>) = tried.into_iter().partition(|hasty| hasty.is_worth);
         for Hasty { law, model, .. } in not {
             let tried = Tried {

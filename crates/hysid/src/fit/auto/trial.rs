@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-
 use crate::data::record::Dataset;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::work::Work;
 use crate::fit::law::search::spread;
 use crate::model::{Excursion, Model, Predictions};
+use crate::optimise::parallel;
 use crate::validation::Fold;
 
 /// A fold with its held-out rows.
@@ -212,7 +211,7 @@ impl Bench<'_, '_, '_> {
             }))
         };
         let jobs: Vec<Job> = places.iter().flat_map(of_trial).collect();
-        let fitted: Vec<Option<Tried>> = jobs.par_iter().map(|job| self.run(trials, job)).collect();
+        let fitted: Vec<Option<Tried>> = parallel::each(&jobs, |job| self.run(trials, job));
         for (job, fitted) in jobs.iter().zip(fitted) {
             let trial = &mut trials[job.trial];
             match (fitted, job.fold) {
@@ -256,7 +255,7 @@ pub(super) fn fit_members(trials: &mut [Trial], wanted: &[(usize, usize)], data:
         let fitted = work.fit(&trials[place].candidate, data, start).ok().flatten();
         fitted.map(|fitted| fitted.model)
     };
-    let fitted: Vec<Option<Model>> = missing.par_iter().map(fit).collect();
+    let fitted: Vec<Option<Model>> = parallel::each(&missing, fit);
     for (&&(place, start), model) in missing.iter().zip(fitted) {
         if let Some(model) = model {
             trials[place].members.insert(start, model);

@@ -12,8 +12,6 @@
 //! small system. `J` is lowered record by record, until no record changes or after four rounds, from several
 //! beginnings: all records virgin, all after the upper end of the range, all after the lower end.
 
-use rayon::prelude::*;
-
 use crate::data::initial_state::lead_ins_tried;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
@@ -27,6 +25,7 @@ use crate::law::series::Series;
 use crate::model::input_transform::Transformed;
 use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::Penalty;
+use crate::optimise::parallel;
 use crate::options::input_options::InputOptions;
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
@@ -118,7 +117,7 @@ impl Features {
             let seen = Transformed::of(&begun, &InputOptions::default(), self.rate, Origin::OfData)?;
             seen.data.records().iter().map(|record| self.sums_of(record, seen.rate, stop)).collect()
         };
-        let by_lead_in: Vec<Vec<Sums>> = tried.par_iter().map(with).collect::<Result<_>>()?;
+        let by_lead_in: Vec<Vec<Sums>> = parallel::each(tried, with).into_iter().collect::<Result<_>>()?;
         let mut columns: Vec<_> = by_lead_in.into_iter().map(Vec::into_iter).collect();
         let records = 0..data.records().len();
         Ok(records.map(|_| columns.iter_mut().filter_map(Iterator::next).collect()).collect())
@@ -165,9 +164,9 @@ impl Search<'_> {
             Some(before) => vec![before.most_frequent],
             None => BEGINNINGS.collect(),
         };
-        let ends =
-            beginnings.into_par_iter().map(|beginning| self.descended(vec![beginning; self.sums.len()]));
-        let ends: Vec<(f64, Vec<usize>)> = ends.collect::<Option<_>>()?;
+        let descended = |beginning| self.descended(vec![beginning; self.sums.len()]);
+        let ends: Vec<(f64, Vec<usize>)> =
+            parallel::each_taken(beginnings, descended).into_iter().collect::<Option<_>>()?;
         let (lowest, chosen) = ends.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         let virgin = vec![0; self.sums.len()];
         let from_virgin = self.features.objective(&self.total(&virgin), self.stop)?;

@@ -14,9 +14,6 @@
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
-use rand::RngExt;
-use rayon::prelude::*;
-
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, LARGEST_VALUE, Result};
@@ -33,11 +30,13 @@ use crate::linear_algebra::{Gram, Symmetric};
 use crate::model::input_transform::common_magnitude;
 use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, step_within};
 use crate::optimise::multi_start::{MultiStart, Plan, Start};
+use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalOptions;
 use crate::options::table::check_counts;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
+use rand::RngExt;
 
 /// Share of the data that judges the starts.
 const HELD_OUT: f64 = 0.25;
@@ -97,7 +96,7 @@ struct Training<'a> {
 impl<'a> Training<'a> {
     fn new(kept: &'a Task<'a>, held: Option<&'a Task<'a>>, effort: Effort) -> Result<Self> {
         let begin = |start| Walk::new(kept, kept.random(effort.seed, start));
-        let mut walks = MultiStart::new((0..effort.starts).into_par_iter().map(begin).collect());
+        let mut walks = MultiStart::new(parallel::numbered(effort.starts, begin));
         walks.sort();
         if walks.best().value().objective == f64::INFINITY {
             return Err(Error::Stopped);

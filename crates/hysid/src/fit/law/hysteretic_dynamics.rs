@@ -16,7 +16,6 @@ mod task;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
-use rayon::prelude::*;
 use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
@@ -28,6 +27,7 @@ use crate::law::Classical;
 use crate::law::hysteretic_dynamics::{Dynamics, Element, Form, LIMITS, Layout, Shape};
 use crate::optimise::levenberg_marquardt::LevenbergMarquardt;
 use crate::optimise::multi_start::{MultiStart, Plan, Start};
+use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalOptions;
 use crate::options::table::{check, check_counts};
@@ -161,7 +161,7 @@ pub(super) fn identify(
     };
 
     let begin = |start: usize| Walk::new(&tasks.early, &beginning(start), Kind::of(start, asked));
-    let mut walks = MultiStart::new((0..effort.starts).into_par_iter().map(begin).collect());
+    let mut walks = MultiStart::new(parallel::numbered(effort.starts, begin));
     walks.sort();
     if walks.best().value().objective == f64::INFINITY {
         return Err(Error::Stopped);

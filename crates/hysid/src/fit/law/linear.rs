@@ -14,8 +14,6 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{DataProblem, Error, Result};
@@ -23,6 +21,7 @@ use crate::law::series::Series;
 use crate::linear_algebra::{Batch, Gram, Symmetric};
 use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
+use crate::optimise::parallel;
 use crate::options::classical::Sign;
 use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
@@ -163,7 +162,7 @@ impl FoldSums {
             let candidates = solve(&rest.quadratic())?;
             Some(candidates.iter().map(|weights| fold.mean_square_error(weights).ln()).collect())
         };
-        let by_fold: Vec<Option<Vec<f64>>> = held_out.par_iter().map(judge).collect();
+        let by_fold: Vec<Option<Vec<f64>>> = parallel::each(&held_out, judge);
         let by_fold: Vec<Vec<f64>> = by_fold.into_iter().flatten().collect();
         let mut mean = vec![0.0; by_fold.first()?.len()];
         for scores in &by_fold {

@@ -7,12 +7,11 @@
 //! `z` are the variables of the fit: the searched parameters on the scale of the search, 0 to 1, and the weights that
 //! follow by least squares. `ŷ_t` is the free run at the scored rows of the fit and `p_i` are the parameters of the law.
 
-use rayon::prelude::*;
-
 use crate::data::record::Thinning;
 use crate::fit::law::search::{Columns, Family};
 use crate::law::Law;
 use crate::law::series::Series;
+use crate::optimise::parallel;
 use crate::stop_check::StopCheck;
 
 /// Step of a difference, as a share of the range of the search.
@@ -109,7 +108,7 @@ pub(crate) fn of_search<F: LawFamily>(family: &F, series: &[Series], law: &F::La
             range: Some(1.0),
         }
     };
-    let mut found: Vec<FitVariable> = (0..u.len()).into_par_iter().map(of_search).collect();
+    let mut found: Vec<FitVariable> = parallel::numbered(u.len(), of_search);
     let of_weights = here.into_columns().into_iter().zip(&weights).zip(family.non_negative());
     found.extend(
         of_weights.map(|((column, &weight), &bounded)| FitVariable::weight(column, bounded && weight == 0.0)),

@@ -25,11 +25,10 @@ use crate::network::scaling::Scaling;
 use crate::operator::play;
 use crate::optimise::levenberg_marquardt::{self, LevenbergMarquardt, Rules, Slope};
 use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
+use crate::optimise::parallel;
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
-use rayon::prelude::*;
-
 /// Most dead zones on each side.
 const MOST_DEAD_ZONES: usize = 100;
 
@@ -81,7 +80,7 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
             Err(Error::Stopped) => Ok(f64::INFINITY),
             score => score,
         };
-        let scores: Vec<f64> = candidates.par_iter().map(score).collect::<Result<_>>()?;
+        let scores: Vec<f64> = parallel::each(&candidates, score).into_iter().collect::<Result<_>>()?;
         let (grid, prior) = candidates[lowest(&scores)];
         let problem = &problems[grid];
         let start = problem.convex_start(prior, stop)?;

@@ -13,8 +13,6 @@
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
-use rayon::prelude::*;
-
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
@@ -29,6 +27,7 @@ use crate::law::{Classical, Law};
 use crate::linear_algebra::{Symmetric, dot};
 use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, damped_step};
 use crate::optimise::multi_start::{MultiStart, Plan, Start};
+use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalOptions;
 use crate::stop_check::{Pace, StopCheck};
@@ -76,8 +75,7 @@ struct Training<'a> {
 
 impl<'a> Training<'a> {
     fn new(kept: &'a Task<'a>, held: &'a Task<'a>, effort: Effort) -> Self {
-        let walks =
-            (0..effort.starts).into_par_iter().map(|start| Walk::new(kept, effort.seed, start)).collect();
+        let walks = parallel::numbered(effort.starts, |start| Walk::new(kept, effort.seed, start));
         Self { kept, held, walks: MultiStart::new(walks), epochs: effort.epochs }
     }
 

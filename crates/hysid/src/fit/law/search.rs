@@ -24,7 +24,6 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use rand::RngExt;
-use rayon::prelude::*;
 use serde_json::json;
 
 use crate::error::{Error, Result};
@@ -32,6 +31,7 @@ use crate::fit::law::linearised::LawFamily;
 use crate::law::series::Series;
 use crate::law::{Classical, Law};
 use crate::optimise::multi_start::{MultiStart, Plan};
+use crate::optimise::parallel;
 use crate::optimise::random::generator;
 use crate::options::classical::ClassicalOptions;
 use crate::options::table::check;
@@ -366,7 +366,7 @@ fn beginnings(objective: &Objective<'_>, effort: &Effort) -> Vec<Descent> {
         }
         (square_residual, u)
     };
-    let mut points: Vec<(f64, Vec<f64>)> = (0..count).into_par_iter().map(reached).collect();
+    let mut points: Vec<(f64, Vec<f64>)> = parallel::numbered(count, reached);
     if objective.stop.is_asked() {
         return best.into_inner().ok().flatten().into_iter().collect();
     }
@@ -390,7 +390,7 @@ fn beginnings(objective: &Objective<'_>, effort: &Effort) -> Vec<Descent> {
         let value = objective.value(&u);
         Descent::new(u, value)
     };
-    let begun: Vec<Descent> = chosen.into_par_iter().map(begin).collect();
+    let begun: Vec<Descent> = parallel::each_taken(chosen, begin);
     match begun[0].value().square_residual {
         UNFINISHED => best.into_inner().ok().flatten().into_iter().collect(),
         _ => begun,

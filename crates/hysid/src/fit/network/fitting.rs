@@ -7,7 +7,6 @@
 //! data, so that the observer can store it. No run depends on another, nor on how many advance
 //! together.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::data::FEWEST_ROWS;
@@ -28,6 +27,7 @@ use crate::model::{Found, Model, Predictor};
 use crate::network::free_run::FreeRun;
 use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Network};
+use crate::optimise::parallel;
 use crate::options::network::{FitOptions, Regularisation, Trainer};
 use crate::options::{FitSpec, ModelName};
 use crate::stop_check::StopCheck;
@@ -481,7 +481,7 @@ impl<'a> Fitting<'a> {
                 let run = TrainingRun::new(objective, options, stage.phase, start, stage.epochs, from);
                 if objective.is_long() && observer.is_over() { Ok(None) } else { run.map(Some) }
             };
-            let begun = next.into_par_iter().map(begin).collect::<Result<Vec<_>>>()?;
+            let begun = parallel::each_taken(next, begin).into_iter().collect::<Result<Vec<_>>>()?;
             // In their order, so that a fit that is resumed begins with the first that is missing.
             runs.extend(begun.into_iter().map_while(|run| run));
             let advance = |(index, run): (usize, &mut TrainingRun)| {
@@ -496,8 +496,9 @@ impl<'a> Fitting<'a> {
                     None => Ok(advanced?.then_some(index)),
                 }
             };
-            let under_way = runs.par_iter_mut().enumerate().filter(|(_, run)| !run.is_over());
-            let advanced: Vec<Option<usize>> = under_way.map(advance).collect::<Result<_>>()?;
+            let under_way = runs.iter_mut().enumerate().filter(|(_, run)| !run.is_over());
+            let advanced: Vec<Option<usize>> =
+                parallel::each_taken(under_way, advance).into_iter().collect::<Result<_>>()?;
             let is_over = runs.len() == all && runs.iter().all(TrainingRun::is_over);
             if observer.is_over() {
                 if !runs.is_empty() {

@@ -1,8 +1,6 @@
 //! The linear system that a search begins with: modes one after the other, each the best of a grid of frequencies and
 //! damping ratios, then all together by Levenberg-Marquardt.
 
-use rayon::prelude::*;
-
 use super::records::Records;
 use super::task::{Beginning, Begun, Task, Value};
 use super::{Asked, Kind};
@@ -11,6 +9,7 @@ use crate::law::hysteretic_dynamics::{
 };
 use crate::linear_algebra::{Gram, Symmetric};
 use crate::optimise::levenberg_marquardt::LevenbergMarquardt;
+use crate::optimise::parallel;
 use crate::stop_check::StopCheck;
 
 /// Rows of the grid at most, at the beginning of the records.
@@ -278,8 +277,8 @@ fn best_of_grid(
         let (square, gain, velocity) = linear_part(&run.gram(&layout)?, &layout)?;
         Some((square, Mode { gain, velocity_in_output: velocity, ..tried.modes[system.modes.len()] }))
     };
-    let found: Vec<(f64, Mode)> = points.par_iter().filter_map(of_point).collect();
-    found.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
+    let found = parallel::each(&points, of_point).into_iter().flatten();
+    found.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
 }
 
 const NO_ELEMENT: Shape = Shape { stops: 0, states: 0, neurons: 1, deteriorates: false };

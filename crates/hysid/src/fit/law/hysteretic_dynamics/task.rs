@@ -2,13 +2,12 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use super::EXPECTED_SQUARE;
 use crate::error::LARGEST_VALUE;
 use crate::law::hysteretic_dynamics::{DAMPING_RATIOS, Drive, Dynamics, LARGEST_WEIGHT, Layout, Run};
 use crate::linear_algebra::{Gram, Symmetric};
 use crate::optimise::levenberg_marquardt::{Problem, Rules, Slope, step_within};
+use crate::optimise::parallel;
 use crate::stop_check::StopCheck;
 
 /// Bounds of the leak along the path, in standard deviations of the displacement. States that move more slowly would
@@ -124,7 +123,7 @@ impl<'a> Task<'a> {
         let dynamics = self.layout.dynamics(parameters, self.template);
         let runs = self.runs(&dynamics, parameters);
         let halves: Vec<f64> =
-            runs.into_par_iter().map(|(run, _)| run.half_square()).collect::<Option<_>>()?;
+            parallel::each_taken(runs, |(run, _)| run.half_square()).into_iter().collect::<Option<_>>()?;
         Some(2.0 * halves.iter().sum::<f64>() / self.rows)
     }
 
@@ -211,7 +210,8 @@ impl Problem for Task<'_> {
         let mut gradient = vec![0.0; count];
         let mut curvature = Symmetric::from_fn(count, |_, _| 0.0);
         for runs in self.runs(&dynamics, parameters).chunks(AT_ONCE) {
-            let grams: Vec<(Gram, Range<usize>)> = runs.par_iter().map(of_record).collect::<Option<_>>()?;
+            let grams: Vec<(Gram, Range<usize>)> =
+                parallel::each(runs, of_record).into_iter().collect::<Option<_>>()?;
             for (gram, own) in grams {
                 let places: Vec<usize> = (0..of_model).chain(own).collect();
                 for (i, &place) in places.iter().enumerate() {

@@ -2,11 +2,10 @@
 
 use std::cmp::Ordering;
 
-use rayon::prelude::*;
-
 use crate::linear_algebra::Symmetric;
 use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, step_within};
 use crate::optimise::multi_start::Start;
+use crate::optimise::parallel;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
@@ -86,7 +85,7 @@ impl Problem for Objective<'_> {
             }
             column
         };
-        let jacobian: Vec<Vec<f64>> = (0..u.len()).into_par_iter().map(column).collect();
+        let jacobian: Vec<Vec<f64>> = parallel::numbered(u.len(), column);
         (!self.stop.is_asked())
             .then(|| Slope { evaluations: jacobian.len(), ..Slope::of_residual(&jacobian, &here.residual) })
     }
