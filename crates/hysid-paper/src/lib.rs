@@ -30,7 +30,6 @@ mod conditions;
 mod example;
 mod experiment;
 mod fitting;
-mod inverse;
 mod nds;
 mod spread;
 mod table2;
