@@ -19,7 +19,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::{Facts, Rate};
-use crate::law::interval::Interval;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
@@ -179,16 +178,6 @@ impl Law for Lugre {
     fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)> {
         let odd = about_origin.then_some(crate::law::properties::ODD);
         [Some((Property::Deterioration, false)), odd].into_iter().flatten().collect()
-    }
-
-    fn output_bound(&self, x: Interval, rate: Interval) -> Interval {
-        let largest = 1.0 + self.stribeck;
-        // The bristles lag: their rate is at most twice that of the input, for a deflection of up to the largest share.
-        let bristles = rate.times((1.0 + largest) / self.presliding).with_its_negative();
-        Interval::about(self.offset, (self.sliding * largest).abs())
-            .plus(bristles.times(self.bristle_damping))
-            .plus(rate.times(self.viscous))
-            .plus(x.times(self.spring))
     }
 }
 

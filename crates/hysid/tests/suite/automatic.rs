@@ -9,7 +9,7 @@ use hysid::fit::cross_validate;
 use hysid::fit::identify;
 use hysid::fit::network::{Observer, Progress};
 use hysid::law::Classical;
-use hysid::model::{BandLevel, Ensemble, Group, Model, Node, NodeKind, Predictor, Weights};
+use hysid::model::{Ensemble, Group, Model, Node, NodeKind, Predictor, Weights};
 use hysid::network::Family;
 use hysid::options::auto::AutoOptions;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};

@@ -1,4 +1,4 @@
-//! The Duhem neural network: its cell against closed forms, its bounds, its derivatives against difference
+//! The Duhem neural network: its cell against closed forms, its derivatives against difference
 //! quotients, and its identification.
 
 use std::ops::ControlFlow;
@@ -10,7 +10,6 @@ use hysid::error::Error;
 use hysid::fit::identify;
 use hysid::fit::law::Identify;
 use hysid::law::duhem_nn::{Cell, DuhemNn, Input, Layout, Run, Shape};
-use hysid::law::interval::Interval;
 use hysid::law::series::{Series, run};
 use hysid::law::{Law, Sample};
 use hysid::model::Model;
@@ -127,7 +126,7 @@ fn a_state_rests_with_its_input() {
 }
 
 #[test]
-fn states_and_output_stay_within_their_bounds_for_any_parameters() {
+fn outputs_are_finite_for_any_parameters() {
     let mut generator = Generator::seed_from_u64(5);
     for trial in 0..60 {
         let shape = shapes()[trial % 6];
@@ -141,22 +140,7 @@ fn states_and_output_stay_within_their_bounds_for_any_parameters() {
                 step: 10f64.powf(between(&mut generator, -8.0, 8.0)),
             })
             .collect();
-        let range = Interval::about(0.0, largest);
-        let bound = law.output_bound(range, range);
-        assert!(bound.0.is_finite() && bound.1.is_finite());
-        let slack = 1e-12 * (bound.1 - bound.0);
-        for y in run(&law, &samples) {
-            assert!(y >= bound.0 - slack && y <= bound.1 + slack, "{shape:?}: {y} beyond {bound:?}");
-        }
-        let fastest = samples.iter().map(|&sample| law.scaled(sample).rate.abs()).fold(0.0, f64::max);
-        for (i, bound) in law.state_bounds(fastest).into_iter().enumerate() {
-            let mut only_state = DuhemNn { output_mean: 0.0, output_scale: 1.0, ..law.clone() };
-            only_state.cell.output.fill(0.0);
-            only_state.cell.output[1 + shape.channels + shape.stops + i] = 1.0;
-            let outputs = run(&only_state, &samples);
-            let reached = outputs.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
-            assert!(reached > 0.0 && reached <= bound * (1.0 + 1e-12), "{shape:?}: {reached} beyond {bound}");
-        }
+        assert!(run(&law, &samples).iter().all(|y| y.is_finite()), "{shape:?}");
     }
 }
 
