@@ -1,6 +1,6 @@
 //! The experiments by their names.
 
-use crate::chapter::{Chapter, Content, FurtherFile};
+use crate::chapter::{Chapter, FurtherFile};
 use crate::conditions::{Observer, Settings};
 use crate::example::catalogue::{EXAMPLES, Example};
 use crate::{example, nds, table2, training};
@@ -60,23 +60,6 @@ impl Experiment {
             Experiment::Table2 => table2::chapter(settings, observer),
             Experiment::Training => training::chapter(settings, observer),
         }
-    }
-
-    /// True for a chapter as this experiment makes them. One that was stored may have been changed in its file, and
-    /// names of files are used as they are.
-    pub fn is_sound(self, chapter: &Chapter) -> bool {
-        let is_known = |(name, content): &(String, Content)| {
-            let file = self.further_files().iter().find(|file| file.name == name);
-            file.is_some_and(|file| match (content, file.header) {
-                (Content::Text(text), Some(header)) => text.starts_with(header),
-                (Content::Drawing(chart), None) => chart.is_sound(),
-                _ => false,
-            })
-        };
-        chapter.name == self.name()
-            && chapter.parts.iter().flat_map(|part| part.tables()).all(|table| table.is_complete())
-            && chapter.parts.iter().flat_map(|part| part.charts()).all(|chart| chart.is_sound())
-            && chapter.files.iter().all(is_known)
     }
 }
 
