@@ -122,24 +122,6 @@ pub trait Law: Sized {
     /// `about_origin` is true for an input that is measured from 0: properties of the output mirrored about 0
     /// are included only then.
     fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)>;
-
-    /// Slope `dy/dx` of the output where the input continues from `state` at `x`, upwards for a positive
-    /// `direction` and downwards for a negative one, at a vanishing rate. In the unit of the output divided
-    /// by that of the input.
-    ///
-    /// It is a difference quotient over a millionth of the largest parameter with the unit of the input. For
-    /// piecewise linear laws it is exact to rounding, except next to a kink.
-    fn tangent(&self, state: &Self::State, x: f64, direction: f64) -> f64 {
-        let has_unit_of_input = |parameter: &Parameter| parameter.unit == Dimension::INPUT;
-        let scales =
-            self.parameters().into_iter().filter(has_unit_of_input).map(|parameter| parameter.value.abs());
-        let scale = scales.fold(0.0, f64::max);
-        let by = direction.signum() * 1e-6 * if scale > 0.0 { scale } else { x.abs().max(1.0) };
-        let mut state = state.clone();
-        let mut at = |x: f64| self.step(&mut state, Sample { x, rate: 0.0, step: 0.0 });
-        let (here, there) = (at(x), at(x + by));
-        (there - here) / by
-    }
 }
 
 /// A parameter of a law.
@@ -275,17 +257,6 @@ macro_rules! any_of {
             pub fn input_for(&self, state: &ClassicalState, output: f64) -> Option<f64> {
                 match (self, state) {
                     $((Self::$law(law), ClassicalState::$law(state)) => law.input_for(state, output),)*
-                    (law, state) => panic!("{state:?} is no state of {law:?}"),
-                }
-            }
-
-            /// As [`Law::tangent`].
-            ///
-            /// # Panics
-            /// A state of another law.
-            pub fn tangent(&self, state: &ClassicalState, x: f64, direction: f64) -> f64 {
-                match (self, state) {
-                    $((Self::$law(law), ClassicalState::$law(state)) => law.tangent(state, x, direction),)*
                     (law, state) => panic!("{state:?} is no state of {law:?}"),
                 }
             }
