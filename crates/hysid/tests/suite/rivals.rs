@@ -11,7 +11,7 @@ use hysid::fit::law::Identify;
 use hysid::fit::network::Fitted;
 use hysid::law::lugre::Lugre;
 use hysid::law::series::samples;
-use hysid::law::{Classical, Dimension, Sample};
+use hysid::law::{Classical, Dimension};
 use hysid::model::{Model, Predictor};
 use hysid::network::Family;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
