@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use clap::Args;
 use hysid::data::record::{Dataset, Record};
-use hysid::specimens::cases::{Case, KINDS, generated, one_loop};
+use hysid_lab::generated::{Case, KINDS, generated, one_loop};
 
 use crate::files;
 

@@ -2,6 +2,7 @@
 
 mod bench;
 mod cases;
+mod compensation;
 mod files;
 mod generate_cases;
 mod generate_files;
@@ -41,6 +42,8 @@ enum Measurement {
     ///
     /// Runs `hysid compare` on every subfolder that has train.csv and test.csv.
     Cases(cases::Request),
+    /// Measure the tables of docs/compensation.md: synthetic actuators driven by inverses of models
+    Compensation,
     /// Write synthetic cases as folders with train.csv and test.csv, for `cases`
     ///
     /// Laws with random parameters, protocols as engineers use them, and noise. The same seed gives the same cases; the
@@ -102,6 +105,7 @@ fn run(measurement: &Measurement) -> Result<()> {
     match measurement {
         Measurement::Bench(request) => bench::run(request),
         Measurement::Cases(request) => cases::run(request),
+        Measurement::Compensation => compensation::run(),
         Measurement::GenerateCases(request) => generate_cases::run(request),
         Measurement::GenerateFiles { folder } => generate_files::run(folder),
         Measurement::Growth(request) => growth::run(request),

@@ -6,8 +6,8 @@ use anyhow::{Context, Result};
 use hysid::Model;
 use hysid::data::record::{Dataset, Record};
 use hysid::plan::{Limits, Path, Wave};
-use hysid::specimens::cases::{DrivenSpecimen, driven_specimen};
 use hysid::specimens::with_noise;
+use hysid_lab::generated::{DrivenSpecimen, driven_specimen};
 
 /// Rows of a swing over the whole range at the largest rate.
 pub const ROWS_OF_A_SWING: f64 = 50.0;

@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use hysid::data::record::{Dataset, Record};
-use hysid::specimens::cases::{DrivenSpecimen, driven_specimen};
 use hysid::specimens::{BoucWenBaberNoori, ReinforcedConcreteJoint, with_noise};
+use hysid_lab::generated::{DrivenSpecimen, driven_specimen};
 
 /// Noise of the load cell, and of the coil, in percent of the standard deviation of the output.
 const NOISE: f64 = 1.0;

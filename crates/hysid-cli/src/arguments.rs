@@ -640,8 +640,6 @@ pub struct Reproduce {
     #[arg(value_name = "EXPERIMENT", value_parser = experiment())]
     pub experiments: Vec<Experiment>,
     /// Folder for pages and tables
-    ///
-    /// An experiment that is already finished there, with the same seed, version and effort, is not run again.
     #[arg(short, long, value_name = "DIR", default_value = "hysid-reproduction")]
     pub out: PathBuf,
     /// Which files may be replaced.

@@ -1,9 +1,8 @@
-//! `hysid reproduce`: runs the paper's experiments, stores what is finished, and writes pages and tables of it.
+//! `hysid reproduce`: runs the paper's experiments, and writes pages and tables of what is finished.
 
 mod outputs;
 mod rendering;
 mod run;
-mod storage;
 
 pub use hysid_paper::Experiment;
 pub use outputs::Outputs;

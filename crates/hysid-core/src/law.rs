@@ -30,7 +30,6 @@ mod gram_of_rows;
 pub mod hysteretic_dynamics;
 pub mod hysteretic_oscillator;
 pub mod hysteretic_state_space;
-pub mod interval;
 pub mod jiles_atherton;
 pub mod lugre;
 pub mod masing;
@@ -55,7 +54,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::Facts;
-use crate::law::interval::Interval;
 use crate::property::Property;
 
 /// One sample of the input, as a law takes it.
@@ -120,41 +118,10 @@ pub trait Law: Sized {
         false
     }
 
-    /// True if the output does not depend on the number of samples in which the input moves from one turning
-    /// point to the next.
-    fn is_step_free(&self) -> bool {
-        !self.sees_rate()
-    }
-
     /// The properties that follow from the equations, each with whether the law has it, at a vanishing rate.
     /// `about_origin` is true for an input that is measured from 0: properties of the output mirrored about 0
     /// are included only then.
     fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)>;
-
-    /// An interval that contains every output from the virgin state on, for inputs and rates within these
-    /// intervals, in the unit of the output.
-    ///
-    /// It is a sum of intervals, one for each term of the law's equation; the end points of monotonic
-    /// functions are mapped (theory.md (10.42)).
-    fn output_bound(&self, x: Interval, rate: Interval) -> Interval;
-
-    /// Slope `dy/dx` of the output where the input continues from `state` at `x`, upwards for a positive
-    /// `direction` and downwards for a negative one, at a vanishing rate. In the unit of the output divided
-    /// by that of the input.
-    ///
-    /// It is a difference quotient over a millionth of the largest parameter with the unit of the input. For
-    /// piecewise linear laws it is exact to rounding, except next to a kink.
-    fn tangent(&self, state: &Self::State, x: f64, direction: f64) -> f64 {
-        let has_unit_of_input = |parameter: &Parameter| parameter.unit == Dimension::INPUT;
-        let scales =
-            self.parameters().into_iter().filter(has_unit_of_input).map(|parameter| parameter.value.abs());
-        let scale = scales.fold(0.0, f64::max);
-        let by = direction.signum() * 1e-6 * if scale > 0.0 { scale } else { x.abs().max(1.0) };
-        let mut state = state.clone();
-        let mut at = |x: f64| self.step(&mut state, Sample { x, rate: 0.0, step: 0.0 });
-        let (here, there) = (at(x), at(x + by));
-        (there - here) / by
-    }
 }
 
 /// A parameter of a law.
@@ -294,17 +261,6 @@ macro_rules! any_of {
                 }
             }
 
-            /// As [`Law::tangent`].
-            ///
-            /// # Panics
-            /// A state of another law.
-            pub fn tangent(&self, state: &ClassicalState, x: f64, direction: f64) -> f64 {
-                match (self, state) {
-                    $((Self::$law(law), ClassicalState::$law(state)) => law.tangent(state, x, direction),)*
-                    (law, state) => panic!("{state:?} is no state of {law:?}"),
-                }
-            }
-
             /// As [`Law::validated`].
             ///
             /// # Errors
@@ -336,24 +292,10 @@ macro_rules! any_of {
                 }
             }
 
-            /// As [`Law::is_step_free`].
-            pub fn is_step_free(&self) -> bool {
-                match self {
-                    $(Self::$law(law) => law.is_step_free(),)*
-                }
-            }
-
             /// As [`Law::memory_properties`].
             pub fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)> {
                 match self {
                     $(Self::$law(law) => law.memory_properties(about_origin),)*
-                }
-            }
-
-            /// As [`Law::output_bound`].
-            pub fn output_bound(&self, x: Interval, rate: Interval) -> Interval {
-                match self {
-                    $(Self::$law(law) => law.output_bound(x, rate),)*
                 }
             }
 

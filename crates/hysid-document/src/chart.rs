@@ -9,8 +9,6 @@ mod palette;
 mod svg;
 pub mod thin;
 
-use serde::{Deserialize, Serialize};
-
 pub use appearance::{Appearance, PIXELS_PER_MILLIMETRE, PIXELS_PER_POINT};
 pub use axis::Axis;
 pub use heat_map::{HeatCell, heat_map};
@@ -19,8 +17,7 @@ pub use svg::sheet;
 use thin::Point;
 
 /// What a curve shows, which determines its colour.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colour {
     /// A measurement.
     Measured,
@@ -55,22 +52,20 @@ impl Colour {
 pub const SERIES: usize = 6;
 
 /// A line, or dots where a point has no neighbours; or the outline of an area, see [`Colour::is_area`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     /// Its points, in the units of the axes; one that is not finite leaves a gap.
-    #[serde(with = "points")]
     pub points: Vec<Point>,
     /// Its colour.
     pub colour: Colour,
     /// Width of the line, or radius of the dots, in pixels.
     pub width: f64,
     /// Where its points are in a record, for pages that show the same moment in several charts.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub track: Option<Track>,
 }
 
 /// Where the points of a curve are in a record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Track {
     /// Name of the record, the same in all charts that show it.
     pub record: String,
@@ -81,7 +76,7 @@ pub struct Track {
 }
 
 /// Text to the right of a point.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Label {
     /// The point.
     pub point: Point,
@@ -92,7 +87,7 @@ pub struct Label {
 }
 
 /// A chart.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
     /// Description for readers who cannot see it.
     pub description: String,
@@ -182,13 +177,10 @@ impl Chart {
         Self { legend, ..self }
     }
 
-    /// True if it can be drawn. A chart that was read from a file may be invalid.
-    pub fn is_sound(&self) -> bool {
-        let (width, height) = self.size;
+    /// True if width and height have room for axes and curves.
+    pub fn has_room(&self) -> bool {
         let is_side = |side: f64| (100.0..LARGEST).contains(&side);
-        let are_sound = self.curves.iter().all(|curve| (0.0..LARGEST).contains(&curve.width))
-            && self.labels.iter().all(|label| label.rise.abs() < LARGEST);
-        is_side(width) && is_side(height) && are_sound && self.x.is_sound() && self.y.is_sound()
+        is_side(self.size.0) && is_side(self.size.1)
     }
 
     /// The drawing: an `svg` element of class `plot`, without a size of its own.
@@ -199,24 +191,6 @@ impl Chart {
     /// The drawing as a file, with size and style. `generator` names the program that made it.
     pub fn file(&self, generator: &str) -> String {
         svg::file(self, generator)
-    }
-}
-
-/// Points in a file: one that is not finite is nothing.
-mod points {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    use super::thin::{Point, is_drawable};
-
-    pub fn serialize<S: Serializer>(points: &[Point], serializer: S) -> Result<S::Ok, S::Error> {
-        let points: Vec<Option<Point>> =
-            points.iter().map(|&point| is_drawable(point).then_some(point)).collect();
-        points.serialize(serializer)
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Point>, D::Error> {
-        let points: Vec<Option<Point>> = Vec::deserialize(deserializer)?;
-        Ok(points.into_iter().map(|point| point.unwrap_or((f64::NAN, f64::NAN))).collect())
     }
 }
 

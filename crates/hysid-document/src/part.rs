@@ -1,7 +1,5 @@
 //! Pages and their parts.
 
-use serde::{Deserialize, Serialize};
-
 use crate::chart::Chart;
 use crate::table::Table;
 use crate::text::Text;
@@ -16,8 +14,7 @@ pub struct Page {
 }
 
 /// A part of a document.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Part {
     /// The main message, in one sentence.
     Lead(Text),
@@ -52,7 +49,7 @@ pub enum Part {
 }
 
 /// An item of a list.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Item {
     /// Its text.
     pub text: Text,
@@ -61,7 +58,7 @@ pub struct Item {
 }
 
 /// Parts in a frame, which can be the target of links.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Card {
     /// Name of the card as the target of links.
     pub anchor: String,

@@ -1,7 +1,5 @@
 //! Tables of typed cells.
 
-use serde::{Deserialize, Serialize};
-
 use crate::number::number;
 
 /// Significant digits of a number for which none are named.
@@ -9,7 +7,7 @@ const DIGITS: u8 = 3;
 
 /// A table. The first cell of each row is the row's heading. In a row with fewer cells than columns, the last
 /// cell spans all remaining columns.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Table {
     /// Heading without a full stop; may be empty.
     pub heading: String,
@@ -20,8 +18,7 @@ pub struct Table {
 }
 
 /// A cell of a table.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
     /// A finite number and its number of significant digits.
     Number(f64, u8),
@@ -68,11 +65,6 @@ impl Table {
         };
         let is_filled = |cell: &Cell| matches!(cell, Cell::Text(text) if !text.is_empty());
         cells().all(is_word) && cells().any(is_filled)
-    }
-
-    /// True if there is a column, and every row has a cell for every column.
-    pub fn is_complete(&self) -> bool {
-        !self.columns.is_empty() && self.rows.iter().all(|row| row.len() == self.columns.len())
     }
 }
 

@@ -1,15 +1,11 @@
 //! Text with emphasis, code and links.
 
-use serde::{Deserialize, Serialize};
-
 /// A line or a paragraph.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Text(pub Vec<Piece>);
 
 /// A piece of text in one style.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Piece {
     /// Plain text.
     Plain(String),
@@ -31,8 +27,7 @@ pub enum Piece {
 }
 
 /// Meaning of a badge, which determines its colour.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Badge {
     /// Yes.
     Yes,

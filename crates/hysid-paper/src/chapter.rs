@@ -1,10 +1,9 @@
 //! What an experiment comes to: a chapter of text, tables and charts, as data.
 
 use hysid_document::{Chart, Part, Table};
-use serde::{Deserialize, Serialize};
 
 /// The result of an experiment.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Chapter {
     /// Name of the experiment.
     pub name: String,
@@ -21,8 +20,7 @@ pub struct Chapter {
 }
 
 /// What is in a further file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Content {
     /// A table as CSV.
     Text(String),
@@ -40,8 +38,7 @@ pub struct FurtherFile {
 }
 
 /// Whose target it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
     /// The paper claims it, with this number.
     Paper,
@@ -63,8 +60,7 @@ impl Source {
 }
 
 /// Was a target met?
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// By the median of the seeds.
     Met,
@@ -89,7 +85,7 @@ impl Verdict {
 }
 
 /// A figure that was to be reached.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Target {
     /// The specimen.
     pub specimen: String,

@@ -1,9 +1,9 @@
 //! The experiments by their names.
 
-use crate::chapter::{Chapter, Content, FurtherFile};
+use crate::chapter::{Chapter, FurtherFile};
 use crate::conditions::{Observer, Settings};
 use crate::example::catalogue::{EXAMPLES, Example};
-use crate::{example, inverse, nds, table2, training};
+use crate::{example, nds, table2, training};
 
 /// One of the experiments.
 #[derive(Debug, Clone, Copy)]
@@ -16,15 +16,13 @@ pub enum Experiment {
     Table2,
     /// The trainers compared.
     Training,
-    /// Actuators driven by inverses.
-    Inverse,
 }
 
 impl Experiment {
     /// All of them, in the order of the page.
     pub fn all() -> impl Iterator<Item = Experiment> {
         let examples = EXAMPLES.iter().map(Experiment::Example);
-        let others = [Experiment::Table2, Experiment::Training, Experiment::Inverse];
+        let others = [Experiment::Table2, Experiment::Training];
         [Experiment::Nds].into_iter().chain(examples).chain(others)
     }
 
@@ -40,7 +38,6 @@ impl Experiment {
             Experiment::Example(example) => example.name,
             Experiment::Table2 => "table2",
             Experiment::Training => "training",
-            Experiment::Inverse => "inverse",
         }
     }
 
@@ -48,7 +45,7 @@ impl Experiment {
     pub fn further_files(self) -> &'static [FurtherFile] {
         match self {
             Experiment::Training => &training::FILES,
-            Experiment::Nds | Experiment::Example(_) | Experiment::Table2 | Experiment::Inverse => &[],
+            Experiment::Nds | Experiment::Example(_) | Experiment::Table2 => &[],
         }
     }
 
@@ -62,25 +59,7 @@ impl Experiment {
             Experiment::Example(example) => example::chapter(example, settings, observer),
             Experiment::Table2 => table2::chapter(settings, observer),
             Experiment::Training => training::chapter(settings, observer),
-            Experiment::Inverse => inverse::chapter(settings, observer),
         }
-    }
-
-    /// True for a chapter as this experiment makes them. One that was stored may have been changed in its file, and
-    /// names of files are used as they are.
-    pub fn is_sound(self, chapter: &Chapter) -> bool {
-        let is_known = |(name, content): &(String, Content)| {
-            let file = self.further_files().iter().find(|file| file.name == name);
-            file.is_some_and(|file| match (content, file.header) {
-                (Content::Text(text), Some(header)) => text.starts_with(header),
-                (Content::Drawing(chart), None) => chart.is_sound(),
-                _ => false,
-            })
-        };
-        chapter.name == self.name()
-            && chapter.parts.iter().flat_map(|part| part.tables()).all(|table| table.is_complete())
-            && chapter.parts.iter().flat_map(|part| part.charts()).all(|chart| chart.is_sound())
-            && chapter.files.iter().all(is_known)
     }
 }
 
@@ -109,7 +88,7 @@ mod tests {
 
     #[test]
     fn an_experiment_that_is_stopped_says_so() {
-        for name in ["example1", "table2", "training", "inverse"] {
+        for name in ["example1", "table2", "training"] {
             let settings = Settings { seed: 1, quick: true };
             let ended = Experiment::named(name).unwrap().chapter(settings, &Impatient);
             assert!(matches!(ended, Err(hysid::Error::Stopped)), "{name}: {ended:?}");

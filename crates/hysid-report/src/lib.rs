@@ -13,7 +13,6 @@ mod frequency_response;
 pub mod histories;
 mod identified;
 pub mod models;
-mod neurons;
 pub mod origin;
 pub mod parameters;
 pub mod provenance;
@@ -39,7 +38,6 @@ pub use band_coverage::BandCoverage;
 pub use course::Course;
 pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, scored_rows, small_loops};
 pub use identified::{Beforehand, Identified, data_warnings};
-pub use neurons::Stop;
 pub use timing::ns_per_sample;
 pub use tracks::Tracks;
 
@@ -128,7 +126,6 @@ pub fn page(report: &Report) -> Page {
     parts.extend(band::section(report));
     parts.extend(ensemble::section(report));
     parts.extend(parameters::section(report));
-    parts.extend(neurons::section(report));
     parts.extend(figures::convergence_section(report.model));
     parts.extend(provenance::understood(report));
     parts.push(provenance::section(report));

@@ -76,7 +76,7 @@ pub fn left_out(model: &Model) -> Option<String> {
     (all > MOST_ROWS).then(|| format!("{} are in the model file.", count(all - MOST_ROWS, "more parameter")))
 }
 
-/// The section on the parameters; `None` for a network, whose neurons are shown.
+/// The section on the parameters; `None` for a network.
 pub fn section(report: &Report) -> Option<Part> {
     let model = report.model;
     let mut parts = vec![Part::Table(table(model, report.intervals)?)];

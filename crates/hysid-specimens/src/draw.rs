@@ -1,21 +1,15 @@
-//! What chance adds to a plan or to an excitation.
+//! Random numbers of excitations.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::noise::normal;
 
-/// Deviation of the logarithm of a perturbed parameter.
-const SPREAD: f64 = 0.2;
-
-/// Normal numbers beyond are cut, so that no parameter leaves its meaning.
-const LARGEST_NORMAL: f64 = 2.5;
-
-/// The random numbers of a case, or of a record.
+/// Random numbers of a record.
 pub(super) struct Draw(Xoshiro256PlusPlus);
 
 impl Draw {
-    /// Those of the case or record with this number: independent of how many others there are.
+    /// Random numbers of the record with this number: independent of how many others there are.
     pub fn new(seed: u64, index: usize) -> Self {
         let mut of_seed = Xoshiro256PlusPlus::seed_from_u64(seed);
         let of_index = of_seed.random::<u64>().wrapping_add(index as u64);
@@ -27,33 +21,8 @@ impl Draw {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    /// Evenly between two positive values on a logarithmic scale.
-    pub fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-
-    /// A whole number, both ends included.
-    pub fn whole(&mut self, low: usize, high: usize) -> usize {
-        self.0.random_range(low..=high)
-    }
-
     /// `N(0, 1)`
     pub fn normal(&mut self) -> f64 {
         normal(&mut self.0)
-    }
-
-    /// `e^{spread N(0, 1)}`
-    pub fn factor(&mut self, spread: f64) -> f64 {
-        (spread * self.normal().clamp(-LARGEST_NORMAL, LARGEST_NORMAL)).exp()
-    }
-
-    /// A parameter: the value times `e^{0.2 N(0, 1)}`.
-    pub fn around(&mut self, value: f64) -> f64 {
-        value * self.factor(SPREAD)
-    }
-
-    /// A seed for something else.
-    pub fn seed(&mut self) -> u64 {
-        self.0.random()
     }
 }

@@ -2,30 +2,23 @@
 //! tests of identification.
 //!
 //! Each law and each set of parameters states its source: *published*, with a reference, or *designed*,
-//! chosen in this project. [`Specimen::all`] is the catalogue; [`cases::generated`] generates further
-//! identification cases.
+//! chosen in this project. [`Specimen::all`] is the catalogue.
 //!
 //! `theory.md (6.1)` on these pages is the number of an equation in `docs/theory.md` of the repository.
 
 pub mod bouc_wen_oscillator;
-pub mod cases;
 mod catalogue;
 pub mod concrete;
-mod cyclic_plasticity;
 mod decimation;
 mod draw;
 pub mod duffing_oscillator;
 mod earthquake;
-mod elastomer;
 pub mod ferromagnet;
 pub mod generalized_play;
-mod magnetorheological_damper;
 pub mod magnetostrictive_actuator;
 mod multisine;
 mod noise;
 mod path;
-mod peak_oriented;
-mod phase_transformation;
 pub mod piezo_actuator;
 pub mod piezo_stage;
 pub mod rate_dependent_actuator;

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 use hysid::data::rate::RateMethod;
-use hysid::data::record::{Excitation, Record};
+use hysid::data::record::Excitation;
 use hysid::model::{Model, Prediction};
 use hysid_report::BAND;
 
@@ -50,19 +50,6 @@ impl Path {
         Ok(match model.band() {
             Some(_) => model.predict(&excitation, BAND)?,
             None => Prediction { output: model.response(&excitation)?, ..Prediction::default() },
-        })
-    }
-
-    /// The path as a record without outputs.
-    ///
-    /// # Errors
-    /// As [`Path::run`].
-    pub fn record(&self) -> Result<Record> {
-        let rows = self.inputs.first().map_or(0, Vec::len);
-        let record = Record::new("path", self.inputs.clone(), vec![f64::NAN; rows])?;
-        Ok(match &self.time {
-            Some(time) => record.with_time(time.clone())?,
-            None => record,
         })
     }
 }

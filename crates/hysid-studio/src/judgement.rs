@@ -13,8 +13,6 @@ use hysid_report::residual_words::{name, p_value, verdict};
 use hysid_report::{BAND, BandCoverage, ReportSet};
 use serde::Serialize;
 
-use crate::neurons::numbered;
-
 /// Runs that are kept.
 const MOST_KEPT: usize = 8;
 
@@ -141,13 +139,14 @@ pub fn columns(predicted: &[Prediction]) -> Vec<(&'static str, Vec<f64>)> {
 /// Data that the model cannot run on.
 pub fn members(model: &Model, data: &Dataset) -> Result<Vec<(String, Vec<f64>)>> {
     let Some(ensemble) = model.ensemble() else { return Ok(Vec::new()) };
-    let run = |(name, member): (String, &Model)| {
+    let run = |(number, member): (usize, &Model)| {
+        let name = format!("{} {}", number + 1, member.name().name());
         let of_record = |record: &Record| member.simulate(record);
         let output: hysid::Result<Vec<Vec<f64>>> = data.records().iter().map(of_record).collect();
         let output = output.with_context(|| format!("member {name} cannot run on these data"))?;
         Ok((name, output.concat()))
     };
-    numbered(ensemble).map(run).collect()
+    ensemble.members().iter().enumerate().map(run).collect()
 }
 
 /// A run, with the numbers of its model and its file.

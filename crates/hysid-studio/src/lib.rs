@@ -9,7 +9,6 @@ mod drive;
 mod fitting;
 mod folder;
 mod judgement;
-mod neurons;
 mod project;
 mod server;
 mod shown;

@@ -1,7 +1,7 @@
 //! Is one loop enough: the error on smaller loops and reversal curves of models that were fitted to the major loop only.
 
 use anyhow::{Context, Result};
-use hysid::specimens::cases::{Case, one_loop};
+use hysid_lab::generated::{Case, one_loop};
 
 use super::fit;
 use crate::cases::{aligned, row};

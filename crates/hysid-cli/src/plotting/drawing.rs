@@ -118,7 +118,7 @@ fn in_height(
             chart.with_height(height)
         })
         .collect();
-    match charts.iter().all(Chart::is_sound) {
+    match charts.iter().all(Chart::has_room) {
         true => Ok(charts),
         false => Err(Usage(format!(
             "--height {height} has no room for {}: choose more, or draw fewer with --only",

@@ -17,12 +17,6 @@ pub struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
-    /// The finished experiment, to be taken up again.
-    pub fn stored(&self, name: &str) -> Destination {
-        let chapter = format!("\"chapter\":{{\"name\":\"{name}\"");
-        self.destination(&format!("{name}.json"), Kind::Marked("{\"version\":\"", chapter))
-    }
-
     /// The page.
     pub fn page(&self, name: &str) -> Destination {
         self.destination(&format!("{name}.html"), Kind::Page)
@@ -54,7 +48,7 @@ impl Outputs<'_> {
         let name = experiment.name();
         let further = experiment.further_files();
         let further = further.iter().map(|file| self.further_file(file));
-        std::iter::once(self.stored(name)).chain(self.rendered(name)).chain(further).collect()
+        self.rendered(name).into_iter().chain(further).collect()
     }
 
     fn further_file(&self, file: &FurtherFile) -> Destination {

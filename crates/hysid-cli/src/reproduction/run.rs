@@ -1,4 +1,4 @@
-//! Experiments side by side, those that were finished before taken up again; and the pages made of them.
+//! Experiments side by side, and the pages made of them.
 
 use std::collections::VecDeque;
 use std::sync::Mutex;
@@ -10,10 +10,18 @@ use hysid_files::{Destination, GENERATOR};
 use hysid_paper::{Chapter, Content, Experiment, Observer, Settings};
 use hysid_report::{date, page_text};
 
-use super::storage::{self, Finished};
 use super::{Outputs, rendering};
 use crate::messages::{note, results};
 use crate::{Outcome, files, interrupt};
+
+/// A finished experiment and how it was made.
+struct Finished {
+    /// The day it was made.
+    date: String,
+    /// How long it took, beside whatever ran at the same time.
+    seconds: f64,
+    chapter: Chapter,
+}
 
 /// Name of the files of all experiments together.
 const TOGETHER: &str = "reproduction";
@@ -27,7 +35,7 @@ pub fn run(experiments: &[Experiment], settings: Settings, outputs: Outputs) -> 
     let mut destinations: Vec<_> = experiments.iter().flat_map(|&one| outputs.of(one)).collect();
     destinations.extend(together);
     files::check_outputs(&destinations.iter().collect::<Vec<_>>(), &[])?;
-    let finished = finished(&experiments, settings, outputs)?;
+    let finished = finished(&experiments, settings)?;
     for (experiment, one) in &finished {
         write_one(*experiment, one, settings, outputs)?;
     }
@@ -68,29 +76,13 @@ impl Observer for Terminal {
 }
 
 /// All that is finished in the end, in their order.
-fn finished(
-    experiments: &[Experiment],
-    settings: Settings,
-    outputs: Outputs,
-) -> Result<Vec<(Experiment, Finished)>> {
-    let places: Mutex<Vec<Option<Finished>>> = Mutex::new(
-        experiments.iter().map(|&experiment| storage::find(outputs, experiment, settings)).collect(),
-    );
-    let mut left = VecDeque::new();
-    for (place, &experiment) in experiments.iter().enumerate() {
-        match &places.lock().expect("no thread panics with the lock")[place] {
-            Some(_) => note(format_args!(
-                "{}: already finished, read from {} (delete this file to run it again)",
-                experiment.name(),
-                files::shown(outputs.stored(experiment.name()).path())
-            )),
-            // The long ones come last on the page and first here, so that no thread waits for them.
-            None => left.push_front((place, experiment)),
-        }
-    }
-    let (all, to_do) = (experiments.len(), left.len());
+fn finished(experiments: &[Experiment], settings: Settings) -> Result<Vec<(Experiment, Finished)>> {
+    let places: Mutex<Vec<Option<Finished>>> = Mutex::new(experiments.iter().map(|_| None).collect());
+    let all = experiments.len();
+    // The long ones come last on the page and first here, so that no thread waits for them.
+    let left: VecDeque<(usize, Experiment)> = experiments.iter().copied().enumerate().rev().collect();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let workers = threads.min(to_do);
+    let workers = threads.min(all);
     let left = Mutex::new(left);
     let terminal = Terminal { began: Instant::now() };
     let work = || -> Result<()> {
@@ -105,10 +97,8 @@ fn finished(
                 chapter => chapter?,
             };
             let seconds = began.elapsed().as_secs_f64();
-            let one = Finished::new(settings, date::today(), seconds, chapter);
-            one.keep(outputs)?;
             let mut places = places.lock().expect("no thread panics with the lock");
-            places[place] = Some(one);
+            places[place] = Some(Finished { date: date::today(), seconds, chapter });
             let done = places.iter().flatten().count();
             note(format_args!("{done}/{all} {}: finished, {seconds:.0} s", experiment.name()));
         }

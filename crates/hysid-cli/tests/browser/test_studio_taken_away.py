@@ -72,7 +72,7 @@ def test_every_kind_of_answer_is_labelled(made):
     model = the_model(made)["id"]
     file = made.state()["files"][0]["id"]
     paths = [f"/api/files/{file}/columns", "/api/diagnosis", "/api/findings"]
-    parts = ["file", "export/c", "facts", "neurons", "commands", f"simulated/{file}", f"judgement/{file}"]
+    parts = ["file", "export/c", "facts", "commands", f"simulated/{file}", f"judgement/{file}"]
     paths += [f"/api/models/{model}/{part}" for part in parts]
     refused = [("/api/project", made.headers(Cookie=None)), ("/api/models/99/file", made.headers())]
     for path, headers in [*((path, made.headers()) for path in paths), *refused]:

@@ -49,7 +49,7 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
         assert!(page.contains(words), "{words}");
     }
     assert!(page.contains("<polygon"), "the band is drawn");
-    assert!(!page.contains("The neurons") && !page.contains("Convergence"), "these are of single models");
+    assert!(!page.contains("Convergence"), "this is of single models");
     let told = bench.run(&format!("fit good.csv -o e.json {QUICK}"));
     assert_narrow(&told.stdout);
     for words in [
@@ -145,7 +145,7 @@ fn auto_chooses_among_kinds_and_is_the_same_for_any_number_of_threads() {
     assert!(page.contains("random-stops (input companded 0.1)") && page.contains(">classical</td>"));
     assert_eq!(model, fit("--members 5 --no-report --threads 1").1);
 
-    // One model in the place of many: its neurons can be shown, and what it has learnt from.
+    // One model in the place of many.
     let (ran, _) = fit("--members 1");
     assert!(ran.stdout.contains("\nchosen one "), "{}", ran.stdout);
     assert!(bench.text("a.html").contains("How it was chosen"));

@@ -8,7 +8,7 @@ fn an_experiment_by_name_leaves_its_page_and_tables() {
     let ran = bench.run("reproduce nds -o out");
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
     assert!(ran.stdout.contains("page    out/nds.html"), "{}", ran.stdout);
-    assert_eq!(bench.files("out"), ["nds.csv", "nds.html", "nds.json", "nds.md"]);
+    assert_eq!(bench.files("out"), ["nds.csv", "nds.html", "nds.md"]);
     let page = bench.text("out/nds.html");
     assert!(!page.contains("http://") || page.contains("http://www.w3.org"), "the page needs nothing else");
     assert_eq!(page.matches("<svg class=\"plot\"").count(), 7, "an input and six loops");
@@ -68,27 +68,6 @@ fn a_terminal_of_80_columns_has_room_for_everything() {
     }
 }
 
-#[test]
-fn finished_experiments_are_taken_up_if_they_were_made_in_the_same_way() {
-    let bench = Workbench::new();
-    assert_eq!(bench.run("reproduce nds -o out").status, Some(0));
-    let (page, stored) = (bench.text("out/nds.html"), bench.text("out/nds.json"));
-    let again = bench.run("reproduce nds -o out");
-    assert!(again.stderr.contains("nds: already finished, read from out/nds.json"), "{}", again.stderr);
-    assert_eq!((bench.text("out/nds.html"), bench.text("out/nds.json")), (page, stored.clone()));
-    // Another seed, an older version, or a broken file: it is run again.
-    let older = stored.replace(env!("CARGO_PKG_VERSION"), "0.0.0");
-    for (arguments, content) in
-        [("--seed 2", stored.clone()), ("", older), ("", stored[..stored.len() / 2].to_string())]
-    {
-        bench.put("out/nds.json", content);
-        let ran = bench.run(&format!("reproduce nds -o out {arguments}"));
-        assert_eq!(ran.status, Some(0), "{}", ran.stderr);
-        assert!(ran.stderr.contains("1/1 nds: finished"), "{}", ran.stderr);
-    }
-    assert_eq!(bench.run("reproduce example8").status, Some(2));
-}
-
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_what_is_finished() {
@@ -96,90 +75,17 @@ fn ctrl_c_keeps_what_is_finished() {
     use std::process::{Command, Stdio};
 
     let bench = Workbench::new();
-    // One experiment is there already; the whole takes minutes.
-    assert_eq!(bench.run("reproduce nds -o out").status, Some(0));
-    let mut running =
-        bench.command("reproduce -o out").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut reproduce = bench.command("reproduce --quick -o out");
+    let mut running = reproduce.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let stderr = BufReader::new(running.stderr.take().unwrap());
     let mut lines = stderr.lines();
-    let under_way = lines.by_ref().map_while(Result::ok).find(|line| line.starts_with("  "));
-    assert!(under_way.is_some(), "a fit or a training tells of itself");
+    let one = lines.by_ref().map_while(Result::ok).find(|line| line.contains(": finished, ")).unwrap();
     let killed = Command::new("kill").args(["-INT", &running.id().to_string()]).status().unwrap();
     assert!(killed.success());
     let rest: Vec<String> = lines.map_while(Result::ok).collect();
     assert_eq!(running.wait().unwrap().code(), Some(130), "{rest:?}");
     let text = bench.text("out/reproduction.md");
-    assert!(text.contains("Interrupted: ") && text.contains("## nds: One neuron"), "{text}");
+    let name = one.split([' ', ':']).nth(1).unwrap();
+    assert!(text.contains("Interrupted: ") && text.contains(&format!("## {name}: ")), "{one}: {text}");
     assert!(bench.path("out/reproduction.html").exists() && bench.path("out/reproduction.csv").exists());
-}
-
-#[test]
-fn a_stored_experiment_that_was_changed_injects_nothing() {
-    let bench = Workbench::new();
-    assert_eq!(bench.run("reproduce nds -o out").status, Some(0));
-    let stored = bench.text("out/nds.json");
-    let change = |pointer: &str, value: serde_json::Value| {
-        let mut changed: serde_json::Value = serde_json::from_str(&stored).unwrap();
-        *changed.pointer_mut(pointer).unwrap_or_else(|| panic!("{pointer}")) = value;
-        changed.to_string()
-    };
-    let parts: serde_json::Value = serde_json::from_str(&stored).unwrap();
-    let parts = parts["chapter"]["parts"].as_array().unwrap().clone();
-    let place = |kind: &str| parts.iter().position(|part| part.get(kind).is_some()).unwrap();
-    let (charts, table, words) = (place("charts"), place("table"), place("note"));
-    let chart = format!("/chapter/parts/{charts}/charts/0");
-    let script = "<script>alert(1)</script>";
-    // What Hysid did not write, or what cannot be drawn: the experiment is run again. (The keys are in another order now, so
-    // the file is not known as Hysid's own.)
-    for (pointer, value) in [
-        ("/chapter/files".to_string(), serde_json::json!([["../escaped.txt", { "text": "x" }]])),
-        ("/chapter/name".into(), "../escaped".into()),
-        (format!("/chapter/parts/{table}/table/columns"), serde_json::json!([])),
-        (chart.clone(), format!("<svg>{script}</svg>").into()),
-        (format!("{chart}/size/0"), 1e12.into()),
-        (format!("{chart}/x/low"), 2.0.into()),
-        (format!("{chart}/curves/0/width"), (-1.0).into()),
-        (format!("{chart}/curves/0/points/0"), serde_json::json!(["x", 1.0])),
-    ] {
-        bench.put("out/nds.json", change(&pointer, value));
-        let ran = bench.run("reproduce nds -o out --force");
-        assert_eq!(ran.status, Some(0), "{pointer}: {}", ran.stderr);
-        assert!(ran.stderr.contains("1/1 nds: finished"), "{pointer}: {}", ran.stderr);
-        assert!(!bench.text("out/nds.html").contains("alert(1)"), "{pointer}");
-    }
-    assert_eq!((bench.files("."), bench.files("out").len()), (vec!["out".to_string()], 4));
-    // Words are taken as they are, and shown as words.
-    let note = format!("/chapter/parts/{words}/note/0/plain");
-    for pointer in [note.clone(), format!("{chart}/title"), format!("{chart}/description")] {
-        bench.put("out/nds.json", change(&pointer, script.into()));
-        let ran = bench.run("reproduce nds -o out --force");
-        assert!(ran.stderr.contains("already finished"), "{pointer}: {}", ran.stderr);
-        let page = bench.page("out/nds.html");
-        assert!(
-            page.contains("&lt;script&gt;alert(1)&lt;/script&gt;") && !page.contains("<script"),
-            "{pointer}"
-        );
-        assert_eq!(
-            bench.text("out/nds.md").contains("\\<script>alert(1)\\</script>"),
-            pointer == note,
-            "{pointer}"
-        );
-    }
-}
-
-#[test]
-fn inverses_are_compared_with_a_straight_line_and_with_each_other() {
-    let bench = Workbench::new();
-    let ran = bench.run("reproduce inverse --quick -o out");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
-    let table = bench.text("out/inverse.csv");
-    let deviation = |way: &str| -> f64 {
-        // The first wanted output comes first.
-        let line = table.lines().find(|line| line.contains(&format!(",piezo-actuator,{way},")));
-        let cell = line.unwrap_or_else(|| panic!("{way}: {table}")).rsplit(',').next().unwrap();
-        cell.split(' ').next().unwrap().parse().unwrap()
-    };
-    // The straight line needs no fit: its deviation is known from the specimen alone.
-    assert!((deviation("line") - 3.25).abs() < 0.01, "{table}");
-    assert!(deviation("classical") < deviation("line"), "{table}");
 }

@@ -24,7 +24,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::{Facts, Rate};
-use crate::law::interval::Interval;
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -338,18 +337,8 @@ impl Law for BoucWen {
         self.damping != 0.0
     }
 
-    fn is_step_free(&self) -> bool {
-        self.n == 1.0 && self.degradation.is_none() && self.damping == 0.0
-    }
-
     fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)> {
         let deterioration = self.degradation.is_none().then_some((Property::Deterioration, false));
         deterioration.into_iter().chain(about_origin.then_some(ODD)).collect()
-    }
-
-    fn output_bound(&self, x: Interval, rate: Interval) -> Interval {
-        let yielded = (self.hysteretic_stiffness * self.yield_displacement).abs();
-        let spring = x.times(self.elastic_stiffness).plus(rate.times(self.damping));
-        Interval::about(self.offset, yielded).plus(spring)
     }
 }

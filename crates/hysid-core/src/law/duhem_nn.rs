@@ -29,7 +29,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::{Defaults, Facts, Rate};
-use crate::law::interval::Interval;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 use crate::simd;
@@ -78,18 +77,6 @@ impl DuhemNn {
             rate: self.rate_scale.map_or(0.0, |scale| limited(sample.rate / scale)),
             step: sample.step,
         }
-    }
-
-    /// Bound of the magnitude of each state for rates of a magnitude up to `rate`, scaled:
-    /// `max(|s_i,0|, |q_i| rate + Σ_j |W_ij|)` (theory.md (8.35)).
-    pub fn state_bounds(&self, rate: f64) -> Vec<f64> {
-        let Cell { targets, rate_gains, initial, .. } = &self.cell;
-        let rows = targets.chunks_exact(self.cell.shape().neurons);
-        let bound = |(i, (row, first)): (usize, (&[f64], &f64))| {
-            let of_rate = rate_gains.get(i).map_or(0.0, |q| q.abs() * rate);
-            first.abs().max(of_rate + row.iter().map(|w| w.abs()).sum::<f64>())
-        };
-        rows.zip(initial).enumerate().map(bound).collect()
     }
 }
 
@@ -230,41 +217,7 @@ impl Law for DuhemNn {
         self.cell.shape().has_time
     }
 
-    fn is_step_free(&self) -> bool {
-        false
-    }
-
     fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
         Vec::new()
-    }
-
-    fn output_bound(&self, x: Interval, rate: Interval) -> Interval {
-        let scaled = |interval: Interval, scale: f64| {
-            interval.rising(|value| (value / scale).clamp(-LARGEST_INPUT, LARGEST_INPUT))
-        };
-        let Cell { stops, hidden, output, .. } = &self.cell;
-        let shape = self.cell.shape();
-        let rate = self.rate_scale.map(|scale| scaled(rate, scale));
-        let fastest = rate.map_or(0.0, |rate| rate.0.abs().max(rate.1.abs()));
-        let from_origin = scaled(x, self.input_scale);
-
-        let mut terms = vec![Interval::point(1.0)];
-        terms.push(scaled(x.plus(Interval::point(-self.input_centre)), self.input_scale));
-        terms.extend(rate);
-        for stop in 0..shape.stops {
-            let of_rate = rate.map(|rate| rate.times(stops[shape.stops + stop]));
-            let drive = from_origin.times(stops[stop]).plus(of_rate.unwrap_or(Interval::point(0.0)));
-            terms.push(drive.stop(1.0).common(Interval::about(0.0, 1.0)));
-        }
-        terms.extend(self.state_bounds(fastest).into_iter().map(|bound| Interval::about(0.0, bound)));
-        let neurons = (0..shape.neurons).map(|neuron| {
-            let weights = hidden.iter().skip(neuron).step_by(shape.neurons);
-            let sum = Interval::sum(terms.iter().zip(weights).map(|(term, &weight)| term.times(weight)));
-            sum.rising(f64::tanh)
-        });
-        let neurons: Vec<Interval> = neurons.collect();
-        terms.extend(neurons);
-        let sum = Interval::sum(terms.iter().zip(output).map(|(term, &weight)| term.times(weight)));
-        sum.times(self.output_scale).plus(Interval::point(self.output_mean))
     }
 }

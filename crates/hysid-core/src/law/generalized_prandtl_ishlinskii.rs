@@ -18,7 +18,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
 use crate::law::facts::{Defaults, Facts};
-use crate::law::interval::Interval;
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -175,16 +174,5 @@ impl Law for GeneralizedPrandtlIshlinskii {
 
     fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
         [WIPES_OUT.as_slice(), &[CONGRUENT]].concat()
-    }
-
-    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
-        let left = x.rising(|x| self.left.value(x)).1;
-        let right = x.rising(|x| self.right.value(x)).0;
-        let play = |(index, weight): (usize, f64)| {
-            let r = self.spacing * index as f64;
-            Interval(self.initial.min(right + r), self.initial.max(left - r)).times(weight)
-        };
-        let weights = self.weights.values(self.spacing, 0);
-        Interval::sum(weights.into_iter().enumerate().map(play)).plus(Interval::point(self.offset))
     }
 }

@@ -33,7 +33,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::Defaults;
-use crate::law::interval::Interval;
 use crate::law::{Dimension, Parameter, Sample};
 use crate::simd;
 
@@ -289,39 +288,6 @@ impl Dynamics {
         }
         self.parameters(Form::StateSpace).iter().try_for_each(|parameter| parameter.check(law))
     }
-
-    /// An interval that contains every output for inputs within an interval (theory.md (15.12)).
-    pub(crate) fn output_bound(&self, x: Interval) -> Interval {
-        let u = self.scaled(x.0).abs().max(self.scaled(x.1).abs());
-        let between = self.hold.largest() * u;
-        let forces: Vec<f64> = self.elements.iter().map(|element| element.bounds().0).collect();
-        let mut bound = self.direct.abs() * u;
-        for (element, force) in self.elements.iter().zip(&forces) {
-            bound += element.in_output.abs() * force;
-        }
-        for (i, mode) in self.modes.iter().enumerate() {
-            let of_elements = self.elements.iter().zip(&forces);
-            let force = mode.gain.abs() * between
-                + of_elements.map(|(element, force)| element.compliances[i].abs() * force).sum::<f64>();
-            let (displacement, velocity) = largest_response(mode.damping);
-            bound += force * (displacement + mode.velocity_in_output.abs() * velocity);
-        }
-        Interval::about(self.output_offset, self.output_scale * bound)
-    }
-}
-
-/// `∫|S|` and `∫|S'|`: the largest displacement and velocity of a mode under a force of a magnitude up to 1.
-fn largest_response(damping: f64) -> (f64, f64) {
-    if damping >= 1.0 {
-        // S does not change its sign, rises once and falls once, to no more than 1/(2 ζ).
-        return (1.0, 1.0 / damping);
-    }
-    // ψ of theory.md (15.12): the damped frequency over the natural one.
-    let psi = (1.0 - damping * damping).sqrt();
-    let decay = (-std::f64::consts::PI * damping / psi).exp();
-    // Peaks of S, each smaller than the one before by the same ratio.
-    let peak = (-damping / psi * psi.atan2(damping)).exp();
-    ((1.0 + decay) / (1.0 - decay), 2.0 * peak / (1.0 - decay))
 }
 
 /// Defaults of a law with so many modes: memory states, or deteriorating stops for elements with degradation.
@@ -374,20 +340,8 @@ macro_rules! law_of_dynamics {
                 true
             }
 
-            fn is_step_free(&self) -> bool {
-                false
-            }
-
             fn memory_properties(&self, _: bool) -> Vec<($crate::property::Property, bool)> {
                 Vec::new()
-            }
-
-            fn output_bound(
-                &self,
-                x: $crate::law::interval::Interval,
-                _: $crate::law::interval::Interval,
-            ) -> $crate::law::interval::Interval {
-                self.0.output_bound(x)
             }
         }
     };

@@ -21,7 +21,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::{Facts, Origin};
-use crate::law::interval::Interval;
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -216,15 +215,7 @@ impl Law for JilesAtherton {
         Ok(self)
     }
 
-    fn is_step_free(&self) -> bool {
-        false
-    }
-
     fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)> {
         [Some((Property::Deterioration, false)), about_origin.then_some(ODD)].into_iter().flatten().collect()
-    }
-
-    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
-        Interval::about(self.offset, self.saturation.abs()).plus(x.times(self.permeability))
     }
 }

@@ -18,7 +18,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::law::facts::{Defaults, Facts};
-use crate::law::interval::Interval;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
 use crate::law::turning_point_stack::{Branch, TurningPointStack};
@@ -168,14 +167,6 @@ impl Law for Masing {
 
     fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
         [WIPES_OUT.as_slice(), &[CONGRUENT, MASING, ODD]].concat()
-    }
-
-    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
-        let parts = self.parts();
-        let stops = parts.thresholds.iter().zip(parts.slopes.windows(2));
-        let stops = stops.map(|(&r, slopes)| x.stop(r).times(slopes[0] - slopes[1]));
-        let last = parts.slopes.last().copied().unwrap_or(0.0);
-        Interval::sum(stops).plus(x.times(last)).plus(Interval::point(parts.constant))
     }
 }
 

@@ -17,7 +17,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::law::facts::{Defaults, Facts};
-use crate::law::interval::Interval;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::properties::WIPES_OUT;
 use crate::law::thresholds::check_weights;
@@ -218,15 +217,5 @@ impl Law for ModifiedPrandtlIshlinskii {
 
     fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
         WIPES_OUT.to_vec()
-    }
-
-    fn output_bound(&self, x: Interval, rate: Interval) -> Interval {
-        let plays = self.hysteresis().output_bound(x, rate);
-        // Far out the polygon is a line, which goes to infinity.
-        if plays.0.is_finite() && plays.1.is_finite() {
-            plays.rising(|z| self.superposition().value(z))
-        } else {
-            Interval::ALL
-        }
     }
 }

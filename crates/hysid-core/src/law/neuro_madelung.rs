@@ -22,7 +22,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::{Defaults, Facts, Rate};
-use crate::law::interval::Interval;
 use crate::law::turning_point_stack::TurningPointStack;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -219,12 +218,6 @@ impl Law for NeuroMadelung {
 
     fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
         vec![(Property::WipingOut, true)]
-    }
-
-    fn output_bound(&self, _: Interval, _: Interval) -> Interval {
-        // theory.md (8.20): its own limit.
-        let (low, high) = self.output_range;
-        Interval(low - (high - low), high + (high - low))
     }
 }
 

@@ -15,7 +15,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::law::facts::{Defaults, Facts};
-use crate::law::interval::Interval;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -164,15 +163,6 @@ impl Law for PrandtlIshlinskii {
 
     fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
         [WIPES_OUT.as_slice(), &[CONGRUENT, MASING, ODD]].concat()
-    }
-
-    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
-        // As plays and as stops; what both allow.
-        let each = || self.thresholds.iter().zip(&self.weights);
-        let plays = Interval::sum(each().map(|(&r, &w)| x.play(r).times(w))).plus(x.times(self.linear));
-        let stops = Interval::sum(each().map(|(&r, &w)| x.stop(r).times(-w)));
-        let slope = self.linear + self.weights.iter().sum::<f64>();
-        plays.common(stops.plus(x.times(slope))).plus(Interval::point(self.constant))
     }
 }
 

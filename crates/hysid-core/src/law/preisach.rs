@@ -21,7 +21,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::law::facts::{Defaults, Facts};
-use crate::law::interval::Interval;
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::thresholds::{check_weights, limited};
 use crate::law::turning_point_stack::{Branch, TurningPointStack};
@@ -216,11 +215,5 @@ impl Law for Preisach {
 
     fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
         [WIPES_OUT.as_slice(), &[CONGRUENT]].concat()
-    }
-
-    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
-        let weights = self.weights();
-        let relays: f64 = weights.reversible.iter().chain(&weights.cells).map(|w| w.abs()).sum();
-        Interval::about(weights.constant, relays).plus(x.times(weights.slope))
     }
 }

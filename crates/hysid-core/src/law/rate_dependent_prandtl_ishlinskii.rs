@@ -18,7 +18,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
 use crate::law::facts::{Defaults, Facts, Rate};
-use crate::law::interval::Interval;
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -166,11 +165,5 @@ impl Law for RateDependentPrandtlIshlinskii {
 
     fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
         [WIPES_OUT.as_slice(), &[CONGRUENT, MASING, ODD]].concat()
-    }
-
-    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
-        // Whatever the rate, thresholds are not negative.
-        let plays = self.weights.values(self.spacing, 1).into_iter().map(|weight| x.play(0.0).times(weight));
-        Interval::sum(plays).plus(x.times(self.spring)).plus(Interval::point(self.offset))
     }
 }

@@ -3,7 +3,6 @@
 use std::fmt::Debug;
 
 use crate::law::Law;
-use crate::law::interval::Interval;
 use crate::law::series::{self, samples_of};
 
 /// Numbers between -1 and 1, the same every time for a seed.
@@ -21,12 +20,7 @@ pub(super) fn run<L: Law>(law: &L, path: &[f64]) -> Vec<f64> {
     series::run(law, &samples_of(path))
 }
 
-/// Checks that every output along a path is finite and within the bound of the law for inputs from this path and 0.
-pub(super) fn assert_within_bound<L: Law + Debug>(law: &L, path: &[f64]) {
-    let x = path.iter().fold(Interval(0.0, 0.0), |x, &v| Interval(x.0.min(v), x.1.max(v)));
-    let bound = law.output_bound(x, Interval::point(0.0));
-    for y in run(law, path) {
-        let slack = 1e-9 * (bound.1 - bound.0).min(f64::MAX);
-        assert!(y.is_finite() && y >= bound.0 - slack && y <= bound.1 + slack, "{law:?}: {y} {bound:?}");
-    }
+/// Checks that every output along a path is finite.
+pub(super) fn assert_finite<L: Law + Debug>(law: &L, path: &[f64]) {
+    assert!(run(law, path).iter().all(|y| y.is_finite()), "{law:?}");
 }

@@ -171,16 +171,6 @@ impl<'m> Probe<'m> {
         [&[x], &self.held[..]].concat()
     }
 
-    /// A record as the body of the model sees it, and how the rate is found there.
-    ///
-    /// # Errors
-    /// A rate that cannot be computed.
-    pub fn as_seen(&self, record: Record) -> Result<(Record, Option<RateMethod>)> {
-        let data = Dataset::new(self.model.names().clone(), vec![record])?;
-        let (seen, rate) = self.model.input_transform().data(&data, self.model.rate())?;
-        Ok((seen.records()[0].clone(), rate))
-    }
-
     /// A path over the trained range: turning points from -1, its lower end, to 1, its upper end.
     pub fn path(&self, turning: &[f64]) -> Path {
         path(self.centre, self.half, turning, STEPS)

@@ -5,7 +5,6 @@ use std::ops::Range;
 use hysid_core::significant::Significant;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::Ranged;
-use serde::{Deserialize, Serialize};
 
 /// Share of the range left free at each end.
 const MARGIN: f64 = 0.04;
@@ -17,16 +16,14 @@ const MOST_DECADES: f64 = 9.0;
 const MOST_BEYOND: f64 = 100.0;
 
 /// An axis of a chart.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// Label: the quantity with its unit.
     pub label: String,
     logarithmic: bool,
     low: f64,
     high: f64,
-    #[serde(skip)]
     ticks: Vec<f64>,
-    #[serde(skip)]
     step: f64,
 }
 
@@ -52,15 +49,6 @@ impl Axis {
 
     fn new(label: String, logarithmic: bool, low: f64, high: f64) -> Self {
         Self { label, logarithmic, low, high, ticks: Vec::new(), step: 0.0 }
-    }
-
-    /// True if it has a range that can be drawn.
-    pub(super) fn is_sound(&self) -> bool {
-        let most = if self.logarithmic { 400.0 } else { f64::MAX };
-        self.low < self.high
-            && self.low.abs() <= most
-            && self.high.abs() <= most
-            && (self.high - self.low).is_finite()
     }
 
     /// The axis with about this many ticks, at least two.

@@ -140,8 +140,7 @@ class ModelDiagnosis(_Findings):
         Ten properties, found by probing the model, and ``"invertible"``: whether the next input follows from the
         wanted output. Only models have this one.
     content : dict
-        The properties, the verdicts from equations and weights, the widths of the loops, and statements on the
-        memory.
+        The properties, the verdicts from equations, and the widths of the loops.
     """
 
 

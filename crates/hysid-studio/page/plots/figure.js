@@ -23,13 +23,12 @@ const LEAST_WINDOW = 1e-6; // Smallest share of the whole range that can be show
  * @property {string} yLabel
  * @property {import("./link.js").Link} [link]
  * @property {number} [height]
- * @property {boolean} [isSmall]: without tools, for small multiples.
  * @property {boolean} [isLog]: logarithmic vertical axis.
  */
 export class Figure {
   /** @param {FigureOptions} options */
-  constructor({ title, kind, xLabel, yLabel, link = null, height = 240, isSmall = false, isLog = false }) {
-    Object.assign(this, { title, kind, xLabel, yLabel, link, height, isSmall, isLog });
+  constructor({ title, kind, xLabel, yLabel, link = null, height = 240, isLog = false }) {
+    Object.assign(this, { title, kind, xLabel, yLabel, link, height, isLog });
     /** @type {Trace[]} */
     this.traces = [];
     this.view = { x: [0, 1], y: [0, 1] };
@@ -56,11 +55,11 @@ export class Figure {
       tool("\u2190", "Move left", () => this.move(-0.2, 0)), tool("\u2192", "Move right", () => this.move(0.2, 0)),
       this.whole, this.readout,
       element("span", { class: "save" }, ...["SVG", "PNG", "CSV"].map((kind) => tool(kind, `Save as ${kind}`, () => save(this, kind)))));
-    this.node = element("figure", { class: `figure ${this.isSmall ? "small" : ""}` },
+    this.node = element("figure", { class: "figure" },
       element("figcaption", {}, element("span", { class: "title", text: this.title }), this.legend),
       this.area,
       element("p", { class: "hidden", id: help, text: "Drag to zoom, Shift and drag to move, double-click to reset. Keys: arrows move, plus and minus zoom, 0 resets." }),
-      this.isSmall ? null : tools);
+      tools);
   }
 
   /**

@@ -72,7 +72,7 @@ export class JudgeStep {
       } catch (error) {
         facts.replaceChildren(problem(error.message));
       }
-    } } }, element("summary", { text: "Model diagnosis: properties, equations, neurons" }), facts);
+    } } }, element("summary", { text: "Model diagnosis: properties, equations" }), facts);
     this.told = null;
     return folded;
   }

@@ -1,4 +1,4 @@
-// Step 7: drive a model by hand or with a wave, and look into a network.
+// Step 7: drive a model by hand or with a wave.
 
 import { choice, slider } from "../controls.js";
 import { button, element, Region } from "../elements.js";
@@ -8,7 +8,6 @@ import { project } from "../project.js";
 import { runBinary } from "../server.js";
 import { drivenBy, HandPath } from "./drives.js";
 import { modelChoice, modelOr, noModel } from "./model-choice.js";
-import { Network } from "./network.js";
 
 /** Runs one request at a time; of those that come meanwhile, only the last. */
 class Latest {
@@ -29,10 +28,9 @@ export class TryStep {
   constructor(body) {
     this.notice = new Notice();
     this.region = new Region();
-    this.network = new Network();
     this.latest = new Latest();
     this.latest.failed = (error) => this.notice.fail(error);
-    body.replaceChildren(this.region.node, this.notice.node, this.network.node);
+    body.replaceChildren(this.region.node, this.notice.node);
   }
   choose(id) { this.model = id; }
 
@@ -40,7 +38,6 @@ export class TryStep {
     const model = modelOr(this.model);
     if (!model) {
       this.region.update("empty", () => [noModel()]);
-      this.network.show(null);
       return;
     }
     // Behind the loop of the model lie the data that it was fitted to, if they are still there.
@@ -49,7 +46,6 @@ export class TryStep {
     if (this.region.key === JSON.stringify(key)) return;
     const columns = file ? await this.notice.during(() => project.columns(file)) : null;
     this.region.update(key, () => this.build(model, columns));
-    this.network.show(model);
     this.runWave();
   }
 
@@ -98,7 +94,6 @@ export class TryStep {
       if (this.now !== model) return;
       this.notice.clear();
       this.draw(path, cut(model.has_band ? 3 : 1));
-      await this.network.run(arrays, path.inputs[0]);
     });
   }
 

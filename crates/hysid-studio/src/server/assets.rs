@@ -50,7 +50,6 @@ const FILES: &[(&str, &[u8])] = files![
     "steps/identify.js",
     "steps/judge.js",
     "steps/model-choice.js",
-    "steps/network.js",
     "steps/take-away.js",
     "steps/try.js",
     "studio.css",

@@ -16,7 +16,6 @@ use super::Shared;
 use super::answer::{Answer, Arrays, Problem, computed, done, download, encoded, value};
 use crate::drive;
 use crate::judgement;
-use crate::neurons::{self, Neurons};
 use crate::project::FitRequest;
 use crate::take_away;
 
@@ -71,12 +70,10 @@ pub async fn judgement(
     Ok(value(told.await?))
 }
 
-/// Rows of a path, and the network that is looked into.
+/// Rows of a path.
 #[derive(Deserialize)]
 pub struct Driven {
     rows: usize,
-    #[serde(default)]
-    network: usize,
 }
 
 impl Driven {
@@ -101,31 +98,6 @@ pub async fn run(
         Ok(Arrays::of(&judgement::columns(&[run])))
     })
     .await
-}
-
-/// What each stop of a network contributes along a path from rest.
-pub async fn run_neurons(
-    State(shared): State<Shared>,
-    Path(id): Path<u64>,
-    Query(driven): Query<Driven>,
-    body: Bytes,
-) -> Answer<Arrays> {
-    computed(shared, move |studio| {
-        let model = studio.model(id)?;
-        let stops = neurons::along(&model, driven.network, driven.path(&model, &body)?.record()?)?;
-        Ok(Arrays::named("stop", &stops))
-    })
-    .await
-}
-
-/// The networks of a model.
-pub async fn networks(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
-    let told = computed(shared, move |studio| {
-        let model = studio.model(id)?;
-        let networks = neurons::networks(&model).into_iter();
-        Ok(networks.filter_map(|(name, network)| Neurons::of(name, network)).collect::<Vec<_>>())
-    });
-    Ok(value(json!({"networks": told.await?})))
 }
 
 /// What is known of a model.

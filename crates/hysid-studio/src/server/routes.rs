@@ -36,8 +36,6 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
         .route("/models/{id}/members/{file}", get(models::members))
         .route("/models/{id}/judgement/{file}", get(models::judgement))
         .route("/models/{id}/run", post(models::run))
-        .route("/models/{id}/neurons", get(models::networks))
-        .route("/models/{id}/neurons/run", post(models::run_neurons))
         .route("/models/{id}/facts", get(models::facts))
         .route("/models/{id}/file", get(models::file))
         .route("/models/{id}/report", get(models::report))

@@ -1,9 +1,9 @@
-//! Shor's sub-gradient methods with space dilatation, which minimise functions that need not be smooth.
+//! Shor's r-algorithm, a sub-gradient method with space dilatation, which minimises functions that need not be smooth.
 //!
 //! ```text
 //! R_γ(ξ) = I + (γ - 1) ξ ξᵀ,  |ξ| = 1
 //! d = B Bᵀg / |Bᵀg|;   x <- x - h d  until  dᵀg(x) <= 0;   B <- B R_{1/α}(ξ)     theory.md (3.7)
-//! ξ ∝ Bᵀ(g⁺ - g)  in the r-algorithm,  ξ ∝ Bᵀg  in the sub-gradient method       theory.md (3.8)
+//! ξ ∝ Bᵀ(g⁺ - g)                                                                 theory.md (3.8)
 //! ```
 //!
 //! `x` are the variables, `g` is a sub-gradient of the function before and `g⁺` after the steps along the
@@ -14,8 +14,8 @@
 //! valley becomes round. `B` has the square of the number of variables as entries; an iteration reads it twice
 //! and writes it once, in addition to the function. Of many variables its dilatations are kept instead.
 //!
-//! [`minimise`] minimises any function. Training advances step by step with [`SpaceDilatation`], whose whole
-//! state can be stored.
+//! Training advances step by step with [`SpaceDilatation`], whose whole state can be stored. Source: Shor and Zhurbenko
+//! (1971).
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,6 @@ use crate::error::{Error, Result};
 use crate::linear_algebra::dilated_space::{DilatedSpace, dilate_vector};
 use crate::linear_algebra::dot;
 use crate::optimise::MOST_COUNTED;
-use crate::optimise::stall::Stall;
 use crate::termination::Termination;
 
 /// A function and one of its sub-gradients: writes the sub-gradient, returns the value.
@@ -38,22 +37,9 @@ impl<F: FnMut(&[f64], &mut [f64]) -> f64> Subdifferentiable for F {
     }
 }
 
-/// Along what the space is dilated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Dilatation {
-    /// Along the difference of two successive sub-gradients: the r-algorithm (Shor and Zhurbenko 1971).
-    Difference,
-    /// Along the sub-gradient itself (Shor 1970). Its step needs a lower bound of the function.
-    Subgradient,
-}
-
 /// Settings of the method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DilatationOptions {
-    /// Along what the space is dilated.
-    #[serde(rename = "dilation")]
-    pub dilatation: Dilatation,
     /// `α`: coefficient of dilatation, above 1, usually 2 to 4.
     pub coefficient: f64,
     /// First step `h`, about the distance to the minimum in units of the scales.
@@ -64,20 +50,11 @@ pub struct DilatationOptions {
     pub shrinkage: f64,
     /// `q2`: factor of the step at every third inner step.
     pub growth: f64,
-    /// A lower bound of the function, for [`Dilatation::Subgradient`].
-    pub lower_bound: f64,
 }
 
 impl Default for DilatationOptions {
     fn default() -> Self {
-        Self {
-            dilatation: Dilatation::Difference,
-            coefficient: 2.5,
-            first_step: 1.0,
-            shrinkage: 1.0,
-            growth: 1.1,
-            lower_bound: 0.0,
-        }
+        Self { coefficient: 2.5, first_step: 1.0, shrinkage: 1.0, growth: 1.1 }
     }
 }
 
@@ -92,8 +69,7 @@ impl DilatationOptions {
         within("coefficient of dilatation", self.coefficient, 1.001, 1e3)?;
         within("first step", self.first_step, 1e-100, 1e100)?;
         within("shrinkage of the step", self.shrinkage, 0.01, 1.0)?;
-        within("growth of the step", self.growth, 1.0, 10.0)?;
-        within("lower bound", self.lower_bound, -1e300, 1e300)
+        within("growth of the step", self.growth, 1.0, 10.0)
     }
 }
 
@@ -214,24 +190,14 @@ impl SpaceDilatation {
         if norm(&self.gradient) == 0.0 {
             return Some(Termination::GradientVanished);
         }
-        if self.options.dilatation == Dilatation::Subgradient {
-            let above = (self.value - self.options.lower_bound).max(0.0);
-            let alpha = self.options.coefficient;
-            self.step = (alpha + 1.0) / alpha * above / norm(&self.transformed);
-        }
         let before = std::mem::replace(&mut self.gradient, vec![0.0; self.x.len()]);
         if !self.walk(f) {
             self.gradient = before;
             return Some(Termination::NoFurtherImprovement);
         }
         let after = self.space.transpose_times(&self.gradient);
-        let xi = match self.options.dilatation {
-            Dilatation::Subgradient => std::mem::take(&mut self.transformed),
-            Dilatation::Difference => difference(&after, &self.transformed),
-        };
-        let is_noise = self.options.dilatation == Dilatation::Difference
-            && self.is_noise(&xi, &difference(&self.gradient, &before));
-        if is_noise {
+        let xi = difference(&after, &self.transformed);
+        if self.is_noise(&xi, &difference(&self.gradient, &before)) {
             self.begin_anew();
         } else {
             self.dilate(&xi, after);
@@ -269,9 +235,6 @@ impl SpaceDilatation {
                 self.best.x.copy_from_slice(&self.x);
             }
             self.last_move = self.step * unit;
-            if self.options.dilatation == Dilatation::Subgradient {
-                return true;
-            }
             // Counted before it is compared: the step grows at the third step, not at the first.
             if inner % STEPS_BEFORE_GROWTH == 0 {
                 self.step *= self.options.growth;
@@ -322,67 +285,6 @@ impl SpaceDilatation {
     fn is_noise(&self, u: &[f64], g: &[f64]) -> bool {
         norm(u) <= NOISE * norm(g) * self.space.largest_entry()
     }
-}
-
-/// Limits of [`minimise`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// Largest number of outer iterations.
-    pub iterations: usize,
-    /// The value of the function at which it ends.
-    pub target: f64,
-    /// Number of successive iterations without a relative decrease of 1e-4 after which it ends; 0 for no such
-    /// limit.
-    pub stall: usize,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self { iterations: 2000, target: f64::NEG_INFINITY, stall: 0 }
-    }
-}
-
-/// Minimises a function that need not be smooth, from `x`.
-///
-/// ```
-/// use hysid::optimise::space_dilatation::{DilatationOptions, Limits, minimise};
-///
-/// // |x - 3| + 100 |y + 1|: a kink along both axes.
-/// let mut f = |x: &[f64], g: &mut [f64]| {
-///     g[0] = (x[0] - 3.0).signum();
-///     g[1] = 100.0 * (x[1] + 1.0).signum();
-///     (x[0] - 3.0).abs() + 100.0 * (x[1] + 1.0).abs()
-/// };
-/// let limits = Limits { iterations: 200, target: 1e-9, ..Limits::default() };
-/// let (minimum, _) = minimise(&mut f, vec![0.0, 0.0], DilatationOptions::default(), limits)?;
-/// assert!((minimum.x[0] - 3.0).abs() < 1e-8 && (minimum.x[1] + 1.0).abs() < 1e-10);
-/// # Ok::<(), hysid::Error>(())
-/// ```
-///
-/// # Errors
-/// As [`SpaceDilatation::new`].
-pub fn minimise(
-    f: &mut impl Subdifferentiable,
-    x: Vec<f64>,
-    options: DilatationOptions,
-    limits: Limits,
-) -> Result<(Minimum, Termination)> {
-    let scales = vec![1.0; x.len()];
-    let mut search = SpaceDilatation::new(x, scales, options, f)?;
-    let mut stall = Stall::new(search.best.value, limits.stall);
-    for _ in 0..limits.iterations {
-        if search.best.value <= limits.target {
-            return Ok((search.best, Termination::Converged));
-        }
-        if let Some(termination) = search.advance(f) {
-            return Ok((search.best, termination));
-        }
-        if stall.is_reached(search.best.value) {
-            return Ok((search.best, Termination::Stalled));
-        }
-    }
-    let reached = search.best.value <= limits.target;
-    Ok((search.best, if reached { Termination::Converged } else { Termination::EpochsUsed }))
 }
 
 fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {

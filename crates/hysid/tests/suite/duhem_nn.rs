@@ -1,4 +1,4 @@
-//! The Duhem neural network: its cell against closed forms, its bounds, its derivatives against difference
+//! The Duhem neural network: its cell against closed forms, its derivatives against difference
 //! quotients, and its identification.
 
 use std::ops::ControlFlow;
@@ -10,13 +10,11 @@ use hysid::error::Error;
 use hysid::fit::identify;
 use hysid::fit::law::Identify;
 use hysid::law::duhem_nn::{Cell, DuhemNn, Input, Layout, Run, Shape};
-use hysid::law::interval::Interval;
 use hysid::law::series::{Series, run};
 use hysid::law::{Law, Sample};
 use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::specimens::cases;
 use hysid::stop_check::StopCheck;
 use hysid::termination::Termination;
 use rand::{RngExt, SeedableRng};
@@ -128,7 +126,7 @@ fn a_state_rests_with_its_input() {
 }
 
 #[test]
-fn states_and_output_stay_within_their_bounds_for_any_parameters() {
+fn outputs_are_finite_for_any_parameters() {
     let mut generator = Generator::seed_from_u64(5);
     for trial in 0..60 {
         let shape = shapes()[trial % 6];
@@ -142,22 +140,7 @@ fn states_and_output_stay_within_their_bounds_for_any_parameters() {
                 step: 10f64.powf(between(&mut generator, -8.0, 8.0)),
             })
             .collect();
-        let range = Interval::about(0.0, largest);
-        let bound = law.output_bound(range, range);
-        assert!(bound.0.is_finite() && bound.1.is_finite());
-        let slack = 1e-12 * (bound.1 - bound.0);
-        for y in run(&law, &samples) {
-            assert!(y >= bound.0 - slack && y <= bound.1 + slack, "{shape:?}: {y} beyond {bound:?}");
-        }
-        let fastest = samples.iter().map(|&sample| law.scaled(sample).rate.abs()).fold(0.0, f64::max);
-        for (i, bound) in law.state_bounds(fastest).into_iter().enumerate() {
-            let mut only_state = DuhemNn { output_mean: 0.0, output_scale: 1.0, ..law.clone() };
-            only_state.cell.output.fill(0.0);
-            only_state.cell.output[1 + shape.channels + shape.stops + i] = 1.0;
-            let outputs = run(&only_state, &samples);
-            let reached = outputs.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
-            assert!(reached > 0.0 && reached <= bound * (1.0 + 1e-12), "{shape:?}: {reached} beyond {bound}");
-        }
+        assert!(run(&law, &samples).iter().all(|y| y.is_finite()), "{shape:?}");
     }
 }
 
@@ -346,42 +329,6 @@ fn it_learns_its_own_kind() {
     let unseen = error(&found.law, &unseen, rate);
     assert!(unseen < 1.0, "{unseen}");
     assert!((error(&found.law, &seen, rate) - found.train_nrmse_percent).abs() < 1e-6);
-}
-
-/// Least squares of the output on input and rate in `train`, and the error in percent on `test`.
-fn linear_error(train: &Dataset, test: &Dataset, rate: RateMethod) -> f64 {
-    let rows = |data: &Dataset| -> Vec<[f64; 3]> {
-        let all = Series::all(data, Some(rate)).unwrap();
-        let rows = all.into_iter().flat_map(|series| series.samples.into_iter().zip(series.output));
-        rows.filter(|(_, y)| !y.is_nan()).map(|(sample, y)| [sample.x, sample.rate, y]).collect()
-    };
-    let mean = |rows: &[[f64; 3]], of: &dyn Fn(&[f64; 3]) -> f64| {
-        rows.iter().map(of).sum::<f64>() / rows.len() as f64
-    };
-    let seen = rows(train);
-    let [x, v, y] = [0, 1, 2].map(|column| mean(&seen, &|row| row[column]));
-    let product = |a: usize, b: usize| mean(&seen, &|row| (row[a] - [x, v, y][a]) * (row[b] - [x, v, y][b]));
-    let determinant = product(0, 0) * product(1, 1) - product(0, 1).powi(2);
-    let of_x = (product(0, 2) * product(1, 1) - product(1, 2) * product(0, 1)) / determinant;
-    let of_rate = (product(1, 2) * product(0, 0) - product(0, 2) * product(0, 1)) / determinant;
-    let unseen = rows(test);
-    let middle = mean(&unseen, &|row| row[2]);
-    let residual = |row: &[f64; 3]| row[2] - y - of_x * (row[0] - x) - of_rate * (row[1] - v);
-    100.0
-        * (mean(&unseen, &|row| residual(row).powi(2)) / mean(&unseen, &|row| (row[2] - middle).powi(2)))
-            .sqrt()
-}
-
-#[test]
-fn it_predicts_a_damper_better_than_a_spring_with_a_dashpot() {
-    let case = cases::generated(5, 5).unwrap().remove(4);
-    assert!(case.name.contains("damper-random"), "{}", case.name);
-    let rate = RateMethod::Central;
-    let options = ClassicalOptions { starts: Some(2), epochs: Some(25), ..options(Some(rate)) };
-    let fitted = identify(&case.train, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(()));
-    let network = fitted.unwrap().model.evaluate(&case.test).unwrap().nrmse_std_percent.unwrap();
-    let linear = linear_error(&case.train, &case.test, rate);
-    assert!(network < 4.0 && network < 0.2 * linear, "{network} and {linear}");
 }
 
 #[test]

@@ -14,7 +14,6 @@ mod initial_state;
 mod intervals;
 mod inverse;
 mod long_records;
-mod measured_records;
 mod model_diagnosis;
 mod model_file;
 mod model_file_page;

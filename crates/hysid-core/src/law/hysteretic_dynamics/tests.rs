@@ -158,21 +158,19 @@ fn derivatives_equal_differences() {
 }
 
 #[test]
-fn outputs_are_bounded_whatever_the_parameters_and_the_steps() {
+fn outputs_are_finite_whatever_the_parameters_and_the_steps() {
     for seed in 0..60 {
         let size = [0.5, 3.0, 30.0][seed as usize % 3];
         let mut dynamics = model(seed, 1 + seed as usize % 3, 1 + seed as usize % 2, SHAPE, size);
         dynamics.begins_under_input = seed % 2 == 0;
         dynamics.hold = Hold::ALL[seed as usize % 3];
         dynamics.modes[0].damping = [1e-4, 0.3, 1.0, 7.0][seed as usize % 4];
-        let bound = dynamics.output_bound(Interval(-5.0, 5.0));
         let mut numbers = Numbers::new(seed);
         let mut motion = dynamics.virgin();
         for _ in 0..400 {
             let step = (8.0 * numbers.next()).exp();
             let sample = Sample { x: 5.0 * numbers.next().signum(), rate: 0.0, step };
-            let y = dynamics.step(&mut motion, sample);
-            assert!(y >= bound.0 && y <= bound.1, "{seed}: {y} is beyond {bound:?}");
+            assert!(dynamics.step(&mut motion, sample).is_finite(), "{seed}");
         }
     }
 }
@@ -367,29 +365,5 @@ fn arithmetic_without_fused_products_agrees_to_rounding() {
     portable.become_portable();
     for (y, sample) in outputs(&dynamics, &samples).iter().zip(&samples) {
         assert!((dynamics.step(&mut portable, *sample) - y).abs() < 1e-9);
-    }
-}
-
-#[test]
-fn the_largest_response_is_the_integral_of_the_impulse_response() {
-    for damping in [0.01, 0.3, 0.9, 1.0, 2.0] {
-        let (h, mut displacement, mut velocity) = (1e-3, 0.0, 0.0);
-        let step = propagation::Propagation::new(1.0, damping, h);
-        let mut state = [0.0, 1.0];
-        for _ in 0..2_000_000 {
-            displacement += h * f64::abs(state[0]);
-            velocity += h * f64::abs(state[1]);
-            let [q, p] = state;
-            state = [
-                step.displacement[0] * q + step.displacement[1] * p,
-                step.velocity[0] * q + step.velocity[1] * p,
-            ];
-            if q.abs() + p.abs() < 1e-12 {
-                break;
-            }
-        }
-        let (bound, of_velocity) = largest_response(damping);
-        assert!((displacement / bound - 1.0).abs() < 2e-3, "{damping}: {displacement} {bound}");
-        assert!(velocity < 1.002 * of_velocity && velocity > 0.7 * of_velocity, "{damping}: {velocity}");
     }
 }

@@ -1,14 +1,14 @@
 //! Soft magnets and ferroelectrics of the cases.
 
-use crate::{Everett, Ferromagnet};
+use hysid::specimens::{Everett, Ferromagnet};
 use hysid_core::error::Result;
 use hysid_core::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid_core::law::preisach::{Preisach, PreisachWeights};
 use hysid_core::law::{Law, Sample};
 use hysid_core::operator::Relaxation;
 
+use super::draw::Draw;
 use super::subject::Subject;
-use crate::draw::Draw;
 
 /// Permeability of vacuum in T m/A.
 const MU_0: f64 = 4e-7 * std::f64::consts::PI;

@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use crate::path;
+use super::path;
 use hysid_core::data::record::Record;
 use hysid_core::error::Result;
 
 use super::Parts;
+use super::draw::Draw;
 use super::subject::Subject;
-use crate::draw::Draw;
 
 /// Share of a cyclic test that is for training.
 const TRAINED: f64 = 0.7;

@@ -3,11 +3,11 @@
 use hysid_core::data::record::ColumnNames;
 use hysid_core::error::Result;
 
+use super::draw::Draw;
 use super::quasi_static::{self, Course, From, LeftOut};
 use super::subject::Subject;
 use super::timed::{self, Band};
 use super::{Parts, devices, magnets, structures};
-use crate::draw::Draw;
 
 /// The design of an experiment.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! Specimens of the cases that are driven along any input, to compare experiments.
 
+use super::draw::Draw;
 use super::plans::PLANS;
 use super::subject::Subject;
-use crate::draw::Draw;
 use hysid_core::data::record::{ColumnNames, Record};
 use hysid_core::error::Result;
 use hysid_core::law::Sample;
@@ -29,7 +29,7 @@ pub struct DrivenSpecimen {
 /// The specimen of the plan of this name, with the random parameters of a seed.
 ///
 /// ```
-/// use hysid_specimens::cases::driven_specimen;
+/// use hysid_lab::generated::driven_specimen;
 /// let brace = driven_specimen("brace-irregular", 1)?.expect("a plan of this name");
 /// let path: Vec<f64> = (0..100).map(|k| brace.range.1 * (0.1 * k as f64).sin()).collect();
 /// let record = brace.run("test", &path, None)?;

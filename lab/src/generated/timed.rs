@@ -1,15 +1,15 @@
 //! Designs of experiments where time may matter: frequencies, pairs of amplitude and frequency, random
 //! histories, a steady sine.
 
-use crate::path;
-use crate::tones::{self, Tone};
+use super::path;
+use super::tones::{self, Tone};
 use hysid_core::data::record::Record;
 use hysid_core::error::Result;
 use hysid_core::law::Sample;
 
 use super::Parts;
+use super::draw::Draw;
 use super::subject::Subject;
-use crate::draw::Draw;
 
 /// Steps of the simulation from row to row.
 const STEPS_PER_ROW: usize = 10;

@@ -1,13 +1,13 @@
 //! Cases of one loop, as most magnetics laboratories measure it, without information on smaller loops.
 
-use crate::path;
+use super::path;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 
+use super::draw::Draw;
 use super::plans::{PLANS, Plan};
 use super::subject::Subject;
 use super::{Case, noisy};
-use crate::draw::Draw;
 
 /// A generator of its own, apart from that of the other cases.
 const FIRST_DRAW: usize = 1000;

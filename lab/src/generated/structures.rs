@@ -1,16 +1,16 @@
 //! Structures and metals of the cases: members in cyclic tests.
 
-use crate::cyclic_plasticity::{Backstress, CyclicPlasticity, CyclicPlasticityParameters};
-use crate::peak_oriented::{PeakOriented, PeakOrientedParameters};
-use crate::{BoucWenBaberNoori, Concrete, ConcreteParameters, ReinforcedConcreteJoint};
+use super::cyclic_plasticity::{Backstress, CyclicPlasticity, CyclicPlasticityParameters};
+use super::peak_oriented::{PeakOriented, PeakOrientedParameters};
+use hysid::specimens::{BoucWenBaberNoori, Concrete, ConcreteParameters, ReinforcedConcreteJoint};
 use hysid_core::error::Result;
 use hysid_core::law::Law;
 use hysid_core::law::bouc_wen::BoucWen;
 use hysid_core::law::masing::{Masing, MasingParts};
 use hysid_core::operator::{DeterioratingStop, Operator};
 
+use super::draw::Draw;
 use super::subject::Subject;
-use crate::draw::Draw;
 
 /// A member after Baber and Noori with its values perturbed, driven to `ductility` displacement scales.
 fn bouc_wen_baber_noori(draw: &mut Draw, mean: BoucWenBaberNoori, ductility: f64) -> Subject {

@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use crate::elastomer::{Elastomer, ElastomerParameters};
-use crate::generalized_play::{Envelope, GeneralizedPlays, Start};
-use crate::magnetorheological_damper::{MagnetorheologicalDamper, MagnetorheologicalDamperParameters};
-use crate::phase_transformation::{PhaseTransformation, PhaseTransformationParameters};
-use crate::{MagnetostrictiveActuator, RateDependentActuator};
+use super::elastomer::{Elastomer, ElastomerParameters};
+use super::magnetorheological_damper::{MagnetorheologicalDamper, MagnetorheologicalDamperParameters};
+use super::phase_transformation::{PhaseTransformation, PhaseTransformationParameters};
+use hysid::specimens::generalized_play::{Envelope, GeneralizedPlays, Start};
+use hysid::specimens::{MagnetostrictiveActuator, RateDependentActuator};
 use hysid_core::error::Result;
 use hysid_core::law::Law;
 use hysid_core::law::bouc_wen::BoucWen;
@@ -14,8 +14,8 @@ use hysid_core::law::modified_prandtl_ishlinskii::{DeadZoneParts, DeadZones, Mod
 use hysid_core::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use hysid_core::operator::Relaxation;
 
+use super::draw::Draw;
 use super::subject::Subject;
-use crate::draw::Draw;
 
 /// A shape-memory actuator by generalized plays: the published law with its values perturbed. Steepness and
 /// shift of an envelope have one factor, so that it stays where it is.

@@ -1,30 +1,29 @@
-//! Compensation: each actuator driven along wanted outputs that no training record resembles, by a straight line, by
-//! the inverse of the best classical model, by that of the default model, and by a model of the inverse.
+//! `compensation`: actuators driven along wanted outputs that no training record resembles, by a straight line, by the
+//! inverse of the best classical model, by that of the default model, and by a model of the inverse.
 
-mod page;
 mod references;
 mod specimens;
 
 use std::ops::ControlFlow;
+use std::time::Instant;
 
+use anyhow::Result;
 use hysid::data::record::{Dataset, Record};
-use hysid::fit::cross_validate;
+use hysid::fit::{cross_validate, identify};
 use hysid::options::chosen::RateChoice;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::options::{FitSpec, ModelName};
-use hysid::{Model, Reference, Result};
+use hysid::{Model, Reference};
 
-use crate::chapter::Chapter;
-use crate::conditions::{Observer, Settings};
-use crate::fitting::{fit, rival};
+use crate::cases::{aligned, row};
 use references::{Shape, shapes};
 use specimens::{ACTUATORS, Actuator, ROWS};
 
 /// Share of the trained output range that a wanted output covers, about its middle. Designed.
 const SHARE: f64 = 0.8;
 
-/// Epochs of the network of a quick run.
-const QUICK_EPOCHS: usize = 20;
+/// Seed of all fits.
+const SEED: u64 = 1;
 
 /// Folds by which the classical model is chosen.
 const FOLDS: usize = 5;
@@ -58,17 +57,15 @@ impl Way {
     const ALL: [Self; 4] = [Self::Line, Self::Classical, Self::Inverse, Self::Direct];
 }
 
-/// What came of one way.
+/// Result of one way.
 struct Tracking {
     way: Way,
     /// RMS deviation of the specimen's output from the wanted one over the second period, in the unit of the output.
     rms: f64,
-    /// That of the model itself, and the share of rows it reached, where a model was inverted.
+    /// RMS deviation of the model itself, and the share of rows it reached, where a model was inverted.
     of_model: Option<(f64, f64)>,
     /// How far the search looked ahead, in s.
     preview: f64,
-    /// The specimen's output over the second period.
-    output: Vec<f64>,
 }
 
 /// The input of a wanted output.
@@ -88,7 +85,6 @@ impl Drive {
 /// One wanted output of one actuator.
 struct Course {
     shape: &'static str,
-    wanted: Vec<f64>,
     tracked: Vec<Tracking>,
 }
 
@@ -113,25 +109,20 @@ struct Compensated {
     courses: Vec<Course>,
 }
 
-/// Runs the experiment.
-pub fn chapter(settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
-    // A quick run has the actuators that are fitted soonest.
-    let actuators = if settings.quick { &ACTUATORS[..1] } else { &ACTUATORS[..] };
-    let all = actuators.iter().map(|actuator| compensated(actuator, settings, observer));
-    Ok(page::chapter(&all.collect::<Result<Vec<_>>>()?))
+/// Runs the command.
+pub fn run() -> Result<()> {
+    let all = ACTUATORS.iter().map(compensated).collect::<Result<Vec<_>>>()?;
+    println!("{}\n\n{}", deviations(&all), models(&all));
+    Ok(())
 }
 
-fn compensated(
-    actuator: &'static Actuator,
-    settings: Settings,
-    observer: &dyn Observer,
-) -> Result<Compensated> {
+fn compensated(actuator: &'static Actuator) -> Result<Compensated> {
     let train = actuator.specimen().train();
-    let began = observer.clock();
-    let (classical, name, error) = best_classical(&train, settings, observer)?;
-    let ours = fit(&train, &default_model(&train, settings), observer)?;
+    let begun = Instant::now();
+    let (classical, name, error) = best_classical(&train)?;
+    let ours = fit(&train, &default_model(&train))?;
     let exchanged = train.exchanged()?;
-    let direct = fit(&exchanged, &default_model(&exchanged, settings), observer)?;
+    let direct = fit(&exchanged, &default_model(&exchanged))?;
     let (low, high) = ours.trained_ranges().output;
     let time: Vec<f64> = (0..2 * ROWS).map(|row| actuator.period * row as f64 / ROWS as f64).collect();
     let course = |shape: &Shape| -> Result<Course> {
@@ -146,65 +137,45 @@ fn compensated(
                 Way::Inverse => inverted(&ours, &reference)?,
                 Way::Direct => Drive::without_search(simulated(&direct, &reference, limits)?),
             };
-            let output = (actuator.response)(&time, &input)[ROWS..].to_vec();
-            Ok(Tracking { way, rms: rms(&output, &wanted[ROWS..]), of_model, preview, output })
+            let output = (actuator.response)(&time, &input);
+            Ok(Tracking { way, rms: rms(&output[ROWS..], &wanted[ROWS..]), of_model, preview })
         };
         let tracked = Way::ALL.into_iter().map(track).collect::<Result<_>>()?;
-        Ok(Course { shape: shape.name, wanted: wanted[ROWS..].to_vec(), tracked })
+        Ok(Course { shape: shape.name, tracked })
     };
     let courses = shapes(ROWS).iter().map(course).collect::<Result<_>>()?;
-    observer.say(&format!(
-        "  inverse, {}: {:.1} s; best classical model {name}",
-        actuator.name,
-        (observer.clock() - began).as_secs_f64()
-    ));
+    eprintln!("{}: {:.1} s; best classical model {name}", actuator.name, begun.elapsed().as_secs_f64());
     Ok(Compensated { actuator, classical: (name, error), range: high - low, courses })
 }
 
-/// `auto`; a network of few epochs in a quick run.
-fn default_model(data: &Dataset, settings: Settings) -> FitSpec {
-    let name = if settings.quick { "xpnn+" } else { "auto" };
-    let model = name.parse::<ModelName>().expect("a model");
-    let rate = RateChoice::Auto.method(model, data.has_time());
-    match FitSpec::of(model, rate, settings.seed) {
-        FitSpec::Network(mut options) => {
-            (options.starts, options.epochs) = (1, QUICK_EPOCHS);
-            FitSpec::Network(options)
-        }
-        spec => spec,
-    }
+/// `auto` with its defaults.
+fn default_model(data: &Dataset) -> FitSpec {
+    let rate = RateChoice::Auto.method(ModelName::AUTO, data.has_time());
+    FitSpec::of(ModelName::AUTO, rate, SEED)
+}
+
+fn fit(data: &Dataset, spec: &FitSpec) -> Result<Model> {
+    Ok(identify(data, spec, &mut |_| ControlFlow::Continue(()))?.model)
 }
 
 /// The classical model with the lowest error on the folds, its name and that error.
-fn best_classical(
-    train: &Dataset,
-    settings: Settings,
-    observer: &dyn Observer,
-) -> Result<(Model, String, f64)> {
+fn best_classical(train: &Dataset) -> Result<(Model, String, f64)> {
     let mut best: Option<(FitSpec, f64)> = None;
-    let models = if settings.quick { &CLASSICAL[..2] } else { &CLASSICAL[..] };
-    for &model in models {
-        let name = ModelName::Classical(model);
-        let rate = RateChoice::Auto.method(name, train.has_time());
-        let options = ClassicalOptions { rate, seed: settings.seed, ..ClassicalOptions::of(model) };
-        let request = rival(FitSpec::Classical(options), settings);
-        if request.model().check_data(train, request.rate()).is_err() {
+    for model in CLASSICAL {
+        let rate = RateChoice::Auto.method(ModelName::Classical(model), train.has_time());
+        let options = ClassicalOptions { rate, seed: SEED, ..ClassicalOptions::of(model) };
+        let spec = FitSpec::Classical(options);
+        if spec.model().check_data(train, spec.rate()).is_err() {
             continue;
         }
-        let validated = cross_validate(train, &request, FOLDS, &mut |_| match observer.is_stopped() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        })?;
-        if observer.is_stopped() {
-            return Err(hysid::Error::Stopped);
-        }
+        let validated = cross_validate(train, &spec, FOLDS, &mut |_| ControlFlow::Continue(()))?;
         let error = validated.unseen_nrmse_std_percent.unwrap_or(f64::INFINITY);
         if best.as_ref().is_none_or(|(_, least)| error < *least) {
-            best = Some((request, error));
+            best = Some((spec, error));
         }
     }
-    let (request, error) = best.expect("classical models fit these data");
-    Ok((fit(train, &request, observer)?, request.label(), error))
+    let (spec, error) = best.expect("classical models fit these data");
+    Ok((fit(train, &spec)?, spec.label(), error))
 }
 
 /// The inputs of the straight line through the training data, within the trained range.
@@ -242,6 +213,54 @@ fn simulated(direct: &Model, reference: &Reference<'_>, (low, high): (f64, f64))
     }
     let input = direct.simulate(&record)?;
     Ok(input.into_iter().map(|x| x.clamp(low, high)).collect())
+}
+
+/// RMS deviations of the specimen's output from the wanted one, in percent of the range.
+fn deviations(all: &[Compensated]) -> String {
+    let mut rows = vec![row("specimen", &["wanted output", "line", "classical", "inverse", "direct"])];
+    for compensated in all {
+        for course in &compensated.courses {
+            let cells = Way::ALL.map(|way| {
+                let percent = 100.0 * course.of(way).rms / compensated.range;
+                match way {
+                    Way::Line => format!("{percent:.3}"),
+                    _ => format!("{percent:.3} ({:.1})", course.gain(way)),
+                }
+            });
+            let cells = [vec![course.shape.to_owned()], cells.to_vec()].concat();
+            rows.push(row(compensated.actuator.name, &cells));
+        }
+    }
+    aligned(&rows)
+}
+
+/// The models that were inverted: RMS deviation of the model's own output, in percent of the range.
+fn models(all: &[Compensated]) -> String {
+    let columns = ["wanted output", "inverted model", "model deviates, %", "rows reached, %", "preview, ms"];
+    let mut rows = vec![row("specimen", &columns)];
+    for Compensated { actuator, classical: (name, error), range, courses } in all {
+        for course in courses {
+            for way in [Way::Classical, Way::Inverse] {
+                let &Tracking { of_model: Some((deviation, reached)), preview, .. } = course.of(way) else {
+                    continue;
+                };
+                let model = match way {
+                    Way::Classical => format!("{name}, {error:.3} % of std on the folds"),
+                    _ => "auto".into(),
+                };
+                let figures = [
+                    format!("{:.2e}", 100.0 * deviation / range),
+                    format!("{:.2}", 100.0 * reached),
+                    format!("{:.3}", 1e3 * preview),
+                ];
+                rows.push(row(
+                    actuator.name,
+                    &[vec![course.shape.to_owned(), model], figures.to_vec()].concat(),
+                ));
+            }
+        }
+    }
+    aligned(&rows)
 }
 
 fn rms(found: &[f64], wanted: &[f64]) -> f64 {

@@ -6,21 +6,29 @@
 //! with a standard normal number `N(0, 1)`; amplitudes, cycles, amount of data and noise vary. All plans and
 //! values are *designed*; the sources of the laws are given with them.
 
+mod cyclic_plasticity;
 mod devices;
+mod draw;
 mod driven;
+mod elastomer;
+mod magnetorheological_damper;
 mod magnets;
 mod one_loop;
+mod path;
+mod peak_oriented;
+mod phase_transformation;
 mod plans;
 mod quasi_static;
 mod structures;
 mod subject;
 mod timed;
+mod tones;
 
+use hysid::specimens::with_noise;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 
-use super::draw::Draw;
-use super::noise::with_noise;
+use draw::Draw;
 pub use driven::{DrivenSpecimen, driven_specimen};
 pub use one_loop::one_loop;
 use plans::PLANS;
@@ -54,7 +62,7 @@ struct Parts {
 /// cases the plans repeat with other parameters.
 ///
 /// ```
-/// let cases = hysid_specimens::cases::generated(2, 1)?;
+/// let cases = hysid_lab::generated::generated(2, 1)?;
 /// assert_eq!(cases[0].name, "g01-joint-growing");
 /// assert!(cases[0].train.scored() > cases[0].test.scored());
 /// # Ok::<(), hysid_core::Error>(())

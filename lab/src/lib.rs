@@ -1,0 +1,3 @@
+//! Generated cases, which commands and tests of the laboratory share.
+
+pub mod generated;
