@@ -5,6 +5,9 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
+/// The whole workspace. Python's symbols are those of the interpreter that loads the native module.
+pub const EVERYTHING: [&str; 4] = ["--workspace", "--features", "hysid-python/extension-module", "--locked"];
+
 /// Runs `cargo` with these arguments and environment variables at the root of the workspace, as one step.
 pub fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result<()> {
     let step = format!("cargo {}", arguments.join(" "));
@@ -26,10 +29,21 @@ pub fn program() -> PathBuf {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()).into()
 }
 
-/// The release build of the program `hysid`.
+/// Builds the whole workspace once: libraries, the program, the native module of the Python package, and every test.
+/// Cargo chooses the features of a dependency by what is built with it, so that parts by themselves would build many
+/// dependencies anew.
+pub fn build_everything() -> Result<()> {
+    cargo(&[&["build", "--lib", "--bins", "--tests"], &EVERYTHING[..]].concat(), &[])
+}
+
+/// A file that [`build_everything`] makes.
+pub fn built(name: &str) -> Result<PathBuf> {
+    Ok(target()?.join("debug").join(name))
+}
+
+/// The program `hysid`, of [`build_everything`].
 pub fn built_program() -> Result<PathBuf> {
-    cargo(&["build", "--release", "--locked", "--package", "hysid-cli"], &[])?;
-    Ok(target()?.join("release").join(format!("hysid{}", std::env::consts::EXE_SUFFIX)))
+    built(&format!("hysid{}", std::env::consts::EXE_SUFFIX))
 }
 
 /// Cargo's target folder: we lie in a folder of it ourselves, wherever it was put.

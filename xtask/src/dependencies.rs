@@ -28,7 +28,7 @@ const SOURCE: &str = "registry+https://github.com/rust-lang/crates.io-index";
 /// renders a document or reads columns identifies nothing, the studio is no program, and experiments have no files and no
 /// terminal.
 const NOT_NEEDED: [(&str, &[&str]); 5] = [
-    ("hysid-core", &["rayon", "rand", "rand_xoshiro", "postcard"]),
+    ("hysid-core", &["rayon", "rand", "rand_xoshiro", "rmp-serde", "rmp"]),
     ("hysid-document", &["hysid", "hysid-files", "rayon", "rand", "clap"]),
     ("hysid-records", &["hysid", "hysid-cli", "rayon", "rand", "clap"]),
     ("hysid-studio", &["hysid-cli", "clap", "indicatif", "resvg"]),

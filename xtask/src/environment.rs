@@ -51,6 +51,14 @@ impl Environment {
         Ok(environment)
     }
 
+    /// The folder of its packages.
+    pub fn packages(&self) -> Result<PathBuf> {
+        let asked = ["-c", "import sysconfig; print(sysconfig.get_path('platlib'))"];
+        let output = self.python().args(asked).output().context("step `packages`")?;
+        ensure!(output.status.success(), "step `packages`: Python tells no folder");
+        Ok(String::from_utf8(output.stdout)?.trim_end().into())
+    }
+
     /// Runs pip with further arguments.
     pub fn install(&self, with: impl FnOnce(&mut Command) -> &mut Command) -> Result<()> {
         let mut pip = self.python();

@@ -50,7 +50,7 @@ fn main() -> ExitCode {
         DeveloperCommand::Check => check::run(),
         DeveloperCommand::Test { quick: false } => test::run(),
         DeveloperCommand::Test { quick: true } => test::quick(),
-        DeveloperCommand::Python => python::test(),
+        DeveloperCommand::Python => python::build_and_test(),
         DeveloperCommand::Site => site::run(),
         DeveloperCommand::Sdist => python::source_distribution(),
         DeveloperCommand::Tidy => tidy::run(),

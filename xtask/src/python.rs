@@ -6,10 +6,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-use crate::cargo::{built_program, target, workspace_root};
+use crate::cargo::{build_everything, built, built_program, target, workspace_root};
 use crate::environment::{Environment, step};
 
-/// Every test of the package.
+/// Builds what the tests of the package need, and runs them.
+pub fn build_and_test() -> Result<()> {
+    build_everything()?;
+    test()
+}
+
+/// Every test of the package, after [`build_everything`].
 pub fn test() -> Result<()> {
     let environment = Environment::of_package()?;
     install(&environment)?;
@@ -30,7 +36,7 @@ pub fn test() -> Result<()> {
 /// fit a model. It is compiled from nothing, which takes minutes: the workflow of the wheels does the same for a release.
 pub fn source_distribution() -> Result<()> {
     let archives = target()?.join("sdist");
-    let archive = built(&archives, &["sdist"])?;
+    let archive = built_by_maturin(&archives, &["sdist"])?;
     let folder = std::env::temp_dir().join(format!("hysid-sdist-{}", std::process::id()));
     let outcome = install_alone(&archive, &folder);
     fs::remove_dir_all(&folder).context("step `sdist`: the environment cannot be removed")?;
@@ -47,14 +53,29 @@ fn install_alone(archive: &Path, folder: &Path) -> Result<()> {
     step("installed.py", environment.python().arg(test).current_dir(folder))
 }
 
-/// Builds the wheel and installs it: what is tested is what a user gets.
+/// Puts the package where the environment's Python finds it: its files, and the native module of the workspace's build.
+/// Wheels are built and tested by the workflow of the wheels, and by [`source_distribution`].
 fn install(environment: &Environment) -> Result<()> {
-    let wheel = built(&target()?.join("wheels"), &["build", "--release", "--locked", "--quiet"])?;
-    environment.install(|pip| pip.args(["--no-deps", "--force-reinstall"]).arg(wheel))
+    let place = environment.packages()?.join("hysid");
+    if place.exists() {
+        fs::remove_dir_all(&place).with_context(|| format!("{} cannot be removed", place.display()))?;
+    }
+    fs::create_dir_all(&place)?;
+    for entry in fs::read_dir(package().join("python").join("hysid"))? {
+        let entry = entry?;
+        if entry.file_type()?.is_file() {
+            fs::copy(entry.path(), place.join(entry.file_name()))?;
+        }
+    }
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let module = built(&format!("{prefix}_hysid{suffix}"))?;
+    let name = if cfg!(windows) { "_hysid.pyd" } else { "_hysid.abi3.so" };
+    fs::copy(&module, place.join(name)).with_context(|| module.display().to_string())?;
+    Ok(())
 }
 
 /// The one file that maturin builds into a folder, which is emptied before.
-fn built(folder: &Path, arguments: &[&str]) -> Result<PathBuf> {
+fn built_by_maturin(folder: &Path, arguments: &[&str]) -> Result<PathBuf> {
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
     }

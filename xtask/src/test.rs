@@ -3,13 +3,14 @@
 
 use anyhow::Result;
 
-use crate::cargo::cargo;
+use crate::cargo::{EVERYTHING, build_everything, cargo};
 use crate::environment::Environment;
 use crate::proofs::Proofs;
 use crate::{browser, python, site};
 
 pub fn run() -> Result<()> {
     let proofs = Proofs::begin()?;
+    build_everything()?;
     rust(&proofs)?;
     python::test()?;
     browser::test(&proofs)?;
@@ -33,5 +34,5 @@ fn rust(proofs: &Proofs) -> Result<()> {
     let python = Environment::of_package()?.python_path();
     let environment =
         [("HYSID_PYTHON", &*python.to_string_lossy()), ("HYSID_UNPROVED", &*proofs.path().to_string_lossy())];
-    cargo(&["test", "--workspace", "--exclude", "hysid-python", "--locked"], &environment)
+    cargo(&[&["test"], &EVERYTHING[..]].concat(), &environment)
 }

@@ -11,20 +11,12 @@ use crate::options::network::FitOptions;
 const MAGIC: &[u8] = b"hysid checkpoint 1\n";
 
 /// The state of an unfinished fit, without the data.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Checkpoint {
     options: FitOptions,
     /// Checksum of the data.
     data: u32,
     state: State,
-}
-
-/// The content of a checkpoint file. Options, which leave out what was not asked for, need names: they are JSON.
-#[derive(Serialize, Deserialize)]
-struct Stored<S> {
-    options: String,
-    data: u32,
-    state: S,
 }
 
 impl Checkpoint {
@@ -40,9 +32,7 @@ impl Checkpoint {
 
     /// The bytes of a checkpoint file.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let options = serde_json::to_string(&self.options).expect("options are plain data");
-        let stored = Stored { options, data: self.data, state: &self.state };
-        let content = postcard::to_allocvec(&stored).expect("a checkpoint is plain data");
+        let content = rmp_serde::to_vec_named(self).expect("a checkpoint is plain data");
         let sum = crc32fast::hash(&content).to_le_bytes();
         [MAGIC, &sum, &content].concat()
     }
@@ -68,14 +58,9 @@ impl Checkpoint {
         if crc32fast::hash(content) != u32::from_le_bytes(*sum) {
             return refused("the checkpoint is cut off or damaged");
         }
-        let read = || {
-            let stored: Stored<State> = postcard::from_bytes(content).ok()?;
-            let options = serde_json::from_str(&stored.options).ok()?;
-            Some(Self { options, data: stored.data, state: stored.state })
-        };
-        match read() {
-            Some(checkpoint) => Ok(checkpoint),
-            None => refused("the checkpoint was written by another version of hysid"),
+        match rmp_serde::from_slice(content) {
+            Ok(checkpoint) => Ok(checkpoint),
+            Err(_) => refused("the checkpoint was written by another version of hysid"),
         }
     }
 
