@@ -415,13 +415,4 @@ mod benchmark {
         assert_eq!(sweep.inputs()[0][0], 0.0);
         assert!(sweep.output()[0].abs() < 1e-18, "{}", sweep.output()[0]);
     }
-
-    #[test]
-    fn a_seed_gives_its_own_records() {
-        let (first, second) = (training(1).unwrap(), training(2).unwrap());
-        assert_eq!(first, training(1).unwrap());
-        assert_ne!(first[0].inputs(), second[0].inputs());
-        let test = &tests(1).unwrap()[0];
-        assert_ne!(first[0].inputs()[0][..PERIOD], test.inputs()[0][..PERIOD]);
-    }
 }

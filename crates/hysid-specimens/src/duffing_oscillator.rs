@@ -182,16 +182,4 @@ mod tests {
         assert!(difference < 1e-4 * largest, "{difference} of {largest}");
         assert!((1e-3..3e-3).contains(&largest), "{largest}");
     }
-
-    #[test]
-    fn a_seed_gives_its_own_records() {
-        assert_eq!(SPECIMEN.train_with_seed(5), SPECIMEN.train_with_seed(5));
-        assert_ne!(SPECIMEN.train_with_seed(5), SPECIMEN.train_with_seed(6));
-        let (train, test) = (SPECIMEN.train(), SPECIMEN.test());
-        assert_ne!(train.records()[0].inputs(), test.records()[0].inputs());
-        let rows = |data: &hysid_core::data::record::Dataset| -> Vec<usize> {
-            data.records().iter().map(Record::len).collect()
-        };
-        assert_eq!((rows(&train), rows(&test)), (vec![8192; 2], vec![8192, 16_384]));
-    }
 }

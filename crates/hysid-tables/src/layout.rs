@@ -265,12 +265,6 @@ mod tests {
     }
 
     #[test]
-    fn equal_names_are_numbered_or_told_by_the_line_above() {
-        assert_eq!(names("t,x,x\n0,1,2\n1,2,3\n"), ["t", "x", "x (2)"]);
-        assert_eq!(names("Left,Left,Right\nx,F,x\n0,1,2\n1,2,3\n"), ["Left x", "Left F", "Right x"]);
-    }
-
-    #[test]
     fn a_line_of_text_among_rows_does_not_end_the_search() {
         let found = layout("t,x,state\n0,1.5,ok\n1,2.5,ok\n2,n/a,fault\n3,4,ok\n");
         assert_eq!((found.names.len(), found.line), (3, 2));

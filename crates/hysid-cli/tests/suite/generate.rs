@@ -1,6 +1,6 @@
 //! `hysid generate` as a user runs it.
 
-use crate::workbench::{Ran, Workbench, error_line};
+use crate::workbench::{Ran, Workbench};
 
 const SPECIMENS: [&str; 16] = [
     "ferromagnet",
@@ -157,37 +157,19 @@ fn requests_that_cannot_be_met_are_refused_in_one_line() {
                            exists: 'concrete'"
     );
     let unnamed = format!("name a specimen: {names} (--list describes them)");
-    let noise = |value: &str| {
-        format!("invalid value '{value}' for '--noise <PERCENT>': a number of percent, 0 or more, is needed")
-    };
-    for (arguments, status, expected) in [
-        ("generate concret", 2, unknown.as_str()),
-        ("generate", 2, &unnamed),
-        ("generate concrete --noise -1", 2, &noise("-1")),
-        ("generate concrete --noise NaN", 2, &noise("NaN")),
-        ("generate concrete --noise inf", 2, &noise("inf")),
-        ("generate concrete --noise much", 2, &noise("much")),
-        ("generate concrete --list", 2, "the argument '[SPECIMEN]' cannot be used with '--list'"),
-        (
-            "generate concrete -o - --test -",
-            2,
-            "training and test data cannot both go to stdout: name a file with --out or --test",
-        ),
-        (
-            "generate concrete -o a.csv --test ./a.csv",
-            2,
-            "a.csv would be overwritten: name another file with --out",
-        ),
-        ("generate concrete -o folder", 1, "folder: cannot be written: is a directory"),
-        (
-            "generate concrete -o a.csv --test nowhere/a.csv",
-            1,
-            "nowhere/a.csv: cannot be written: no such file or directory",
-        ),
-    ] {
-        let ran = bench.run(arguments);
-        assert_eq!(ran.last_line(), error_line(arguments, status, expected), "hysid {arguments}");
-        assert_eq!((ran.status, ran.stdout.as_str()), (Some(status), ""), "hysid {arguments}");
-    }
+    bench.refuses(&format!(
+        "
+        2 generate concret => {unknown}
+        2 generate => {unnamed}
+        2 generate concrete --noise NaN => invalid value 'NaN' for '--noise <PERCENT>': a number of percent, 0 or more, is needed
+        2 generate concrete --noise inf => invalid value 'inf' for '--noise <PERCENT>': a number of percent, 0 or more, is needed
+        2 generate concrete --noise much => invalid value 'much' for '--noise <PERCENT>': a number of percent, 0 or more, is needed
+        2 generate concrete --list => the argument '[SPECIMEN]' cannot be used with '--list'
+        2 generate concrete -o - --test - => training and test data cannot both go to stdout: name a file with --out or --test
+        2 generate concrete -o a.csv --test ./a.csv => a.csv would be overwritten: name another file with --out
+        1 generate concrete -o folder => folder: cannot be written: is a directory
+        1 generate concrete -o a.csv --test nowhere/a.csv => nowhere/a.csv: cannot be written: no such file or directory
+    "
+    ));
     assert!(!bench.path("a.csv").exists(), "nothing is written before all of it can be");
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::workbench::{Ran, Workbench};
+use crate::workbench::{Ran, Workbench, cases};
 
 /// The training data: growing loops of a spring beside a friction slider.
 fn training() -> Vec<(f64, f64)> {
@@ -326,34 +326,28 @@ fn bad_references_are_refused_with_their_place() {
     bench.put("taken.csv", "F_kN,reach\n1,far\n2,far\n");
     bench.put("taken_too.csv", "F_kN,x_mm,x_mm_inverse\n1,1,1\n2,2,2\n");
     bench.put("both.csv", "F_kN,x_mm\n1,1\n2,2\n");
-    for (arguments, status, text) in [
-        ("stage.json blank.csv -o d.csv", 1, "blank.csv, line 3, column \"F_kN\": the cell is empty"),
-        ("stage.json word.csv -o d.csv", 1, "word.csv, line 3, column \"F_kN\""),
-        ("stage.json other.csv -o d.csv", 1, "other.csv: there is no column \"F_kN\", the model's output"),
-        ("stage.json unsorted.csv -o d.csv --slew 1", 1, "unsorted.csv, line 4"),
-        (
-            "stage.json both.csv -o d.csv --slew 1",
-            1,
-            "both.csv: there is no column of time, which the rate, a slew limit",
-        ),
-        ("stage.json none.csv -o d.csv", 1, "none.csv"),
-        ("stage.json empty.csv -o d.csv", 1, "empty.csv"),
-        ("stage.json missing.csv -o d.csv", 1, "missing.csv"),
-        ("missing.json one.csv -o d.csv", 1, "missing.json"),
-        ("stage.json taken.csv -o d.csv", 1, "taken.csv: there is already a column \"reach\""),
-        ("stage.json taken_too.csv -o d.csv", 1, "taken_too.csv: there is already a column \"x_mm_inverse\""),
-        ("stage.json one.csv --json", 2, "--json prints to stdout in place of the table"),
-        ("stage.json one.csv --limits 3:1", 2, "the low limit 3 is not below the high one"),
-        (
-            "stage.json one.csv --input F_kN -o d.csv",
-            2,
-            "the model has no further inputs; leave --input away",
-        ),
-        ("stage.json one.csv --slew 0", 2, "a number above 0 is needed"),
-        ("stage.json one.csv --preview soon", 2, "`auto` or a time of 0 or more is needed"),
-        ("stage.json one.csv -o train.csv", 2, "train.csv"),
-        ("stage.json one.csv -o one.csv", 2, "one.csv"),
-    ] {
+    for (status, arguments, text) in cases(
+        r#"
+        1 stage.json blank.csv -o d.csv => blank.csv, line 3, column "F_kN": the cell is empty
+        1 stage.json word.csv -o d.csv => word.csv, line 3, column "F_kN"
+        1 stage.json other.csv -o d.csv => other.csv: there is no column "F_kN", the model's output
+        1 stage.json unsorted.csv -o d.csv --slew 1 => unsorted.csv, line 4
+        1 stage.json both.csv -o d.csv --slew 1 => both.csv: there is no column of time, which the rate, a slew limit
+        1 stage.json none.csv -o d.csv => none.csv
+        1 stage.json empty.csv -o d.csv => empty.csv
+        1 stage.json missing.csv -o d.csv => missing.csv
+        1 missing.json one.csv -o d.csv => missing.json
+        1 stage.json taken.csv -o d.csv => taken.csv: there is already a column "reach"
+        1 stage.json taken_too.csv -o d.csv => taken_too.csv: there is already a column "x_mm_inverse"
+        2 stage.json one.csv --json => --json prints to stdout in place of the table
+        2 stage.json one.csv --limits 3:1 => the low limit 3 is not below the high one
+        2 stage.json one.csv --input F_kN -o d.csv => the model has no further inputs; leave --input away
+        2 stage.json one.csv --slew 0 => a number above 0 is needed
+        2 stage.json one.csv --preview soon => `auto` or a time of 0 or more is needed
+        2 stage.json one.csv -o train.csv => train.csv
+        2 stage.json one.csv -o one.csv => one.csv
+    "#,
+    ) {
         refused(&bench, arguments, status, text);
     }
     // Of a single row there is an input.

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::workbench::{Ran, Workbench, error_line};
+use crate::workbench::{Ran, Workbench};
 
 /// What a machine without fonts says of PDF and PNG. Set where no proof may be missing.
 const PROVE_ALL: &str = "HYSID_PROVE_ALL";
@@ -230,50 +230,19 @@ fn what_cannot_be_drawn_is_said_in_one_line_and_nothing_is_written() {
     let bench = with_member();
     bench.put("line.csv", "x,y\n0,0\n1,1\n2,2\n3,3\n4,4\n5,5\n6,6\n7,7\n8,8\n9,9\n10,10\n");
     let before = bench.files(".");
-    let cases = [
-        (
-            "plot member.csv -o figure.jpg",
-            2,
-            "figure.jpg: the ending tells the format of the figure: .svg, .pdf or .png",
-        ),
-        (
-            "plot member.csv -o figure",
-            2,
-            "figure: the ending tells the format of the figure: .svg, .pdf or .png",
-        ),
-        (
-            "plot model.json",
-            2,
-            "model.json is a model: name data to draw it on, or let `hysid cycles` drive and draw it alone",
-        ),
-        (
-            "plot member.csv --kind errors",
-            2,
-            "errors need a model: hysid plot MODEL.json DATA.csv --kind errors",
-        ),
-        ("plot member.csv --band 0.9", 2, "--band needs a model: hysid plot MODEL.json DATA.csv"),
-        (
-            "plot model.json member.csv --kind errors --height 30",
-            2,
-            "--height 30 has no room for 2 charts: choose more, or draw fewer with --only",
-        ),
-        (
-            "plot member.csv --only third",
-            1,
-            "member.csv: there is no record \"third\" for --only (records: member)",
-        ),
-        (
-            "plot member.csv --kind frequency",
-            1,
-            "member.csv: no amplitude was run at several frequencies (or there is no time), so there is nothing to draw over frequency",
-        ),
-    ];
-    for (arguments, status, said) in cases {
-        let ran = bench.run(arguments);
-        assert_eq!(ran.status, Some(status), "{arguments}: {}", ran.stderr);
-        assert_eq!(ran.last_line(), error_line(arguments, status, said), "{arguments}");
-        assert_eq!(bench.files("."), before, "{arguments}");
-    }
+    bench.refuses(
+        r#"
+        2 plot member.csv -o figure.jpg => figure.jpg: the ending tells the format of the figure: .svg, .pdf or .png
+        2 plot member.csv -o figure => figure: the ending tells the format of the figure: .svg, .pdf or .png
+        2 plot model.json => model.json is a model: name data to draw it on, or let `hysid cycles` drive and draw it alone
+        2 plot member.csv --kind errors => errors need a model: hysid plot MODEL.json DATA.csv --kind errors
+        2 plot member.csv --band 0.9 => --band needs a model: hysid plot MODEL.json DATA.csv
+        2 plot model.json member.csv --kind errors --height 30 => --height 30 has no room for 2 charts: choose more, or draw fewer with --only
+        1 plot member.csv --only third => member.csv: there is no record "third" for --only (records: member)
+        1 plot member.csv --kind frequency => member.csv: no amplitude was run at several frequencies (or there is no time), so there is nothing to draw over frequency
+    "#,
+    );
+    assert_eq!(bench.files("."), before);
     let refused = [
         "plot model.json member.csv --band 0.9",
         "plot line.csv --kind cycles",

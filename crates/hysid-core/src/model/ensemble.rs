@@ -402,13 +402,6 @@ mod tests {
     }
 
     #[test]
-    fn equal_weights_give_the_ordinary_median() {
-        assert_eq!(quantile(&[(3.0, 1.0), (1.0, 1.0), (2.0, 1.0)], 0.5), 2.0);
-        assert_eq!(quantile(&[(4.0, 0.5), (1.0, 0.5), (2.0, 0.5), (8.0, 0.5)], 0.5), 3.0);
-        assert_eq!(quantile(&[(5.0, 0.3)], 0.5), 5.0);
-    }
-
-    #[test]
     fn a_value_without_weight_counts_nothing_and_one_with_most_decides() {
         assert_eq!(quantile(&[(-9.0, 0.0), (1.0, 1.0), (9.0, 0.0)], 0.5), 1.0);
         let near = quantile(&[(0.0, 1.0), (1.0, 1e-9), (-1.0, 1e-9)], 0.5);

@@ -145,24 +145,6 @@ fn outputs_are_finite_for_any_parameters() {
 }
 
 #[test]
-fn a_run_that_is_divided_is_the_same_to_the_last_bit() {
-    let mut generator = Generator::seed_from_u64(7);
-    for shape in shapes() {
-        let law = law_of(random_cell(shape, 1.0, &mut generator));
-        let samples: Vec<Sample> = (0..200)
-            .map(|k| Sample { x: (0.3 * f64::from(k)).sin(), rate: (0.3 * f64::from(k)).cos(), step: 0.1 })
-            .collect();
-        let whole = run(&law, &samples);
-        let mut state = law.virgin();
-        for (row, (&sample, y)) in samples.iter().zip(&whole).enumerate() {
-            let stepped = law.step(&mut state, sample);
-            assert_eq!(stepped.to_bits(), y.to_bits(), "{shape:?}, row {row}");
-            state = state.clone();
-        }
-    }
-}
-
-#[test]
 fn parts_that_do_not_go_together_are_refused() {
     let mut generator = Generator::seed_from_u64(9);
     let law = law_of(random_cell(shapes()[0], 1.0, &mut generator));
@@ -367,50 +349,6 @@ fn a_model_without_rate_or_time_has_only_what_its_data_have() {
         assert_eq!((channels == 2, relaxes), (has_rate, has_time), "{rate:?}");
         let error = again.evaluate(&data).unwrap().nrmse_std_percent.unwrap();
         assert!(error < 10.0, "{rate:?}: {error} %");
-    }
-}
-
-#[test]
-fn the_number_of_threads_does_not_matter() {
-    let law = relaxation(1.0, 0.5, 0.8, 0.0);
-    let rate = Some(RateMethod::Central);
-    let data = data(&law, rate, vec![timed("a", 300, 1.0), timed("b", 300, 1.7)]);
-    let options = ClassicalOptions { starts: Some(5), epochs: Some(14), ..options(rate) };
-    let found = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let found = pool.install(|| DuhemNn::fit(&data, &options, &mut go_on)).unwrap();
-        (found.law, found.evaluations)
-    };
-    assert_eq!(found(1), found(3));
-}
-
-#[test]
-fn a_fit_can_be_broken_off_and_gives_the_best_so_far() {
-    let law = relaxation(1.0, 0.5, 0.8, 0.0);
-    let rate = Some(RateMethod::Central);
-    let data = data(&law, rate, vec![timed("a", 300, 1.0), timed("b", 300, 1.7)]);
-    for starts in [1, 4] {
-        let options = ClassicalOptions { starts: Some(starts), epochs: Some(12), ..options(rate) };
-        // In the search, and in the epochs on all data that follow if there was a choice.
-        for last in [3, 13] {
-            let (mut told, mut so_far) = (Vec::new(), None);
-            let mut observer = |progress: hysid::fit::law::search::SearchProgress| {
-                told.push(progress.round);
-                so_far = progress.law_so_far();
-                if progress.round == last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            };
-            let found = DuhemNn::fit(&data, &options, &mut observer).unwrap();
-            let is_stopped = told.last() == Some(&last);
-            assert!(is_stopped || starts == 1 && last == 13, "{told:?}");
-            assert_eq!(found.termination == Termination::Stopped, is_stopped);
-            assert_eq!(so_far, Some(found.law.clone().into()));
-            assert!(error(&found.law, &data, rate) < 100.0);
-        }
-        let untrained = ClassicalOptions { epochs: Some(0), ..options.clone() };
-        let untrained = DuhemNn::fit(&data, &untrained, &mut go_on).unwrap();
-        assert!((error(&untrained.law, &data, rate) - untrained.train_nrmse_percent).abs() < 1e-6);
-        let stopped = DuhemNn::identify(&data, &options, &mut go_on, StopCheck::new(&|| true));
-        assert!(matches!(stopped, Err(Error::Stopped)));
     }
 }
 

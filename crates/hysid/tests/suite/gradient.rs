@@ -325,37 +325,3 @@ fn value_and_gradient_are_sums_over_the_scored_rows() {
         }
     }
 }
-
-/// theory.md section 3: the projected form of the gradient needs `Qᵀr = 0`, and so no ridge.
-#[test]
-fn the_projected_form_is_not_the_gradient_with_a_ridge() {
-    for (ridge, alike) in [(0.0, true), (1e-1, false)] {
-        let case = case(Family::PreisachNn, ridge, 0.0);
-        let objective = case.objective();
-        let value = objective.value(&case.parameters);
-        let (features, jacobian, residual) = case.dense(value.output_weights());
-        // Q by Gram and Schmidt, twice, which is enough for an orthonormal one.
-        let mut q: Vec<Vec<f64>> = Vec::new();
-        for mut column in features {
-            for _ in 0..2 {
-                for unit in &q {
-                    let share = dot(unit, &column);
-                    column.iter_mut().zip(unit).for_each(|(c, u)| *c -= share * u);
-                }
-            }
-            let length = norm(&column);
-            q.push(column.iter().map(|c| c / length).collect());
-        }
-        let n = residual.len() as f64;
-        let projected: Vec<f64> = jacobian
-            .iter()
-            .map(|j| (dot(j, &residual) - q.iter().map(|q| dot(q, j) * dot(q, &residual)).sum::<f64>()) / n)
-            .collect();
-        let expected = case.expected_gradient();
-        let error = distance(&projected, &expected) / norm(&expected);
-        let right = distance(&objective.gradient(&case.parameters, &value), &expected) / norm(&expected);
-        assert!(right < 1e-5, "ridge {ridge}: {right}");
-        assert_eq!(error < 1e-5, alike, "ridge {ridge}: {error}");
-        assert!(alike || error > 0.05, "ridge {ridge}: {error}");
-    }
-}

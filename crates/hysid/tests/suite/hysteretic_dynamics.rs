@@ -232,38 +232,6 @@ fn outputs_stay_finite_far_beyond_the_training() {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_law_for_any_number_of_threads() {
-    let seen = data(vec![record(6, 500, false)]);
-    let quick = ClassicalOptions {
-        starts: Some(3),
-        epochs: Some(6),
-        hidden: Some(3),
-        ..ClassicalOptions::of(ClassicalModel::HystereticOscillator)
-    };
-    let with = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| HystereticOscillator::fit(&seen, &quick, &mut go_on).unwrap().law)
-    };
-    assert_eq!(with(1), with(3));
-}
-
-#[test]
-fn a_search_can_be_stopped_and_keeps_its_best() {
-    let seen = data(vec![record(7, 500, false)]);
-    let quick = ClassicalOptions { hidden: Some(3), ..options(ClassicalModel::HystereticOscillator) };
-    let mut laws = 0;
-    let mut stop_soon = |progress: SearchProgress| {
-        laws += usize::from(progress.law_so_far().is_some());
-        if progress.round == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    };
-    let Identified { law, .. } = HystereticOscillator::fit(&seen, &quick, &mut stop_soon).unwrap();
-    assert_eq!(laws, 3);
-    assert!(error(&law, &seen) < 1.0);
-    let never_begun = HystereticOscillator::identify(&seen, &quick, &mut go_on, StopCheck::new(&|| true));
-    assert!(matches!(never_begun, Err(Error::Stopped)));
-}
-
-#[test]
 fn what_cannot_be_fitted_is_refused() {
     let without_time =
         Dataset::from_slices(&[0.0, 1.0, 0.5, 0.0, 1.0, 0.3], &[0.0, 0.5, 0.4, 0.1, 0.6, 0.2]).unwrap();

@@ -80,6 +80,19 @@ fn every_model_comes_back_from_its_file_and_steps_as_it_simulates() {
     }
 }
 
+#[test]
+fn the_number_of_threads_does_not_matter() {
+    for name in ModelName::all().chain([ModelName::AUTO]) {
+        let request = small(name, Some(RateMethod::Central).filter(|_| name.uses_rate()));
+        let of = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let fitted = pool.install(|| quietly(&request));
+            (fitted.model.to_json(), fitted.evaluations)
+        };
+        assert_eq!(of(1), of(3), "{name:?}");
+    }
+}
+
 /// A fit without rounds listens in its midst: it ends with what it has, and is otherwise not disturbed.
 #[test]
 fn fits_without_rounds_end_when_they_are_told_to() {

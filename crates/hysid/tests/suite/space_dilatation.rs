@@ -159,23 +159,6 @@ fn units_of_the_variables_do_not_matter_to_scaled_steps() {
 }
 
 #[test]
-fn a_search_taken_up_again_goes_on_to_the_last_bit() {
-    let mut f = quadratic(1e3);
-    let mut whole =
-        SpaceDilatation::new(ramp(7), vec![1.0; 7], DilatationOptions::default(), &mut f).unwrap();
-    for _ in 0..20 {
-        whole.advance(&mut f);
-    }
-    let stored = serde_json::to_string(&whole).unwrap();
-    let mut again: SpaceDilatation = serde_json::from_str(&stored).unwrap();
-    for _ in 0..20 {
-        whole.advance(&mut f);
-        again.advance(&mut f);
-    }
-    assert_eq!(whole, again);
-}
-
-#[test]
 fn it_says_why_it_ends() {
     let flat = |_: &[f64], g: &mut [f64]| {
         g.fill(0.0);

@@ -208,26 +208,16 @@ fn stopped_after(calls: usize, data: &Dataset, options: &FitOptions) -> (Fitted,
 }
 
 #[test]
-fn a_fit_that_is_stopped_in_its_first_start_or_its_last_phase_is_usable() {
+fn a_fit_that_is_stopped_is_usable() {
     let data = bank_data(150);
-    let options = FitOptions { starts: 2, epochs: 4, ..small(Family::PreisachNn, 3, 2) };
-    for calls in [1, 3, 9, 12] {
+    let options = FitOptions { starts: 3, epochs: 4, ..small(Family::PreisachNn, 3, 2) };
+    for calls in [1, 3, 6, 9, 18] {
         let (fitted, seen) = stopped_after(calls, &data, &options);
         assert_eq!(seen, calls, "the observer was called again after it said stop");
         assert_eq!(fitted.model.provenance().termination, Termination::Stopped);
         assert!(nrmse(&fitted, &data) < 120.0);
         let file = fitted.model.to_json();
         assert_eq!(hysid::model::Model::from_json(&file).unwrap(), fitted.model);
-    }
-}
-
-#[test]
-fn a_fit_that_is_stopped_in_a_later_start_says_so() {
-    let data = bank_data(150);
-    let options = FitOptions { starts: 3, epochs: 4, ..small(Family::PreisachNn, 3, 2) };
-    for calls in [5, 6, 8, 9, 17, 18] {
-        let (fitted, _) = stopped_after(calls, &data, &options);
-        assert_eq!(fitted.model.provenance().termination, Termination::Stopped, "after {calls} calls");
     }
 }
 
@@ -409,27 +399,6 @@ fn any_number_of_epochs_is_a_number_or_an_error() {
         calls += 1;
         if calls == 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-}
-
-#[test]
-fn data_that_tell_nothing_are_refused() {
-    let problem = |x: Vec<f64>, y: Vec<f64>| {
-        let data = dataset(vec![Record::new("r", vec![x], y).unwrap()]);
-        let options = FitOptions { starts: 1, epochs: 1, ..small(Family::Pnn, 2, 0) };
-        match fit(&data, &options, &mut |_| ControlFlow::Continue(())) {
-            Err(Error::Data(defect)) => Some(defect.problem),
-            Err(other) => panic!("{other}"),
-            Ok(_) => None,
-        }
-    };
-    let x = path(50, 1.0, 1);
-    let constant = vec![2.0; 50];
-    assert_eq!(problem(x.clone(), x.clone()), None);
-    assert_eq!(problem(constant.clone(), x.clone()), Some(DataProblem::ConstantInput(2.0)));
-    assert_eq!(problem(x.clone(), constant), Some(DataProblem::ConstantOutput(2.0)));
-    assert_eq!(problem(x.clone(), vec![f64::NAN; 50]), Some(DataProblem::NothingToScore));
-    let few: Vec<f64> = (0..50).map(|k| if k < 9 { x[k] } else { f64::NAN }).collect();
-    assert_eq!(problem(x, few), Some(DataProblem::TooFewRows { found: 9, needed: 10 }));
 }
 
 #[test]
