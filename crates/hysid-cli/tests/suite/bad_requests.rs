@@ -121,7 +121,7 @@ fn negative_numbers_are_refused_by_the_option_that_they_are_for() {
         ("generate concrete --noise -1", "-1", "--noise <PERCENT>", percent),
     ] {
         let expected = format!("invalid value '{value}' for '{option}': {advice}");
-        bench.refuses(&[(arguments, 2, &expected)]);
+        bench.refuses(&format!("2 {arguments} => {expected}"));
     }
     // A column may have any name.
     bench.put("data.csv", csv("-1,x,y", ",", "\n", &rows()));

@@ -1,18 +1,11 @@
 //! `hysid compare` as a user runs it, and models that are no networks in the other commands.
 
-use std::time::{Duration, Instant};
-
-use crate::workbench::{Ran, Workbench, table};
+use crate::workbench::{Ran, Workbench, json, table};
 
 fn bench() -> Workbench {
     let bench = Workbench::new();
     bench.put("good.csv", table());
     bench
-}
-
-fn json(ran: &Ran) -> serde_json::Value {
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
-    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
 }
 
 #[test]

@@ -2,14 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::workbench::{Ran, Workbench};
+use crate::workbench::{Ran, Workbench, succeeds};
 use serde_json::Value;
-
-fn succeeds(bench: &Workbench, arguments: &str) -> Ran {
-    let ran = bench.run(arguments);
-    assert_eq!(ran.status, Some(0), "hysid {arguments}: {}", ran.stderr);
-    ran
-}
 
 /// Turning points joined in steps, through a law.
 fn table(header: &str, turning: &[f64], step: f64, law: &mut dyn FnMut(f64) -> f64) -> String {

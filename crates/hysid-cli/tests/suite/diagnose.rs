@@ -1,6 +1,6 @@
 //! `hysid diagnose` as a user runs it: text, JSON, page, and what it refuses.
 
-use crate::workbench::{Ran, Workbench, csv, rows, table, with_cell, with_column};
+use crate::workbench::{Ran, Workbench, csv, rows, succeeds, table};
 use serde_json::Value;
 
 const PROPERTIES: [&str; 10] = [
@@ -17,12 +17,6 @@ const PROPERTIES: [&str; 10] = [
 ];
 
 const VERDICTS: [&str; 3] = ["yes", "no", "not testable"];
-
-fn succeeds(bench: &Workbench, arguments: &str) -> Ran {
-    let ran = bench.run(arguments);
-    assert_eq!(ran.status, Some(0), "hysid {arguments}: {}", ran.stderr);
-    ran
-}
 
 fn json(bench: &Workbench, arguments: &str) -> Value {
     serde_json::from_str(&succeeds(bench, arguments).stdout).unwrap()
@@ -116,8 +110,7 @@ fn the_doctor_speaks_and_the_advice_can_be_followed() {
     assert!(ran.stdout.contains("\ndata quality"), "{}", ran.stdout);
     assert!(
         ran.stdout.contains("\nadvice\n    The simplest model that can represent these properties is gpnn"),
-        "{}",
-        ran.stdout
+        "{ran}"
     );
     let next = ran.stdout.lines().find(|line| line.starts_with("  hysid fit ")).unwrap();
     assert_eq!(next, "  hysid fit 'a joint.csv' --input 'the way, mm' --model gpnn");

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::workbench::{ROWS, Ran, Workbench, csv, rows, table};
+use crate::workbench::{ROWS, Ran, Workbench, csv, json, rows, table};
 use serde_json::Value;
 
 /// An ensemble that takes well below a second.
@@ -12,11 +12,6 @@ fn bench() -> Workbench {
     let bench = Workbench::new();
     bench.put("good.csv", table());
     bench
-}
-
-fn json(ran: &Ran) -> Value {
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
-    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
 }
 
 fn assert_narrow(text: &str) {

@@ -44,11 +44,7 @@ fn a_folder_appears_with_all_that_its_manifest_lists() {
     fs::write(folder.join("mine.c"), "mine").unwrap();
     let ran = bench.run("export stage-2.json --to c");
     assert_eq!(ran.status, Some(2));
-    assert!(
-        ran.stderr.contains("stage_2_c: a file is there already and is no export of Hysid"),
-        "{}",
-        ran.stderr
-    );
+    assert!(ran.stderr.contains("stage_2_c: a file is there already and is no export of Hysid"), "{ran}");
     assert_eq!(fs::read_to_string(folder.join("mine.c")).unwrap(), "mine");
     assert_eq!(bench.run("export stage-2.json --to c --force").status, Some(0));
     assert!(!folder.join("mine.c").exists());

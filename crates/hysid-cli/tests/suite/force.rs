@@ -91,11 +91,7 @@ fn millimetres_kilonewtons_and_gravity_are_converted() {
     let blank = found[3].iter().filter(|force| force.is_nan()).count();
     assert!((4..40).contains(&blank) && found[3][0].is_nan() && found[3][ROWS - 1].is_nan(), "{blank}");
     assert!(said.stderr.contains("acc [g]: name it with --acceleration"), "{}", said.stderr);
-    assert!(
-        said.stdout.contains(&format!("rows with a force   {} of {ROWS}", ROWS - blank)),
-        "{}",
-        said.stdout
-    );
+    assert!(said.stdout.contains(&format!("rows with a force   {} of {ROWS}", ROWS - blank)), "{said}");
     // Numbers without units are taken as they are.
     bench.put("plain.csv", table("t,y,u", |_, [t, y, _, _, u, _]| format!("{t},{y},{u}")));
     let said = ran(&bench, "force plain.csv --mass 2000 --displacement y --applied-force u");

@@ -2,16 +2,10 @@
 
 use std::fs;
 
-use crate::workbench::{Ran, Workbench};
+use crate::workbench::{Ran, Workbench, succeeds};
 
 /// What a machine without fonts says of PDF and PNG. Set where no proof may be missing.
 const PROVE_ALL: &str = "HYSID_PROVE_ALL";
-
-fn succeeds(bench: &Workbench, arguments: &str) -> Ran {
-    let ran = bench.run(arguments);
-    assert_eq!(ran.status, Some(0), "hysid {arguments}: {}", ran.stderr);
-    ran
-}
 
 /// Draws as PDF or PNG; `false`, said aloud, on a machine that has no fonts for it.
 fn is_drawn(bench: &Workbench, arguments: &str) -> bool {
@@ -166,8 +160,7 @@ fn a_pdf_has_its_size_its_font_and_its_maker() {
     assert_eq!(ran.status, Some(2));
     assert!(
         ran.last_line().contains("theirs.pdf: a file is there already and is no drawing of Hysid"),
-        "{}",
-        ran.stderr
+        "{ran}"
     );
 }
 
@@ -203,11 +196,7 @@ fn records_are_chosen_and_data_or_a_model_drawn_alone() {
     let ran = succeeds(&bench, "plot model.json two.csv --kind histories -o both.svg");
     // Both are copies of the training data, which is said of each by its name.
     for record in ["first", "second"] {
-        assert!(
-            ran.stderr.contains(&format!("record \"{record}\" is equal to what the model")),
-            "{}",
-            ran.stderr
-        );
+        assert!(ran.stderr.contains(&format!("record \"{record}\" is equal to what the model")), "{ran}");
     }
     let both = bench.text("both.svg");
     assert!(has_text(&both, "first") && has_text(&both, "second"));

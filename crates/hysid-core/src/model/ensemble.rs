@@ -409,17 +409,6 @@ mod tests {
         assert_eq!(quantile(&[(1.0, 1.0), (1e300, 1.0), (2.0, 1.0)], 0.5), 2.0);
     }
 
-    #[test]
-    fn quantiles_rise_with_their_level_and_stay_among_the_values() {
-        let predictions = [(3.0, 0.2), (-1.0, 1.0), (0.5, 0.7), (2.0, 0.1)];
-        let mut last = f64::NEG_INFINITY;
-        for percent in 0..=100 {
-            let value = quantile(&predictions, f64::from(percent) / 100.0);
-            assert!(value >= last && (-1.0..=3.0).contains(&value), "{percent}: {value} after {last}");
-            last = value;
-        }
-    }
-
     fn group(weights: &[(f64, f64)]) -> Group {
         let node = |(member, &(inside, outside)): (usize, &(f64, f64))| Node {
             weights: Weights { inside, outside },

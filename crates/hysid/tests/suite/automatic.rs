@@ -1,24 +1,13 @@
 //! The automatic model: what it promises of itself, its ensembles, bands and validation.
 
-use std::ops::ControlFlow;
+use crate::scaffold::*;
 use std::sync::OnceLock;
 
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::cross_validate;
-use hysid::fit::identify;
-use hysid::fit::network::{Observer, Progress};
-use hysid::law::Classical;
-use hysid::model::{Ensemble, Group, Model, Node, NodeKind, Predictor, Weights};
-use hysid::network::Family;
-use hysid::options::auto::AutoOptions;
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::options::{FitSpec, ModelName};
-use hysid::termination::Termination;
+use hysid::fit::network::Observer;
+use hysid::model::{Ensemble, Group, Node, NodeKind, Predictor, Weights};
 use hysid::validation::folds;
 
 use crate::noisy_record::noisy;
-use crate::small_models::{record, small};
 
 fn names() -> ColumnNames {
     ColumnNames { time: Some("t_s".into()), inputs: vec!["x_mm".into()], rate: None, output: "f_kN".into() }
@@ -32,10 +21,6 @@ fn data() -> Dataset {
 fn shared() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
     MODEL.get_or_init(|| fitted(&data(), options(None)))
-}
-
-fn on(_: &Progress) -> ControlFlow<()> {
-    ControlFlow::Continue(())
 }
 
 fn options(rate: Option<RateMethod>) -> AutoOptions {

@@ -1,10 +1,7 @@
 //! The classical models that are linear in their weights: against each other, against published values,
 //! and against the memory laws they must obey or break.
 
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::error::{DataProblem, Error};
-use hysid::fit::law::Identify;
-use hysid::fit::law::search::SearchProgress;
+use crate::scaffold::*;
 use hysid::fit::network::random_stops::{RandomStopsOptions, fit_random_stops};
 use hysid::law::masing::{Masing, MasingParts};
 use hysid::law::modified_prandtl_ishlinskii::{DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii};
@@ -12,17 +9,11 @@ use hysid::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use hysid::law::preisach::{Preisach, PreisachWeights};
 use hysid::law::series::run;
 use hysid::law::turning_point_stack::TurningPointStack;
-use hysid::law::{Law, Sample};
-use hysid::operator::{DeterioratingStop, Operator, Relay, Stop};
-use hysid::options::classical::{ClassicalModel, ClassicalOptions, Sign};
+use hysid::options::classical::Sign;
 use hysid::specimens::Ferromagnet;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-
-fn go_on(_: SearchProgress) -> std::ops::ControlFlow<()> {
-    std::ops::ControlFlow::Continue(())
-}
 
 fn repeatable() -> ProptestConfig {
     ProptestConfig {
@@ -31,28 +22,6 @@ fn repeatable() -> ProptestConfig {
         rng_seed: RngSeed::Fixed(7),
         ..ProptestConfig::default()
     }
-}
-
-fn of(model: ClassicalModel) -> ClassicalOptions {
-    ClassicalOptions::of(model)
-}
-
-fn outputs<L: Law>(law: &L, x: &[f64]) -> Vec<f64> {
-    let samples: Vec<Sample> = x.iter().map(|&x| Sample { x, rate: 0.0, step: 0.0 }).collect();
-    run(law, &samples)
-}
-
-fn last<L: Law>(law: &L, x: &[f64]) -> f64 {
-    *outputs(law, x).last().unwrap()
-}
-
-/// A path through turning points, `steps` samples to each.
-fn path(turning: &[f64], steps: usize) -> Vec<f64> {
-    let mut x = vec![turning[0]];
-    for pair in turning.windows(2) {
-        x.extend((1..=steps).map(|k| pair[0] + (pair[1] - pair[0]) * k as f64 / steps as f64));
-    }
-    x
 }
 
 fn dataset(x: Vec<f64>, y: Vec<f64>) -> Dataset {
@@ -200,7 +169,7 @@ proptest! {
         fn check<L: Law>(name: &str, law: &L, turning: &[f64], scale: f64) -> Result<(), TestCaseError> {
             let turning: Vec<f64> = turning.iter().map(|x| x * scale).collect();
             let coarse = outputs(law, &turning);
-            let fine = outputs(law, &path(&turning, 13));
+            let fine = outputs(law, &through(&turning, 13));
             for (k, y) in coarse.iter().enumerate() {
                 prop_assert!((y - fine[13 * k]).abs() < 1e-11, "{name}: {y} and {}", fine[13 * k]);
             }
@@ -274,7 +243,7 @@ fn masings_rule_holds_for_sums_of_plays_only() {
 #[test]
 fn symmetric_parameters_give_odd_models() {
     fn asymmetry<L: Law>(law: &L, scale: f64) -> f64 {
-        let x = path(&[0.0, 2.0, -1.0, 0.5, -2.4, 1.0], 9);
+        let x = through(&[0.0, 2.0, -1.0, 0.5, -2.4, 1.0], 9);
         let plus: Vec<f64> = x.iter().map(|x| x * scale).collect();
         let minus: Vec<f64> = plus.iter().map(|x| -x).collect();
         let rest = last(law, &[0.0]);
@@ -303,7 +272,7 @@ fn the_published_inverse_undoes_the_published_model() {
         vec![-0.6313, -0.202, -0.0926, -0.0463, -0.0198, -0.0019],
     )
     .unwrap();
-    let x = path(&[0.0, 4.0, -4.0, 1.5, -2.0, 3.0, 0.0], 40);
+    let x = through(&[0.0, 4.0, -4.0, 1.5, -2.0, 3.0, 0.0], 40);
     let y = outputs(&model, &x);
     for (back, x) in outputs(&inverse, &y).iter().zip(&x) {
         // The weights are published with four decimals.
@@ -333,7 +302,7 @@ fn a_plane_from_the_everett_function_of_m330_has_its_return_points() {
 
 #[test]
 fn between_its_lines_a_plane_is_near_the_everett_function() {
-    let h = path(&[0.0, 63.0, -177.0, 244.0, 31.0, 98.0, -311.0, 17.0], 37);
+    let h = through(&[0.0, 63.0, -177.0, 244.0, 31.0, 98.0, -311.0, 17.0], 37);
     let mut sheet = Ferromagnet::m330_50a();
     sheet.everett.k = 0.0;
     let exact = sheet.run(&h);
@@ -350,7 +319,7 @@ fn between_its_lines_a_plane_is_near_the_everett_function() {
 #[test]
 fn a_fit_finds_the_weights_of_plays() {
     let model = lecture_model();
-    let x = path(&[0.0, 4.0, -3.5, 3.0, -2.5, 2.0, -1.5, 1.0, -0.5, 4.0, -4.0], 40);
+    let x = through(&[0.0, 4.0, -3.5, 3.0, -2.5, 2.0, -1.5, 1.0, -0.5, 4.0, -4.0], 40);
     let data = dataset(x.clone(), outputs(&model, &x));
     let options = ClassicalOptions {
         thresholds: Some(model.thresholds().to_vec()),
@@ -361,7 +330,7 @@ fn a_fit_finds_the_weights_of_plays() {
         assert!((found - exact).abs() < 1e-4, "{found} and {exact}");
     }
     // With thresholds of its own it must find the same behaviour on another path.
-    let other = path(&[0.0, 2.2, -0.7, 3.1, -3.9, 1.2, 0.2, 0.9], 23);
+    let other = through(&[0.0, 2.2, -0.7, 3.1, -3.9, 1.2, 0.2, 0.9], 23);
     for sign in [None, Some(Sign::NonNegative)] {
         let fitted = PrandtlIshlinskii::fit(
             &data,
@@ -387,7 +356,7 @@ fn a_fit_finds_the_weights_of_plays() {
 #[test]
 fn a_fit_finds_a_virgin_curve() {
     let model = masing();
-    let x = path(&[0.0, 2.5, -2.0, 1.5, -1.0, 0.6, 2.5, -2.5, 2.8, -2.8], 40);
+    let x = through(&[0.0, 2.5, -2.0, 1.5, -1.0, 0.6, 2.5, -2.5, 2.8, -2.8], 40);
     let data = dataset(x.clone(), outputs(&model, &x));
     let thresholds = Some(model.parts().thresholds.clone());
     let fitted =
@@ -403,7 +372,7 @@ fn a_fit_finds_a_virgin_curve() {
 #[test]
 fn a_fit_finds_a_sheet_of_steel() {
     let sheet = |turning: &[f64]| {
-        let h = path(turning, 40);
+        let h = through(turning, 40);
         let b = Ferromagnet::m330_50a().run(&h);
         (h, b)
     };
@@ -440,9 +409,9 @@ fn a_fit_finds_a_sheet_of_steel() {
 #[test]
 fn a_fit_finds_plays_behind_dead_zones() {
     let model = saturating();
-    let x = path(&[0.0, 3.0, -2.5, 2.0, -1.5, 1.0, -0.5, 3.0, -3.0, 0.5, -0.5, 2.5], 40);
+    let x = through(&[0.0, 3.0, -2.5, 2.0, -1.5, 1.0, -0.5, 3.0, -3.0, 0.5, -0.5, 2.5], 40);
     let data = dataset(x.clone(), outputs(&model, &x));
-    let other = path(&[0.0, 2.2, -0.7, 2.9, -2.8, 1.2, 0.2, 0.9], 23);
+    let other = through(&[0.0, 2.2, -0.7, 2.9, -2.8, 1.2, 0.2, 0.9], 23);
     let expected = outputs(&model, &other);
     let bent =
         ModifiedPrandtlIshlinskii::fit(&data, &of(ClassicalModel::ModifiedPrandtlIshlinskii), &mut go_on)
@@ -458,7 +427,7 @@ fn a_fit_finds_plays_behind_dead_zones() {
 
 #[test]
 fn random_stops_are_a_network() {
-    let x = path(&[0.0, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 1.0, -1.0, 2.0, -0.5, 0.5], 40);
+    let x = through(&[0.0, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 1.0, -1.0, 2.0, -0.5, 0.5], 40);
     let wearing = |r: f64| DeterioratingStop::new(r, 30.0).unwrap().run(&x);
     let y: Vec<f64> =
         wearing(0.4).iter().zip(wearing(1.1)).zip(&x).map(|((a, b), x)| 3.0 * a + b + 0.2 * x).collect();
@@ -514,7 +483,7 @@ fn unusable_parameters_are_refused() {
 /// A straight line is no hysteresis, but is fitted all the same.
 #[test]
 fn a_line_is_fitted() {
-    let x = path(&[0.0, 1.0, -1.0, 0.5], 20);
+    let x = through(&[0.0, 1.0, -1.0, 0.5], 20);
     let options = ClassicalOptions { operators: Some(5), ..of(ClassicalModel::Preisach) };
     let line = Preisach::fit(&dataset(x.clone(), x), &options, &mut go_on).unwrap().law;
     assert!((last(&line, &[0.3]) - 0.3).abs() < 1e-3);

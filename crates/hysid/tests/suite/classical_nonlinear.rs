@@ -1,49 +1,18 @@
 //! The classical models that are fitted by search: regression values of independent implementations,
 //! the properties that each must and must not have, and recovery of their own outputs.
 
+use crate::scaffold::*;
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use hysid::data::metrics::ErrorSums;
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::law::Identify;
-use hysid::fit::law::search::SearchProgress;
 use hysid::law::bouc_wen::{BoucWen, Degradation};
 use hysid::law::generalized_prandtl_ishlinskii::{Envelope, GeneralizedPrandtlIshlinskii, PlayWeights};
 use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid::law::neuro_madelung::NeuroMadelung;
 use hysid::law::rate_dependent_prandtl_ishlinskii::{RateDependentPrandtlIshlinskii, Thresholds};
-use hysid::law::series::{Series, run};
-use hysid::law::{Law, Sample};
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::termination::Termination;
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
+use hysid::law::series::run;
 
 // ------------------------------------------------------------------------------- paths and laws
-
-/// A path through turning points, each swing in `steps` equal steps.
-fn through(turning: &[f64], steps: usize) -> Vec<f64> {
-    let mut path = vec![turning[0]];
-    for ends in turning.windows(2) {
-        path.extend((1..=steps).map(|k| ends[0] + (ends[1] - ends[0]) * k as f64 / steps as f64));
-    }
-    path
-}
-
-fn quasi_static(x: &[f64]) -> Vec<Sample> {
-    x.iter().map(|&x| Sample { x, rate: 0.0, step: 0.0 }).collect()
-}
-
-fn outputs<L: Law>(law: &L, x: &[f64]) -> Vec<f64> {
-    run(law, &quasi_static(x))
-}
-
-fn last<L: Law>(law: &L, x: &[f64]) -> f64 {
-    outputs(law, x)[x.len() - 1]
-}
 
 fn shape_memory_actuator() -> GeneralizedPrandtlIshlinskii {
     GeneralizedPrandtlIshlinskii {
@@ -250,7 +219,7 @@ fn degraded_by_small_steps(law: &BoucWen, path: &[f64]) -> Vec<f64> {
 
 #[test]
 fn degradation_is_that_of_small_steps() {
-    let mut generator = Xoshiro256PlusPlus::seed_from_u64(3);
+    let mut generator = Generator::seed_from_u64(3);
     let mut worst: Vec<f64> = Vec::new();
     for _ in 0..200 {
         let mut log = |low: f64, high: f64| low * (high / low).powf(generator.random::<f64>());
@@ -531,19 +500,6 @@ fn data<L: Law>(law: &L, runs: &[Vec<Sample>]) -> Dataset {
     Dataset::new(ColumnNames::plain(1), records.collect()).unwrap()
 }
 
-/// Error of a free run in percent of the output's standard deviation.
-fn error<L: Law>(law: &L, data: &Dataset, rate: Option<RateMethod>) -> f64 {
-    let mut sums = ErrorSums::default();
-    for series in Series::all(data, rate).unwrap() {
-        sums.add(&series.output, &run(law, &series.samples));
-    }
-    sums.errors("y").unwrap().nrmse_std_percent.unwrap()
-}
-
-fn go_on(_: SearchProgress) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
-
 /// Unseen minor loops within the range of [`TRAINED`].
 const TRAINED: [f64; 11] = [0.0, 1.0, -1.0, 0.8, -0.6, 1.0, -0.2, 0.5, -0.9, 0.3, 0.0];
 const UNSEEN: [f64; 9] = [0.0, 0.7, -0.4, 0.9, 0.1, 0.6, -0.8, 0.2, -0.5];
@@ -551,7 +507,7 @@ const UNSEEN: [f64; 9] = [0.0, 0.7, -0.4, 0.9, 0.1, 0.6, -0.8, 0.2, -0.5];
 fn paths(place: impl Fn(f64) -> f64) -> (Vec<Vec<Sample>>, Vec<Vec<Sample>>) {
     let placed = |turning: &[f64]| {
         let turning: Vec<f64> = turning.iter().map(|u| place(*u)).collect();
-        vec![quasi_static(&through(&turning, 40))]
+        vec![samples_of(&through(&turning, 40))]
     };
     (placed(&TRAINED), placed(&UNSEEN))
 }
@@ -560,10 +516,10 @@ fn paths(place: impl Fn(f64) -> f64) -> (Vec<Vec<Sample>>, Vec<Vec<Sample>>) {
 fn bouc_wen_recovers_itself() {
     let (seen, unseen) = paths(|u| 6.0 * u);
     let law = BoucWen { offset: 3.0, ..bouc_wen(1.6) };
-    let options = ClassicalOptions { starts: Some(4), ..ClassicalOptions::of(ClassicalModel::BoucWen) };
+    let options = ClassicalOptions { starts: Some(4), ..of(ClassicalModel::BoucWen) };
     let found = BoucWen::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 0.1, "{}", found.train_nrmse_percent);
-    assert!(error(&found.law, &data(&law, &unseen), None) < 0.2);
+    assert!(error_of(&found.law, &data(&law, &unseen), None) < 0.2);
     assert_relative_eq!(found.law.yield_displacement, 1.5, max_relative = 0.02);
     assert_relative_eq!(found.law.alpha(), law.alpha(), max_relative = 0.02);
     assert_relative_eq!(found.law.n, 1.6, max_relative = 0.03);
@@ -573,19 +529,15 @@ fn bouc_wen_recovers_itself() {
 fn degradation_is_recovered() {
     let cycles = |peaks: &[f64]| {
         let turning: Vec<f64> = [0.0].into_iter().chain(peaks.iter().flat_map(|&x| [x, -x])).collect();
-        vec![quasi_static(&through(&turning, 20))]
+        vec![samples_of(&through(&turning, 20))]
     };
     let (seen, unseen) = (cycles(&[1.5, 3.0, 3.0, 6.0, 6.0, 6.0, 9.0]), cycles(&[2.0, 5.0, 5.0, 8.0]));
     let law = degrading_bouc_wen();
-    let options = ClassicalOptions {
-        degradation: true,
-        starts: Some(6),
-        ..ClassicalOptions::of(ClassicalModel::BoucWen)
-    };
+    let options = ClassicalOptions { degradation: true, starts: Some(6), ..of(ClassicalModel::BoucWen) };
     let found = BoucWen::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 1.0, "{}", found.train_nrmse_percent);
-    assert!(error(&found.law, &data(&law, &unseen), None) < 3.0);
-    let plain = ClassicalOptions { starts: Some(4), ..ClassicalOptions::of(ClassicalModel::BoucWen) };
+    assert!(error_of(&found.law, &data(&law, &unseen), None) < 3.0);
+    let plain = ClassicalOptions { starts: Some(4), ..of(ClassicalModel::BoucWen) };
     let without = BoucWen::fit(&data(&law, &seen), &plain, &mut go_on).unwrap();
     assert!(without.train_nrmse_percent > 5.0 * found.train_nrmse_percent);
 }
@@ -601,11 +553,11 @@ fn generalized_plays_recover_themselves_in_both_forms() {
             let options = ClassicalOptions {
                 free_weights: Some(free_weights),
                 starts: Some(8),
-                ..ClassicalOptions::of(ClassicalModel::GeneralizedPrandtlIshlinskii)
+                ..of(ClassicalModel::GeneralizedPrandtlIshlinskii)
             };
             let found = GeneralizedPrandtlIshlinskii::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
             assert!(found.train_nrmse_percent < most, "{} {free_weights}", found.train_nrmse_percent);
-            let unseen = error(&found.law, &data(&law, &unseen), None);
+            let unseen = error_of(&found.law, &data(&law, &unseen), None);
             assert!(unseen < 3.0 * most, "{unseen} {free_weights}");
         }
     }
@@ -620,11 +572,11 @@ fn rate_dependent_plays_recover_themselves_in_both_forms() {
         let options = ClassicalOptions {
             free_weights: Some(free_weights),
             rate: Some(RateMethod::Given),
-            ..ClassicalOptions::of(ClassicalModel::RateDependentPrandtlIshlinskii)
+            ..of(ClassicalModel::RateDependentPrandtlIshlinskii)
         };
         let found = RateDependentPrandtlIshlinskii::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
         assert!(found.train_nrmse_percent < 0.1, "{}", found.train_nrmse_percent);
-        assert!(error(&found.law, &data(&law, &unseen), Some(RateMethod::Given)) < 0.3);
+        assert!(error_of(&found.law, &data(&law, &unseen), Some(RateMethod::Given)) < 0.3);
         let Thresholds::Linear { beta } = found.law.thresholds else { panic!("{:?}", found.law) };
         assert_relative_eq!(beta, 2e-3, max_relative = 0.02);
     }
@@ -635,11 +587,11 @@ fn rate_dependent_plays_recover_themselves_in_both_forms() {
     let options = ClassicalOptions {
         logarithmic_thresholds: true,
         rate: Some(RateMethod::Given),
-        ..ClassicalOptions::of(ClassicalModel::RateDependentPrandtlIshlinskii)
+        ..of(ClassicalModel::RateDependentPrandtlIshlinskii)
     };
     let found = RateDependentPrandtlIshlinskii::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 0.5, "{}", found.train_nrmse_percent);
-    assert!(error(&found.law, &data(&law, &unseen), Some(RateMethod::Given)) < 1.0);
+    assert!(error_of(&found.law, &data(&law, &unseen), Some(RateMethod::Given)) < 1.0);
     // Without time there is no rate.
     let (still, _) = paths(|u| u);
     assert!(RateDependentPrandtlIshlinskii::fit(&data(&law, &still), &options, &mut go_on).is_err());
@@ -653,11 +605,11 @@ fn jiles_atherton_recovers_itself_in_both_forms() {
         let options = ClassicalOptions {
             differential_form: form == JilesAthertonForm::Differential,
             starts: Some(4),
-            ..ClassicalOptions::of(ClassicalModel::JilesAtherton)
+            ..of(ClassicalModel::JilesAtherton)
         };
         let found = JilesAtherton::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
         assert!(found.train_nrmse_percent < 0.2, "{form:?} {}", found.train_nrmse_percent);
-        assert!(error(&found.law, &data(&law, &unseen), None) < 0.4);
+        assert!(error_of(&found.law, &data(&law, &unseen), None) < 0.4);
         assert_relative_eq!(found.law.k, 400.0, max_relative = 0.1);
     }
 }
@@ -666,20 +618,16 @@ fn jiles_atherton_recovers_itself_in_both_forms() {
 fn neuro_madelung_learns_its_own_kind_and_plays() {
     let (seen, unseen) = paths(|u| 2.0 * u);
     let law = neuro_madelung(None);
-    let options = ClassicalOptions {
-        hidden: Some(6),
-        starts: Some(6),
-        seed: 0,
-        ..ClassicalOptions::of(ClassicalModel::NeuroMadelung)
-    };
+    let options =
+        ClassicalOptions { hidden: Some(6), starts: Some(6), seed: 0, ..of(ClassicalModel::NeuroMadelung) };
     let found = NeuroMadelung::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 1.0, "{}", found.train_nrmse_percent);
-    assert!(error(&found.law, &data(&law, &unseen), None) < 15.0);
+    assert!(error_of(&found.law, &data(&law, &unseen), None) < 15.0);
 
     let (seen, unseen) = paths(|u| 0.25 + 0.95 * u);
     let found = NeuroMadelung::fit(&data(&terfenol_actuator(), &seen), &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 2.0, "{}", found.train_nrmse_percent);
-    assert!(error(&found.law, &data(&terfenol_actuator(), &unseen), None) < 15.0);
+    assert!(error_of(&found.law, &data(&terfenol_actuator(), &unseen), None) < 15.0);
 }
 
 // ---------------------------------------------------------------------------- ways of a search
@@ -693,12 +641,12 @@ fn a_search_can_be_broken_off_and_gives_the_best_so_far() {
         told.push((progress.round, progress.train_nrmse_percent, progress.law_so_far()));
         if progress.round == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let found = BoucWen::fit(&data, &ClassicalOptions::of(ClassicalModel::BoucWen), &mut observer).unwrap();
+    let found = BoucWen::fit(&data, &of(ClassicalModel::BoucWen), &mut observer).unwrap();
     assert_eq!(found.termination, Termination::Stopped);
     assert_eq!(told.iter().map(|(round, ..)| *round).collect::<Vec<_>>(), [1, 2, 3]);
     assert!(told.windows(2).all(|pair| pair[1].1 <= pair[0].1));
     assert_eq!((found.train_nrmse_percent, Some(found.law.into())), (told[2].1, told[2].2.clone()));
-    assert_relative_eq!(found.train_nrmse_percent, error(&found.law, &data, None), max_relative = 1e-6);
-    let none = ClassicalOptions { starts: Some(0), ..ClassicalOptions::of(ClassicalModel::BoucWen) };
+    assert_relative_eq!(found.train_nrmse_percent, error_of(&found.law, &data, None), max_relative = 1e-6);
+    let none = ClassicalOptions { starts: Some(0), ..of(ClassicalModel::BoucWen) };
     assert!(BoucWen::fit(&data, &none, &mut go_on).is_err());
 }

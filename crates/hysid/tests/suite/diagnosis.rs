@@ -3,11 +3,9 @@
 mod laboratory;
 mod subjects;
 
-use hysid::data::record::{ColumnNames, Dataset, Record};
+use crate::data_doctor::noisy;
+use crate::scaffold::*;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
-use hysid::operator::Operator;
-use hysid::specimens::with_noise;
-use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -15,20 +13,6 @@ use subjects::{Subject, laws, specimens, timed};
 
 fn all() -> Vec<Subject> {
     laws().into_iter().chain(timed()).chain(specimens()).collect()
-}
-
-/// The data with noise of so many percent of the output's range.
-fn noisy(data: &Dataset, percent: f64, seed: u64) -> Dataset {
-    if percent == 0.0 {
-        return data.clone();
-    }
-    let output: Vec<f64> =
-        data.records().iter().flat_map(|record| record.output()).copied().filter(|y| !y.is_nan()).collect();
-    let n = output.len() as f64;
-    let mean = output.iter().sum::<f64>() / n;
-    let deviation = (output.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / n).sqrt();
-    let (low, high) = data.output_range();
-    with_noise(data, percent * (high - low) / deviation, seed).unwrap()
 }
 
 /// How often a verdict was right, wrong, or not given.
@@ -204,7 +188,7 @@ fn without_a_delay_none_is_found_and_the_rate_does_not_matter() {
 
 #[test]
 fn jitter_of_the_input_makes_no_cycles() {
-    let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(3);
+    let mut generator = Generator::seed_from_u64(3);
     let clean: Vec<f64> = (0..6000).map(|k| (TAU * k as f64 / 1500.0).sin()).collect();
     let y = hysid::operator::Stop::new(0.3).unwrap().run(&clean);
     // Uniform within 3 % of the range, so that single rows go back by as much.

@@ -1,28 +1,9 @@
 //! The Duhem neural network: its cell against closed forms, its derivatives against difference
 //! quotients, and its identification.
 
-use std::ops::ControlFlow;
-
-use hysid::data::metrics::ErrorSums;
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::error::Error;
-use hysid::fit::identify;
-use hysid::fit::law::Identify;
+use crate::scaffold::*;
 use hysid::law::duhem_nn::{Cell, DuhemNn, Input, Layout, Run, Shape};
-use hysid::law::series::{Series, run};
-use hysid::law::{Law, Sample};
-use hysid::model::Model;
-use hysid::options::FitSpec;
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::stop_check::StopCheck;
-use hysid::termination::Termination;
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus as Generator;
-
-fn between(generator: &mut Generator, low: f64, high: f64) -> f64 {
-    low + (high - low) * generator.random::<f64>()
-}
+use hysid::law::series::run;
 
 /// A law without offset and scales, of one state that starts at `s_0` and is the output.
 fn relaxation(c: f64, tau: f64, q: f64, s_0: f64) -> DuhemNn {
@@ -278,20 +259,7 @@ fn data(law: &DuhemNn, rate: Option<RateMethod>, records: Vec<Record>) -> Datase
 }
 
 fn options(rate: Option<RateMethod>) -> ClassicalOptions {
-    ClassicalOptions { rate, ..ClassicalOptions::of(ClassicalModel::DuhemNn) }
-}
-
-/// Error in percent of the standard deviation.
-fn error(law: &DuhemNn, data: &Dataset, rate: Option<RateMethod>) -> f64 {
-    let mut sums = ErrorSums::default();
-    for series in Series::all(data, rate).unwrap() {
-        sums.add(&series.output, &run(law, &series.samples));
-    }
-    sums.errors("y").unwrap().nrmse_std_percent.unwrap()
-}
-
-fn go_on(_: hysid::fit::law::search::SearchProgress) -> ControlFlow<()> {
-    ControlFlow::Continue(())
+    ClassicalOptions { rate, ..of(ClassicalModel::DuhemNn) }
 }
 
 #[test]
@@ -308,9 +276,9 @@ fn it_learns_its_own_kind() {
     let options = ClassicalOptions { starts: Some(4), ..options(rate) };
     let found = DuhemNn::fit(&seen, &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 1.0, "{}", found.train_nrmse_percent);
-    let unseen = error(&found.law, &unseen, rate);
+    let unseen = error_of(&found.law, &unseen, rate);
     assert!(unseen < 1.0, "{unseen}");
-    assert!((error(&found.law, &seen, rate) - found.train_nrmse_percent).abs() < 1e-6);
+    assert!((error_of(&found.law, &seen, rate) - found.train_nrmse_percent).abs() < 1e-6);
 }
 
 #[test]

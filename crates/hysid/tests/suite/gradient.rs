@@ -1,17 +1,7 @@
 //! Derivatives against difference quotients of the whole simulation, and the gradient of the
 //! objective against those of its value.
 
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::network::objective::Objective;
-use hysid::network::scaling::Scaling;
-use hysid::network::{Architecture, Drive, Family, Layout, Network, Sizes};
-use hysid::options::network::FitOptions;
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus as Generator;
-
-fn between(generator: &mut Generator, low: f64, high: f64) -> f64 {
-    low + (high - low) * generator.random::<f64>()
-}
+use crate::scaffold::*;
 
 /// Turning points at random, five samples between, no two alike.
 fn path(rows: usize, generator: &mut Generator) -> Vec<f64> {

@@ -1,21 +1,12 @@
 //! Hysteretic oscillators and state space models on data whose law is known, and the promises of every fit.
 
-use std::ops::ControlFlow;
-
+use crate::scaffold::*;
 use hysid::Fit;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::error::Error;
-use hysid::fit::law::Identify;
-use hysid::fit::law::search::{Identified, SearchProgress};
+use hysid::fit::law::search::Identified;
 use hysid::law::hysteretic_oscillator::HystereticOscillator;
 use hysid::law::hysteretic_state_space::HystereticStateSpace;
-use hysid::law::series::{Series, run};
-use hysid::law::{Law, Sample};
-use hysid::operator::{DeterioratingStop, Operator};
-use hysid::options::ModelName;
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
+use hysid::law::series::run;
 use hysid::specimens::{BoucWenOscillator, DuffingOscillator, PiezoStage};
-use hysid::stop_check::StopCheck;
 
 /// Rows a second, and steps of the integration in a row.
 const RATE: f64 = 750.0;
@@ -24,10 +15,6 @@ const STEPS: usize = 8;
 /// A number between 0 and 1 that `k` decides: the fractional parts of multiples of the golden ratio.
 fn number(k: u64) -> f64 {
     (k as f64 * 0.618_033_988_749_895).fract()
-}
-
-fn go_on(_: SearchProgress) -> ControlFlow<()> {
-    ControlFlow::Continue(())
 }
 
 /// A force of tones with random phases, in N, at time `t` in s.
@@ -103,21 +90,12 @@ fn data(records: Vec<Record>) -> Dataset {
 }
 
 fn options(model: ClassicalModel) -> ClassicalOptions {
-    ClassicalOptions { starts: Some(2), epochs: Some(100), hidden: Some(6), ..ClassicalOptions::of(model) }
+    ClassicalOptions { starts: Some(2), epochs: Some(100), hidden: Some(6), ..of(model) }
 }
 
 /// Error of a law on data, as a share of the standard deviation of their output.
 fn error<L: Law>(law: &L, data: &Dataset) -> f64 {
-    let series = Series::all(data, None).unwrap();
-    let (mut square, mut of_output) = (0.0, 0.0);
-    for Series { samples, output } in &series {
-        let mean = output.iter().sum::<f64>() / output.len() as f64;
-        for (y, measured) in run(law, samples).iter().zip(output) {
-            square += (y - measured) * (y - measured);
-            of_output += (measured - mean) * (measured - mean);
-        }
-    }
-    f64::sqrt(square / of_output)
+    error_of(law, data, None) / 100.0
 }
 
 #[test]

@@ -1,34 +1,12 @@
 //! Initial states: lead-ins drive the memory as rows before the record do, unknown ones are found, and data that
 //! begin in the virgin state are not touched.
 
-use std::ops::ControlFlow;
-
-use hysid::data::initial_state::InitialState;
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Excitation, Record};
-use hysid::fit::network::objective::Objective;
-use hysid::fit::{cross_validate, identify};
+use crate::scaffold::*;
 use hysid::law::preisach::{Preisach, PreisachWeights};
-use hysid::law::series::{run, samples_of};
-use hysid::model::Model;
-use hysid::network::scaling::Scaling;
-use hysid::network::{Architecture, Family, Network, Sizes};
-use hysid::options::auto::AutoOptions;
-use hysid::options::chosen::NamedOptions;
-use hysid::options::classical::ClassicalModel;
-use hysid::options::network::FitOptions;
-use hysid::options::{FitSpec, ModelName};
-
-use crate::small_models::{record, small};
-use rand::{RngExt, SeedableRng};
+use hysid::law::series::run;
 
 fn fitted(data: &Dataset, request: &FitSpec) -> Model {
     identify(data, request, &mut |_| ControlFlow::Continue(())).unwrap().model
-}
-
-fn request(options: serde_json::Value) -> FitSpec {
-    let serde_json::Value::Object(options) = options else { panic!("a map") };
-    NamedOptions::of(options).unwrap().request(None, false)
 }
 
 fn untimed(records: Vec<Record>) -> Dataset {
@@ -42,10 +20,6 @@ fn without_time(record: &Record) -> Record {
         record.output().to_vec(),
     )
     .unwrap()
-}
-
-fn bits(values: &[f64]) -> Vec<u64> {
-    values.iter().map(|value| value.to_bits()).collect()
 }
 
 /// Small oscillations about 0 that grow and shrink.
@@ -252,7 +226,7 @@ fn gradients_are_right_behind_a_lead_in() {
     let options = FitOptions { model: Family::XpnnPlus, sizes, rate, ..FitOptions::default() };
     let (scaling, architecture) = (Scaling::of(&data, rate).unwrap(), options.architecture(&data).unwrap());
     let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
-    let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(7);
+    let mut generator = Generator::seed_from_u64(7);
     let mut point: Vec<f64> =
         (0..objective.layout().len()).map(|_| generator.random::<f64>() - 0.5).collect();
     objective.layout().ln_beta.clone().for_each(|index| point[index] += 6.0);

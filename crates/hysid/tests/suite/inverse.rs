@@ -333,14 +333,8 @@ fn records_are_refused_with_the_row() {
 }
 
 /// Laws whose fits to these data are monotone.
-const MONOTONE: [&str; 6] = [
-    "prandtl-ishlinskii",
-    "modified-prandtl-ishlinskii",
-    "generalized-prandtl-ishlinskii",
-    "masing",
-    "preisach",
-    "jiles-atherton",
-];
+const MONOTONE: &str = "prandtl-ishlinskii modified-prandtl-ishlinskii generalized-prandtl-ishlinskii masing \
+    preisach jiles-atherton";
 
 /// The diagnosis drives a model to other pasts than the round trip: where the first finds a model monotone, the second
 /// must find the inputs.
@@ -361,7 +355,7 @@ fn models_judged_invertible_are_inverted() {
         let missed = count(Reach::NotMonotone) + count(Reach::Jump);
         assert!(verdict != Verdict::Yes || missed <= ROWS / 1000, "{name}: {counts:?}");
         assert!(missed == 0 || verdict == Verdict::No, "{name}: {counts:?}");
-        if MONOTONE.contains(&name.split(' ').next().unwrap()) {
+        if MONOTONE.split(' ').any(|monotone| name.split(' ').next() == Some(monotone)) {
             assert_eq!(verdict, Verdict::Yes, "{name}");
         }
     }

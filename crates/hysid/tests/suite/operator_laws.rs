@@ -1,10 +1,11 @@
 //! The operators against exact laws: identities, theorems and closed solutions that hold whatever
 //! the input. Numbers as (1.2) are equations of docs/theory.md.
 
+use crate::scaffold::*;
 use std::f64::consts::TAU;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use hysid::operator::{DeterioratingStop, Operator, Play, Relaxation, Relay, Stop, relaxation};
+use hysid::operator::{Play, Relaxation, relaxation};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -98,10 +99,6 @@ fn bank<O: Operator>(elements: impl Iterator<Item = (f64, O)>, x: &[f64]) -> Vec
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
-fn bits(values: &[f64]) -> Vec<u64> {
-    values.iter().map(|value| value.to_bits()).collect()
 }
 
 /// `cycles` cycles of `amplitude sin`, from 0; with 4 dividing `samples`, peaks are hit exactly.

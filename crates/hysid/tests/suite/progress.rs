@@ -1,29 +1,16 @@
 //! What an observer of a fit can see: the best model so far, and the candidates of `auto`.
 
+use crate::scaffold::*;
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 
-use hysid::data::record::{ColumnNames, Dataset};
 use hysid::fit::auto::Standing;
-use hysid::fit::identify;
-use hysid::fit::network::{Fitted, Progress};
-use hysid::model::Model;
 use hysid::model::history::Phase;
-use hysid::options::chosen::NamedOptions;
-use hysid::options::{FitSpec, ModelName};
-use hysid::termination::Termination;
 use serde_json::json;
 
 use crate::noisy_record::noisy;
-use crate::small_models::small;
 
 fn data() -> Dataset {
     Dataset::new(ColumnNames::plain(1), vec![noisy(150, "a"), noisy(110, "b"), noisy(130, "c")]).unwrap()
-}
-
-fn request(options: serde_json::Value) -> FitSpec {
-    let serde_json::Value::Object(options) = options else { panic!("a map") };
-    NamedOptions::of(options).unwrap().request(None, false)
 }
 
 /// A fit with the models that an observer sees on the way.

@@ -1,24 +1,11 @@
 //! What every model promises, whatever it is: it is found by its name, its file holds it to the last bit,
 //! stepping and simulating agree, its parameters are named, a wild input leaves it finite.
 
-use std::ops::ControlFlow;
-
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::error::Error;
-use hysid::fit::identify;
-use hysid::fit::law::Identify;
-use hysid::fit::network::Fitted;
+use crate::scaffold::*;
+use hysid::law::Dimension;
 use hysid::law::lugre::Lugre;
 use hysid::law::series::samples;
-use hysid::law::{Classical, Dimension};
-use hysid::model::{Model, Predictor};
-use hysid::network::Family;
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::options::{FitSpec, ModelName};
-use hysid::termination::Termination;
-
-use crate::small_models::{record, small};
+use hysid::model::Predictor;
 
 fn data() -> Dataset {
     let names = ColumnNames {
@@ -213,7 +200,7 @@ fn what_a_model_cannot_be_fitted_to_is_said() {
         (ClassicalModel::PrandtlIshlinskii, 0),
         (ClassicalModel::GeneralizedPrandtlIshlinskii, 0),
     ] {
-        let options = ClassicalOptions { operators: Some(operators), ..ClassicalOptions::of(model) };
+        let options = ClassicalOptions { operators: Some(operators), ..of(model) };
         let error = refused(&FitSpec::Classical(options));
         assert!(matches!(&error, Error::Option(error) if error.option == "operators"), "{error}");
     }
@@ -236,11 +223,8 @@ fn the_friction_of_a_joint_is_found_again() {
     let blank = Record::new("joint", vec![x], vec![0.0; 2000]).unwrap().with_time(time).unwrap();
     let output = Classical::from(law).run(&samples(&blank.excitation(), Some(RateMethod::Central)).unwrap());
     let data = Dataset::new(ColumnNames::plain(1), vec![blank.with_output(output).unwrap()]).unwrap();
-    let options = ClassicalOptions {
-        starts: Some(4),
-        rate: Some(RateMethod::Central),
-        ..ClassicalOptions::of(ClassicalModel::Lugre)
-    };
+    let options =
+        ClassicalOptions { starts: Some(4), rate: Some(RateMethod::Central), ..of(ClassicalModel::Lugre) };
     let found = Lugre::fit(&data, &options, &mut |_| ControlFlow::Continue(())).unwrap();
     let close = |found: f64, true_value: f64| (found - true_value).abs() < 1e-3 * true_value;
     assert!(found.train_nrmse_percent < 1e-3, "{found:?}");

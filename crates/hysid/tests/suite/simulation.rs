@@ -1,20 +1,9 @@
 //! Free runs in blocks: however a record is cut, the outputs are those of the whole to the last bit.
 
-use std::ops::ControlFlow;
-
-use hysid::data::metrics::ErrorSums;
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Excitation, Record};
-use hysid::error::{DataProblem, Error};
-use hysid::fit::identify;
-use hysid::model::{Model, Prediction, Simulation};
-use hysid::network::Family;
-use hysid::options::chosen::NamedOptions;
-use hysid::options::classical::ClassicalModel;
-use hysid::options::{FitSpec, ModelName};
+use crate::scaffold::*;
+use hysid::model::{Prediction, Simulation};
 
 use crate::noisy_record::noisy;
-use crate::small_models::{record, small};
 
 const METHODS: [RateMethod; 4] =
     [RateMethod::Given, RateMethod::Central, RateMethod::Backward, RateMethod::SavitzkyGolay];
@@ -72,10 +61,6 @@ fn in_blocks(simulation: &mut Simulation<'_>, record: &Record, lengths: &[usize]
     }
     add(simulation.finish().unwrap());
     all
-}
-
-fn bits(values: &[f64]) -> Vec<u64> {
-    values.iter().map(|value| value.to_bits()).collect()
 }
 
 /// Whole, cut in many ways, and several records one after another.

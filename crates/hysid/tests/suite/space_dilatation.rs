@@ -1,8 +1,8 @@
 //! The minimiser of non-smooth functions, on functions whose minimum is known. The iterations allowed
 //! are about those of an independent implementation, with room for another starting point.
 
+use crate::scaffold::*;
 use hysid::optimise::space_dilatation::{DilatationOptions, Minimum, SpaceDilatation};
-use hysid::termination::Termination;
 
 /// The lowest point found in so many iterations from `x`, and why the search ended by itself, if it did.
 fn search(

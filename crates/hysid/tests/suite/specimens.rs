@@ -2,31 +2,22 @@
 //! regression values of an independent implementation. Numbers as (6.10) are equations of
 //! docs/theory.md.
 
+use crate::scaffold::*;
 use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use hysid::data::record::{Dataset, Record};
-use hysid::operator::{Operator, Play};
+use hysid::operator::Play;
 use hysid::specimens::generalized_play::{Envelope, GeneralizedPlays, PlayWeights, Start};
 use hysid::specimens::{
     BoucWenBaberNoori, Concrete, ConcreteParameters, Ferromagnet, MagnetostrictiveActuator, PiezoActuator,
     RateDependentActuator, ReinforcedConcreteJoint, Specimen, shape_memory_actuator, terfenol_actuator,
-    terfenol_rod, two_wire_actuator, with_noise,
+    terfenol_rod, two_wire_actuator,
 };
 
 /// Area that a closed curve encloses, counterclockwise counted positive.
 fn enclosed(x: &[f64], y: &[f64]) -> f64 {
     let next = |k: usize| (k + 1) % x.len();
     0.5 * (0..x.len()).map(|k| x[k] * y[next(k)] - x[next(k)] * y[k]).sum::<f64>()
-}
-
-/// A path through turning points, each swing in `steps` equal steps.
-fn through(turning: &[f64], steps: usize) -> Vec<f64> {
-    let mut path = vec![turning[0]];
-    for ends in turning.windows(2) {
-        path.extend((1..=steps).map(|k| ends[0] + (ends[1] - ends[0]) * k as f64 / steps as f64));
-    }
-    path
 }
 
 // ---------------------------------------------------------------- the reinforced-concrete joint

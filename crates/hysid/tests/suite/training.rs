@@ -1,22 +1,9 @@
 //! Fits of synthetic data that the library's own operators generate, and what every fit promises.
 
-use std::ops::ControlFlow;
-
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::error::{DataProblem, Error};
-use hysid::fit::cross_validate;
-use hysid::fit::network::{Fitted, Progress, fit};
+use crate::scaffold::*;
+use hysid::fit::network::fit;
 use hysid::model::history::{Phase, Run};
-use hysid::network::{Architecture, Family, Layout, Network, Sizes};
-use hysid::operator::{DeterioratingStop, Operator, Stop};
-use hysid::options::FitSpec;
-use hysid::options::network::FitOptions;
 use hysid::options::network::Regularisation;
-use hysid::specimens::with_noise;
-use hysid::termination::Termination;
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 
 /// A path between random turning points, in unequal steps.
 fn path(rows: usize, amplitude: f64, seed: u64) -> Vec<f64> {

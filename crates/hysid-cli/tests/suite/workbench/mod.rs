@@ -1,4 +1,5 @@
 //! A folder to run the program in, and measured data to put there.
+use std::fmt::{self, Display, Formatter};
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -24,6 +25,12 @@ impl Ran {
     /// The last line of stderr.
     pub fn last_line(&self) -> &str {
         self.stderr.lines().last().unwrap_or_default()
+    }
+}
+
+impl Display for Ran {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.stdout, self.stderr)
     }
 }
 
@@ -120,6 +127,19 @@ impl Workbench {
         let line = format!("hysid() {{ '{}' \"$@\"; }}\n{line}", program.display());
         Command::new("sh").current_dir(self.folder.path()).args(["-c", &line]).output().unwrap().into()
     }
+}
+
+/// Runs what must succeed.
+pub fn succeeds(bench: &Workbench, arguments: &str) -> Ran {
+    let ran = bench.run(arguments);
+    assert_eq!(ran.status, Some(0), "hysid {arguments}: {}", ran.stderr);
+    ran
+}
+
+/// What a run that succeeded printed as JSON.
+pub fn json(ran: &Ran) -> serde_json::Value {
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
 }
 
 /// Rows of a table: on each line the exit status, the arguments of the program, `=>`, and what it says.

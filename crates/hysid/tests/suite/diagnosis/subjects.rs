@@ -1,14 +1,11 @@
 //! Laws whose properties are known, on the protocol of theory.md (10.15) or on one of their own.
 
+use crate::scaffold::*;
 use std::f64::consts::TAU;
 
-use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::diagnosis::Property;
 use hysid::law::bouc_wen::BoucWen;
 use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
-use hysid::law::{Law, Sample};
-use hysid::network::{Architecture, Family, Layout, Network, Sizes};
-use hysid::operator::{Operator, Stop};
 use hysid::specimens::{Ferromagnet, Specimen, shape_memory_actuator};
 
 /// Turning points of the protocol.
@@ -136,10 +133,10 @@ pub fn preisach_nn(x: &[f64]) -> Dataset {
 }
 
 const LAWS: &[Property] = &[
+    Property::Congruency,
     Property::StaticHysteresis,
     Property::Orientation,
     Property::WipingOut,
-    Property::Congruency,
     Property::Masing,
     Property::OddSymmetry,
     Property::Saturation,
@@ -148,16 +145,7 @@ const LAWS: &[Property] = &[
 ];
 
 /// Where the small loops of the protocol lie outside the large one, or differ by nearly what matters: no congruency.
-const WITHOUT_CONGRUENCY: &[Property] = &[
-    Property::StaticHysteresis,
-    Property::Orientation,
-    Property::WipingOut,
-    Property::Masing,
-    Property::OddSymmetry,
-    Property::Saturation,
-    Property::Deterioration,
-    Property::LoopClosure,
-];
+const WITHOUT_CONGRUENCY: &[Property] = LAWS.split_first().unwrap().1;
 
 /// Verdicts as one letter a property, in the order of `Property::ALL`: `y`, `n`, or `.` where nothing is known.
 fn letters(text: &'static str, property: Property) -> Option<bool> {
