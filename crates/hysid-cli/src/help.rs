@@ -79,10 +79,6 @@ fn look_at(error: &str, typed: impl IntoIterator<Item = String>) -> Option<Strin
 mod tests {
     use super::*;
 
-    fn help(line: &str) -> String {
-        of_command(line.split(' ').map(String::from))
-    }
-
     #[test]
     fn a_wrong_line_of_a_typed_table_points_to_look() {
         let look = |error: &str, line: &str| look_at(error, line.split(' ').map(String::from));

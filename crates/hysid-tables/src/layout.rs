@@ -249,12 +249,6 @@ mod tests {
     }
 
     #[test]
-    fn a_line_of_text_among_rows_does_not_end_the_search() {
-        let found = layout("t,x,state\n0,1.5,ok\n1,2.5,ok\n2,n/a,fault\n3,4,ok\n");
-        assert_eq!((found.names.len(), found.line), (3, 2));
-    }
-
-    #[test]
     fn text_without_rows_has_the_first_line_as_its_header() {
         assert_eq!(names("t;x;y\n"), ["t", "x", "y"]);
         assert_eq!(names("# remark\nt,x\na,b\n"), ["t", "x"]);

@@ -363,7 +363,6 @@ fn grow<T: Default + Clone>(room: &mut Vec<T>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reading::RowSelection;
 
     /// Gives a text in pieces of so many bytes.
     struct Dripping(Vec<u8>, usize);

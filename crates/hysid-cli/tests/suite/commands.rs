@@ -112,16 +112,6 @@ fn simulate_writes_a_header_that_reads_back() {
 }
 
 #[test]
-fn simulate_writes_decimal_commas_where_the_data_have_them() {
-    let bench = Workbench::with_model();
-    bench.put("drive.csv", "t;x\n0;0,1\n1;0,5\n");
-    let ran = bench.run("simulate model.json drive.csv");
-    let lines: Vec<&str> = ran.stdout.lines().collect();
-    assert_eq!(lines[0], "t;x;y_model");
-    assert!(lines[2].starts_with("1;0,5;") && !lines[2].contains('.'), "{}", ran.stdout);
-}
-
-#[test]
 fn further_inputs_and_a_given_rate_are_found_by_name() {
     let bench = Workbench::new();
     let number = |cell: &String| cell.parse::<f64>().unwrap();

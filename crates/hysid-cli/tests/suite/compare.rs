@@ -1,6 +1,6 @@
 //! `hysid compare` as a user runs it, and models that are no networks in the other commands.
 
-use crate::workbench::{Ran, Workbench, json, table};
+use crate::workbench::{Workbench, json, table};
 
 fn bench() -> Workbench {
     let bench = Workbench::new();

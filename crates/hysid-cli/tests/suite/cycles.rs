@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::workbench::{Ran, Workbench, succeeds};
+use crate::workbench::{Workbench, succeeds};
 use serde_json::Value;
 
 /// Turning points joined in steps, through a law.

@@ -1,6 +1,6 @@
 //! `hysid diagnose` as a user runs it: text, JSON, page, and what it refuses.
 
-use crate::workbench::{Ran, Workbench, csv, rows, succeeds, table};
+use crate::workbench::{Workbench, csv, rows, succeeds, table};
 use serde_json::Value;
 
 const PROPERTIES: [&str; 10] = [

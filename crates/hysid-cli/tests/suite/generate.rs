@@ -1,6 +1,6 @@
 //! `hysid generate` as a user runs it.
 
-use crate::workbench::{Ran, Workbench, succeeds};
+use crate::workbench::{Workbench, succeeds};
 
 const SPECIMENS: &str = "ferromagnet reinforced-concrete-joint reinforced-concrete-joint-cycles \
     terfenol-actuator terfenol-rod shape-memory-actuator two-wire-actuator concrete piezo-actuator \

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::workbench::{Ran, Workbench, cases, succeeds};
+use crate::workbench::{Workbench, cases, succeeds};
 
 /// The training data: growing loops of a spring beside a friction slider.
 fn training() -> Vec<(f64, f64)> {

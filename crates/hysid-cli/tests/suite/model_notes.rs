@@ -1,7 +1,7 @@
 //! What a user is told of a model beside its errors: rows that it was not trained on, data that cannot tell
 //! candidates apart, inputs that are measured from elsewhere than 0.
 
-use crate::workbench::{Ran, Workbench, csv, json, table};
+use crate::workbench::{Workbench, csv, json, table};
 use serde_json::Value;
 
 /// Some cycles of one loop.

@@ -1,6 +1,6 @@
 //! `hysid plan`: drives from data and for kinds of specimens, their files, and what is refused.
 
-use crate::workbench::{Ran, Workbench, succeeds};
+use crate::workbench::{Workbench, succeeds};
 
 /// Cycles of one amplitude, 400 rows.
 fn cycles(header: &str, has_time: bool) -> String {

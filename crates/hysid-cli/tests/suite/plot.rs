@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::workbench::{Ran, Workbench, succeeds};
+use crate::workbench::{Workbench, succeeds};
 
 /// What a machine without fonts says of PDF and PNG. Set where no proof may be missing.
 const PROVE_ALL: &str = "HYSID_PROVE_ALL";

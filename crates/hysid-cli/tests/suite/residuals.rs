@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::workbench::{Ran, Workbench, json};
+use crate::workbench::{Workbench, json};
 use serde_json::Value;
 
 /// Numbers that look random, between -1 and 1.

@@ -85,16 +85,6 @@ fn odd_series_can_be_drawn() {
 }
 
 #[test]
-fn every_marker_is_recoloured() {
-    let colours =
-        [Colour::Measured, Colour::Simulated, Colour::Input, Colour::Error, Colour::Faint, Colour::Band];
-    let markers = colours.map(Colour::marker).into_iter().chain([INK, GRID]);
-    for RGBColor(r, g, b) in markers {
-        assert!(style().contains(&format!("[stroke=\"#{r:02X}{g:02X}{b:02X}\"]")));
-    }
-}
-
-#[test]
 fn a_long_legend_goes_on_below_and_unused_colours_are_left_out() {
     let curve = |place| Curve::new(vec![(0.0, 0.0), (1.0, 1.0)], Colour::Series(place), 1.0);
     let chart = Chart {

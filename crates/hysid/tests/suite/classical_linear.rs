@@ -7,7 +7,6 @@ use hysid::law::masing::{Masing, MasingParts};
 use hysid::law::modified_prandtl_ishlinskii::{DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii};
 use hysid::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use hysid::law::preisach::{Preisach, PreisachWeights};
-use hysid::law::series::run;
 use hysid::law::turning_point_stack::TurningPointStack;
 use hysid::options::classical::Sign;
 use hysid::specimens::Ferromagnet;
@@ -180,83 +179,6 @@ proptest! {
         check("masing", &masing(), &turning, 1.0)?;
         check("preisach", &steel(steel_lines()), &turning, 250.0)?;
     }
-}
-
-/// Outputs at the ends of an inner loop before and after it, and after an outer excursion.
-fn returns<L: Law>(law: &L, scale: f64) -> f64 {
-    let outer = [2.8, -1.5].map(|x| x * scale);
-    let inner = [1.0, 0.1, 0.7, 0.3, 1.0].map(|x| x * scale);
-    let with = [outer.as_slice(), &inner, &[1.9 * scale]].concat();
-    let without = [outer.as_slice(), &[1.9 * scale]].concat();
-    (last(law, &with) - last(law, &without)).abs()
-}
-
-#[test]
-fn all_wipe_out() {
-    assert!(returns(&lecture_model(), 1.0) < 1e-13);
-    assert!(returns(&saturating(), 1.0) < 1e-13);
-    assert!(returns(&masing(), 1.0) < 1e-13);
-    assert!(returns(&steel(steel_lines()), 200.0) < 1e-13);
-    // What wears does not.
-    let wearing = |x: &[f64]| *DeterioratingStop::new(0.3, 30.0).unwrap().run(x).last().unwrap();
-    assert!((wearing(&[2.8, -1.5, 1.0, 0.1, 0.7, 0.3, 1.0, 1.9]) - wearing(&[2.8, -1.5, 1.9])).abs() > 1e-2);
-}
-
-/// How much the rise from `a` to `b` within a closed loop depends on the past.
-fn incongruency<L: Law>(law: &L, scale: f64) -> f64 {
-    let rise = |past: &[f64]| {
-        let x: Vec<f64> = past.iter().chain(&[0.6, -0.4, 0.6]).map(|x| x * scale).collect();
-        let y = outputs(law, &x);
-        y[y.len() - 1] - y[y.len() - 2]
-    };
-    (rise(&[2.8]) - rise(&[-2.8])).abs() / rise(&[2.8]).abs()
-}
-
-#[test]
-fn sums_are_congruent_and_bent_sums_are_not() {
-    assert!(incongruency(&lecture_model(), 1.0) < 1e-13);
-    assert!(incongruency(&masing(), 1.0) < 1e-13);
-    assert!(incongruency(&steel(steel_lines()), 150.0) < 1e-12);
-    assert!(incongruency(&saturating(), 1.0) > 0.1);
-}
-
-/// How far the branch down from `x` is from the virgin curve doubled.
-fn deviation_from_masing<L: Law>(law: &L, tip: f64) -> f64 {
-    let rest = last(law, &[0.0]);
-    let at_tip = last(law, &[tip]);
-    let deviation = |share: f64| {
-        let x = tip * (1.0 - 2.0 * share);
-        let doubled = at_tip - 2.0 * (last(law, &[tip * share]) - rest);
-        (last(law, &[tip, x]) - doubled).abs()
-    };
-    [0.2, 0.5, 0.8].map(deviation).into_iter().fold(0.0, f64::max) / (at_tip - rest).abs()
-}
-
-#[test]
-fn masings_rule_holds_for_sums_of_plays_only() {
-    assert!(deviation_from_masing(&lecture_model(), 2.5) < 1e-13);
-    assert!(deviation_from_masing(&masing(), 1.8) < 1e-13);
-    assert!(deviation_from_masing(&steel(steel_lines()), 300.0) > 0.1);
-    assert!(deviation_from_masing(&saturating(), 2.5) > 0.05);
-}
-
-#[test]
-fn symmetric_parameters_give_odd_models() {
-    fn asymmetry<L: Law>(law: &L, scale: f64) -> f64 {
-        let x = through(&[0.0, 2.0, -1.0, 0.5, -2.4, 1.0], 9);
-        let plus: Vec<f64> = x.iter().map(|x| x * scale).collect();
-        let minus: Vec<f64> = plus.iter().map(|x| -x).collect();
-        let rest = last(law, &[0.0]);
-        let sums = outputs(law, &plus)
-            .into_iter()
-            .zip(outputs(law, &minus))
-            .map(|(a, b)| (a + b - 2.0 * rest).abs());
-        sums.fold(0.0, f64::max)
-    }
-    assert!(asymmetry(&lecture_model(), 1.0) < 1e-13);
-    assert!(asymmetry(&masing(), 1.0) < 1e-13);
-    assert!(asymmetry(&steel(steel_lines()), 250.0) < 1e-12);
-    assert!(asymmetry(&saturating(), 1.0) > 0.1);
 }
 
 // ---------------------------------------------------------------- published values

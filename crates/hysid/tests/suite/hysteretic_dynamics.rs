@@ -2,10 +2,8 @@
 
 use crate::scaffold::*;
 use hysid::Fit;
-use hysid::fit::law::search::Identified;
 use hysid::law::hysteretic_oscillator::HystereticOscillator;
 use hysid::law::hysteretic_state_space::HystereticStateSpace;
-use hysid::law::series::run;
 use hysid::specimens::{BoucWenOscillator, DuffingOscillator, PiezoStage};
 
 /// Rows a second, and steps of the integration in a row.

@@ -120,26 +120,7 @@ fn a_lead_in_drives_the_memory_as_rows_before_the_record_do() {
 
 /// Rows of a record, in blocks that go round in a circle.
 fn in_blocks(model: &Model, record: &Record, lengths: &[usize]) -> Vec<f64> {
-    let (mut simulation, mut output, mut first) = (model.simulation(), Vec::new(), 0);
-    simulation.begin(record.name());
-    for &length in lengths.iter().cycle() {
-        let rows = first..record.len().min(first + length);
-        let inputs = record.inputs().iter().map(|input| &input[rows.clone()]).collect();
-        let mut block = Excitation::new(record.name(), inputs).unwrap();
-        if let Some(time) = record.time() {
-            block = block.with_time(&time[rows.clone()]).unwrap();
-        }
-        if let Some(lead_in) = record.lead_in().filter(|_| first == 0) {
-            block = block.with_lead_in(lead_in).unwrap();
-        }
-        output.extend(simulation.take(&block).unwrap().output);
-        first = rows.end;
-        if first == record.len() {
-            break;
-        }
-    }
-    output.extend(simulation.finish().unwrap().output);
-    output
+    crate::simulation::in_blocks(&mut model.simulation(), record, lengths).output
 }
 
 #[test]

@@ -38,6 +38,9 @@ fn rows<'r>(record: &'r Record, range: std::ops::Range<usize>) -> Excitation<'r>
     if let Some(time) = record.time() {
         rows = rows.with_time(&time[range.clone()]).unwrap();
     }
+    if let Some(lead_in) = record.lead_in().filter(|_| range.start == 0) {
+        rows = rows.with_lead_in(lead_in).unwrap();
+    }
     match record.given_rate() {
         Some(rate) => rows.with_given_rate(&rate[range]).unwrap(),
         None => rows,
@@ -45,7 +48,7 @@ fn rows<'r>(record: &'r Record, range: std::ops::Range<usize>) -> Excitation<'r>
 }
 
 /// A simulation cut into blocks whose lengths go round in a circle.
-fn in_blocks(simulation: &mut Simulation<'_>, record: &Record, lengths: &[usize]) -> Prediction {
+pub fn in_blocks(simulation: &mut Simulation<'_>, record: &Record, lengths: &[usize]) -> Prediction {
     let mut all = Prediction { output: Vec::new(), low: Vec::new(), high: Vec::new() };
     let mut add = |some: Prediction| {
         all.output.extend(some.output);

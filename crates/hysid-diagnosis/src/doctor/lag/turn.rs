@@ -280,8 +280,6 @@ fn what_is_left(mut products: [[f64; COLUMNS]; COLUMNS]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::DiagnosisOptions;
-    use hysid_core::data::record::{ColumnNames, Dataset, Record};
 
     #[test]
     fn the_remainder_is_that_of_least_squares() {
