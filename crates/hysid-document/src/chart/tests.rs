@@ -1,7 +1,4 @@
-use plotters::style::RGBColor;
-
 use super::frame::legend_lines;
-use super::palette::{GRID, INK};
 use super::*;
 use crate::balance::assert_balanced;
 

@@ -38,7 +38,7 @@ fn random_parameters(layout: &Layout, ln_beta: f64, generator: &mut Generator) -
         .collect()
 }
 
-fn run(network: &Network, drive: &Drive) -> Vec<f64> {
+pub fn run(network: &Network, drive: &Drive) -> Vec<f64> {
     let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
     let mut y = vec![0.0; drive.len()];
     network.simulator().run(&u, &drive.steps, &mut y);

@@ -1,12 +1,9 @@
 //! The network family against theory.md section 2: a scalar reference that is written here from the
 //! equations, and laws that hold whatever the parameters.
 
+use crate::gradient::run;
 use crate::scaffold::*;
 use hysid::operator::Relaxation;
-
-fn generator(seed: u64) -> Generator {
-    Generator::seed_from_u64(seed)
-}
 
 /// Every family; one and three inputs, rate and time on and off where the family has them.
 fn architectures(sizes: Sizes) -> Vec<Architecture> {
@@ -73,13 +70,6 @@ fn drive(a: &Architecture, rows: usize, generator: &mut Generator) -> Drive {
     Drive { channels, steps: if a.relaxation > 0 { steps.collect() } else { Vec::new() } }
 }
 
-fn run(network: &Network, drive: &Drive) -> Vec<f64> {
-    let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
-    let mut y = vec![0.0; drive.len()];
-    network.simulator().run(&u, &drive.steps, &mut y);
-    y
-}
-
 /// Largest difference in units of the larger signal's largest value.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     let largest = a.iter().chain(b).fold(1e-300, |most: f64, y| most.max(y.abs()));
@@ -142,7 +132,7 @@ fn reference(network: &Network, drive: &Drive) -> Vec<f64> {
 
 #[test]
 fn every_family_agrees_with_the_scalar_reference() {
-    let mut generator = generator(1);
+    let mut generator = Generator::seed_from_u64(1);
     for a in odd_architectures() {
         let network = ordinary(a, &mut generator);
         let drive = drive(&a, 300, &mut generator);
@@ -155,7 +145,7 @@ fn every_family_agrees_with_the_scalar_reference() {
 
 #[test]
 fn steps_and_runs_however_split_agree_to_the_last_bit() {
-    let mut generator = generator(2);
+    let mut generator = Generator::seed_from_u64(2);
     let (mut tried, mut remembering) = (0, 0);
     for a in odd_architectures() {
         let network = ordinary(a, &mut generator);
@@ -211,7 +201,7 @@ fn steps_and_runs_however_split_agree_to_the_last_bit() {
 
 #[test]
 fn a_network_gives_its_parameters_back_and_refuses_others() {
-    let mut generator = generator(3);
+    let mut generator = Generator::seed_from_u64(3);
     for a in odd_architectures() {
         let network = ordinary(a, &mut generator);
         let (parameters, output) = (network.parameters().to_vec(), network.output().to_vec());
@@ -253,7 +243,7 @@ fn a_network_gives_its_parameters_back_and_refuses_others() {
 #[test]
 fn a_free_run_is_finite_whatever_parameters_and_input() {
     let wild = [1e300, -1e300, 0.0, 1.0, f64::MAX, -f64::MAX, 1e-300, -1e50, 1e50, 1e17, -3.0, 5e-324];
-    let mut generator = generator(4);
+    let mut generator = Generator::seed_from_u64(4);
     let (mut runs, mut overflows) = (0, 0);
     for a in odd_architectures() {
         let layout = Layout::new(a);

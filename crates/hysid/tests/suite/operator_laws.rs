@@ -59,10 +59,6 @@ fn pick(values: &[f64], rows: &[usize]) -> Vec<f64> {
     rows.iter().map(|&row| values[row]).collect()
 }
 
-fn concat(parts: &[&[f64]]) -> Vec<f64> {
-    parts.concat()
-}
-
 fn play(r: f64) -> Play {
     Play::new(r).unwrap()
 }
@@ -83,17 +79,6 @@ fn relay(r: f64, s: f64) -> Relay {
 /// memory: laws about memory hold for them to the last bit.
 fn exact_operators(r: f64, s: f64) -> [(&'static str, Box<dyn Operator>); 3] {
     [("play", Box::new(play(r))), ("stop", Box::new(stop(r))), ("relay", Box::new(relay(r, s)))]
-}
-
-/// Weighted sum of operators: a model of Prandtl-Ishlinskii type.
-fn bank<O: Operator>(elements: impl Iterator<Item = (f64, O)>, x: &[f64]) -> Vec<f64> {
-    let mut sum = vec![0.0; x.len()];
-    for (weight, mut operator) in elements {
-        for (sum, output) in sum.iter_mut().zip(operator.run(x)) {
-            *sum += weight * output;
-        }
-    }
-    sum
 }
 
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
@@ -149,17 +134,6 @@ proptest! {
         prop_assert!(!slid_in_sight || largest_difference(&y, &e) > 1e-6);
     }
 
-    /// Mirrored input, mirrored output.
-    #[test]
-    fn operators_are_odd(x in path(), r in threshold(), s in 0.1..2.0f64) {
-        let mirror = |x: &[f64]| x.iter().map(|x| -x).collect::<Vec<_>>();
-        prop_assert_eq!(play(r).run(&mirror(&x)), mirror(&play(r).run(&x)));
-        prop_assert_eq!(stop(r).run(&mirror(&x)), mirror(&stop(r).run(&x)));
-        let mut worn = deteriorating(r, 5.0);
-        prop_assert_eq!(worn.run(&mirror(&x)), mirror(&worn.run(&x)));
-        prop_assert_eq!(relay(r, -s).run(&mirror(&x)), mirror(&relay(r, s).run(&x)));
-    }
-
     /// `R_{s-r,s+r} = +1` if and only if `P_r > s`: relays are points of the half-plane (r, s), the
     /// play is the memory curve through it.
     #[test]
@@ -173,17 +147,6 @@ proptest! {
                 prop_assert_eq!(*output, (p - s).signum());
             }
         }
-    }
-
-    /// Evenly spread relays of one half-width add up to the play of that threshold: the Preisach
-    /// model of a play has the density 1/2 on the line `r`.
-    #[test]
-    fn relays_add_up_to_the_play(x in path(), r in threshold()) {
-        let (spacing, n) = (0.1, 60); // centres from -5.95 to 5.95, beyond every |P_r| <= 3
-        let centre = |k: i32| spacing * (f64::from(k) + 0.5);
-        let relays = (-n..n).map(|k| (spacing / 2.0, relay(r, centre(k))));
-        let sum = bank(relays, &x);
-        prop_assert!(largest_difference(&sum, &play(r).run(&x)) <= spacing / 2.0 + 1e-12);
     }
 
     /// A stop of threshold r is a stop of threshold 1 seen through a magnifying glass (1.12), and
@@ -298,50 +261,6 @@ proptest! {
         prop_assert!(largest_difference(&pick(&worn.run(&refined), &kept), &y) < 1e-13);
         prop_assert!(largest_difference(&pick(&worn.run(&warped), &kept_in_warped), &y) < 1e-13);
     }
-
-    /// Wiping-out: an excursion between the last maximum and the present value leaves no trace,
-    /// once the input has returned to that value or gone beyond it.
-    #[test]
-    fn closed_excursions_are_wiped_out(
-        history in path(), a in -3.0..3.0f64, b in -3.0..3.0f64, inner in vec(0.0..=1.0, 1..10),
-        tail in path(), r in threshold(), s in -2.0..2.0,
-    ) {
-        // From extreme a to b, some time between them, then back to b; upwards or downwards.
-        let between = |f: f64| (a + f * (b - a)).clamp(a.min(b), a.max(b));
-        let inner: Vec<f64> = inner.into_iter().map(between).collect();
-        let with = concat(&[&history, &[a, b], &inner, &[b], &tail]);
-        let without = concat(&[&history, &[a, b], &tail]);
-        let last = tail.len() + 1;
-        for (name, mut operator) in exact_operators(r, s) {
-            let (y_with, y_without) = (operator.run(&with), operator.run(&without));
-            prop_assert_eq!(
-                &y_with[with.len() - last..], &y_without[without.len() - last..], "{}", name
-            );
-        }
-    }
-
-    /// Congruency: minor loops between the same two inputs have the same shape after any history,
-    /// for every weighted sum of plays and for every weighted sum of stops.
-    #[test]
-    fn minor_loops_of_banks_are_congruent(
-        one in path(), other in path(), low in -3.0..0.0, width in 0.1..3.0,
-        elements in vec((-2.0..2.0f64, threshold()), 1..8), fractions in refinement(),
-    ) {
-        let high = low + width;
-        // Once around to close the loop, then once around for the record.
-        let (around, _) = refine(&[low, high, low], &fractions, 0.0);
-        let lead_in = [low, high];
-        let shape = |y: Vec<f64>| {
-            let minor = &y[y.len() - around.len()..];
-            minor.iter().map(|y| y - minor[0]).collect::<Vec<_>>()
-        };
-        let after = |history: &[f64]| concat(&[history, &lead_in, &around]);
-        let of_plays = |x: &[f64]| shape(bank(elements.iter().map(|&(w, r)| (w, play(r))), x));
-        let of_stops = |x: &[f64]| shape(bank(elements.iter().map(|&(w, r)| (w, stop(r))), x));
-        let (one, other) = (after(&one), after(&other));
-        prop_assert!(largest_difference(&of_plays(&one), &of_plays(&other)) < 1e-12);
-        prop_assert!(largest_difference(&of_stops(&one), &of_stops(&other)) < 1e-12);
-    }
 }
 
 // ------------------------------------------------------------ sliding: area, slip, life
@@ -372,19 +291,6 @@ proptest! {
         assert_abs_diff_eq!(area, r * of_a_cycle, epsilon = step * step);
         prop_assert!(step * step < 0.02 * area, "tolerance {} for {}", step * step, area);
     }
-}
-
-/// Below its threshold a stop is a spring; with corners on the samples the area is exact.
-#[test]
-fn area_without_sliding_and_area_without_rounding() {
-    let x = sine(0.9, 400, 2);
-    let mut element = deteriorating(1.0, f64::INFINITY);
-    assert_abs_diff_eq!(loop_area(&x, &element.run(&x), 400), 0.0, epsilon = 1e-14);
-    assert_eq!(element.slip(), 0.0);
-
-    // A triangle of amplitude 2, on a stop of threshold 1, in steps of 1/4: all sums are exact.
-    let x = triangle(32, 2);
-    assert_eq!(loop_area(&x, &stop(1.0).run(&x), 32), 4.0);
 }
 
 /// A triangular wave of amplitude 2 from 0, `samples` samples a cycle.

@@ -255,19 +255,6 @@ fn the_rate_dependent_actuator_has_its_regression_values() {
     }
 }
 
-#[test]
-fn without_growth_the_thresholds_are_those_of_plays() {
-    let mut actuator = RateDependentActuator::designed();
-    actuator.growth = 0.0;
-    let mut plays: Vec<Play> = (1..=10).map(|i| Play::new(0.6 * f64::from(i)).unwrap()).collect();
-    let weights = actuator.weights.clone();
-    for v in through(&[0.0, 9.0, -4.0, 6.0, -10.0, 2.0], 30) {
-        let sum: f64 = plays.iter_mut().zip(&weights).map(|(play, weight)| weight * play.step(v)).sum();
-        assert_relative_eq!(actuator.step(v, 1e6), 0.5 * v + sum, epsilon = 1e-12);
-    }
-    assert!(actuator.step(0.0, f64::NAN).is_nan());
-}
-
 /// The record's own sampling is fine enough for the law: it has the areas of the fine simulation.
 #[test]
 fn rate_dependent_records_have_the_areas_of_their_law() {
