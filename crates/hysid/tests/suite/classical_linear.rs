@@ -253,24 +253,16 @@ fn a_fit_finds_the_weights_of_plays() {
     }
     // With thresholds of its own it must find the same behaviour on another path.
     let other = through(&[0.0, 2.2, -0.7, 3.1, -3.9, 1.2, 0.2, 0.9], 23);
+    let signed = |sign| {
+        let options = ClassicalOptions { sign, ..of(ClassicalModel::PrandtlIshlinskii) };
+        PrandtlIshlinskii::fit(&data, &options, &mut go_on).unwrap().law
+    };
     for sign in [None, Some(Sign::NonNegative)] {
-        let fitted = PrandtlIshlinskii::fit(
-            &data,
-            &ClassicalOptions { sign, ..of(ClassicalModel::PrandtlIshlinskii) },
-            &mut go_on,
-        )
-        .unwrap()
-        .law;
+        let fitted = signed(sign);
         let error = nrmse(&outputs(&model, &other), &outputs(&fitted, &other));
         assert!(error < 1.0, "{error} %");
     }
-    let wrong = PrandtlIshlinskii::fit(
-        &data,
-        &ClassicalOptions { sign: Some(Sign::NonPositive), ..of(ClassicalModel::PrandtlIshlinskii) },
-        &mut go_on,
-    )
-    .unwrap()
-    .law;
+    let wrong = signed(Some(Sign::NonPositive));
     assert!(wrong.weights().iter().all(|&w| w <= 0.0));
     assert!(nrmse(&outputs(&model, &other), &outputs(&wrong, &other)) > 10.0);
 }
@@ -304,27 +296,13 @@ fn a_fit_finds_a_sheet_of_steel() {
     ]);
     b[70..90].fill(f64::NAN);
     let data = dataset(h, b);
-    let fitted = Preisach::fit(
-        &data,
-        &ClassicalOptions { operators: Some(24), ..of(ClassicalModel::Preisach) },
-        &mut go_on,
-    )
-    .unwrap()
-    .law;
+    let options = ClassicalOptions { operators: Some(24), ..of(ClassicalModel::Preisach) };
+    let fitted = Preisach::fit(&data, &options, &mut go_on).unwrap().law;
     let (h, b) = sheet(&[0.0, 90.0, -90.0, 250.0, 60.0, 140.0, -30.0, 30.0, -250.0, -20.0, -100.0, 20.0]);
     let error = nrmse(&b, &outputs(&fitted, &h));
     assert!(error < 3.0, "{error} %");
-    let signed = Preisach::fit(
-        &data,
-        &ClassicalOptions {
-            operators: Some(24),
-            sign: Some(Sign::NonNegative),
-            ..of(ClassicalModel::Preisach)
-        },
-        &mut go_on,
-    )
-    .unwrap()
-    .law;
+    let options = ClassicalOptions { sign: Some(Sign::NonNegative), ..options };
+    let signed = Preisach::fit(&data, &options, &mut go_on).unwrap().law;
     assert!(signed.weights().cells.iter().all(|&w| w >= 0.0));
 }
 

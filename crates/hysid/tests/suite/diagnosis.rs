@@ -34,7 +34,7 @@ fn counts(subject: &Subject, percent: f64, seeds: u64) -> Vec<(Property, Count)>
     let count = |property: Property| {
         let mut count = Count::default();
         for diagnosis in &diagnoses {
-            match (diagnosis.verdict(property), (subject.truth)(property)) {
+            match (diagnosis.verdict(property), subject.truth(property)) {
                 (Verdict::NotTestable, _) => count.none += 1,
                 (Verdict::Yes, Some(false)) | (Verdict::No, Some(true)) => count.wrong += 1,
                 _ => count.right += 1,
@@ -69,7 +69,7 @@ fn hardly_any_verdict_is_wrong_under_noise() {
         println!("\nNoise of {percent} % of the range, {seeds} seeds: right / wrong / not testable\n");
         let (mut right, mut wrong, mut none) = (0, 0, 0);
         for subject in &subjects {
-            let known = |property: Property| (subject.truth)(property).is_some();
+            let known = |property: Property| subject.truth(property).is_some();
             let counts = counts(subject, percent, seeds);
             let cells: Vec<String> = counts
                 .iter()
@@ -136,7 +136,7 @@ fn the_published_indices_are_found() {
 #[test]
 fn noise_alone_gives_the_index_that_is_said() {
     let options = DiagnosisOptions { smoothing: false, ..DiagnosisOptions::default() };
-    for subject in laws().into_iter().filter(|subject| (subject.truth)(Property::WipingOut) == Some(true)) {
+    for subject in laws().into_iter().filter(|subject| subject.truth(Property::WipingOut) == Some(true)) {
         for percent in [1.0] {
             const SEEDS: u64 = 4;
             let (mut index, mut said) = (0.0, 0.0);

@@ -250,26 +250,6 @@ fn line_ends_do_not_matter() {
 // -------------------------------------------------------------------------------- sample by sample
 
 #[test]
-fn a_stepper_fed_with_the_same_rates_gives_the_same_bits() {
-    for model in models() {
-        let record = record(model.names().inputs.len(), 200);
-        let rates = model.rate().map(|method| method.rate(&record).unwrap());
-        let whole = model.simulate(&record).unwrap();
-        let mut stepper = model.stepper();
-        for _ in 0..2 {
-            let stepped: Vec<f64> = (0..record.len())
-                .map(|k| {
-                    let inputs: Vec<f64> = record.inputs().iter().map(|input| input[k]).collect();
-                    stepper.step(&inputs, record.time().unwrap()[k], rates.as_ref().map(|r| r[k])).unwrap()
-                })
-                .collect();
-            assert_eq!(bits(&stepped), bits(&whole), "{:?} {:?}", model.name(), model.rate());
-            stepper.reset();
-        }
-    }
-}
-
-#[test]
 fn a_stepper_finds_backward_rates_itself() {
     let record = record(1, 200);
     let time = record.time().unwrap();

@@ -37,8 +37,8 @@ fn refinement() -> impl Strategy<Value = Vec<Vec<f64>>> {
 
 /// `path` with further points on its straight pieces, and where the original points are now.
 ///
-/// A fraction of 0 or 1 repeats an original point. `overshoot` 0 keeps every piece monotone.
-fn refine(path: &[f64], fractions: &[Vec<f64>], overshoot: f64) -> (Vec<f64>, Vec<usize>) {
+/// A fraction of 0 or 1 repeats an original point.
+fn refine(path: &[f64], fractions: &[Vec<f64>]) -> (Vec<f64>, Vec<usize>) {
     let (mut refined, mut kept) = (vec![path[0]], vec![0]);
     for (ends, fractions) in path.windows(2).zip(fractions) {
         let (from, to) = (ends[0], ends[1]);
@@ -47,7 +47,7 @@ fn refine(path: &[f64], fractions: &[Vec<f64>], overshoot: f64) -> (Vec<f64>, Ve
         for fraction in fractions {
             // Rounding may carry the sum beyond `to`, so clip.
             let inside = (from + fraction * (to - from)).clamp(from.min(to), from.max(to));
-            refined.push(inside + overshoot * (to - from));
+            refined.push(inside);
         }
         kept.push(refined.len());
         refined.push(to);
@@ -241,7 +241,7 @@ proptest! {
         x in path(), fractions in refinement(), waits in refinement(),
         r in threshold(), s in -2.0..2.0,
     ) {
-        let (refined, kept) = refine(&x, &fractions, 0.0);
+        let (refined, kept) = refine(&x, &fractions);
         // Waiting: every point as often as the second refinement happens to say.
         let mut warped = Vec::new();
         let mut kept_in_warped = Vec::new();
@@ -424,8 +424,8 @@ proptest! {
         x in path(), steps in vec(1e-3..0.5, 30), fractions in refinement(), tau in 0.05..20.0f64,
     ) {
         let time = times(&steps[..x.len() - 1]);
-        let (fine_time, kept) = refine(&time, &fractions, 0.0);
-        let (fine_x, _) = refine(&x, &fractions, 0.0);
+        let (fine_time, kept) = refine(&time, &fractions);
+        let (fine_x, _) = refine(&x, &fractions);
         let mut element = Relaxation::new(tau).unwrap();
         let coarse = element.run(&time, &x).unwrap();
         let fine = element.run(&fine_time, &fine_x).unwrap();

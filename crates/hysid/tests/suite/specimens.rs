@@ -6,7 +6,6 @@ use crate::scaffold::*;
 use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use hysid::operator::Play;
 use hysid::specimens::generalized_play::{Envelope, GeneralizedPlays, PlayWeights, Start};
 use hysid::specimens::{
     BoucWenBaberNoori, Concrete, ConcreteParameters, Ferromagnet, MagnetostrictiveActuator, PiezoActuator,

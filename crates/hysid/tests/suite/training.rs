@@ -117,23 +117,12 @@ fn two_speeds() -> Dataset {
 }
 
 #[test]
-fn the_rate_tells_two_speeds_apart_on_any_number_of_threads() {
+fn the_rate_tells_two_speeds_apart() {
     let data = two_speeds();
     let with = FitOptions { rate: Some(RateMethod::Backward), ..small(Family::Xpnn, 4, 3) };
-    let on = |threads: usize, options: &FitOptions| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| quietly(&data, options))
-    };
-    let (one, two) = (on(1, &with), on(2, &with));
-    assert_eq!(bits(&one), bits(&two));
-    assert_eq!(one.model, two.model);
-    assert_eq!(one.evaluations, two.evaluations);
-    let without = quietly(&data, &FitOptions { rate: None, ..with.clone() });
-    assert!(nrmse(&one, &data) < 5.0, "{} %", nrmse(&one, &data));
-    assert!(nrmse(&without, &data) > 20.0, "{} %", nrmse(&without, &data));
-
-    let other = on(2, &FitOptions { seed: 2, ..with });
-    assert_ne!(bits(&one), bits(&other));
+    let error = |options: &FitOptions| nrmse(&quietly(&data, options), &data);
+    let (without, with) = (error(&FitOptions { rate: None, ..with.clone() }), error(&with));
+    assert!(with < 5.0 && without > 20.0, "{with} %, {without} %");
 }
 
 // ---------------------------------------------------------------------------------------- observer
@@ -386,12 +375,4 @@ fn any_number_of_epochs_is_a_number_or_an_error() {
         calls += 1;
         if calls == 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-}
-
-#[test]
-fn every_start_begins_within_the_bounds_of_the_search() {
-    let fitted = quietly(&bank_data(100), &FitOptions { epochs: 0, ..small(Family::XpnnPlus, 4, 2) });
-    let network = fitted.model.network().unwrap();
-    Layout::new(*network.architecture()).check(network.parameters()).unwrap();
-    assert!(fitted.model.provenance().runs.iter().all(|run| run.history.len() == 1));
 }
