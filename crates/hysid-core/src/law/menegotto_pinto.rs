@@ -399,26 +399,6 @@ mod tests {
         path
     }
 
-    /// By hand, with `R = 1`, so that the curve is `z/(1 + z)`: up to `d = 1`, where `q = 1/2`; from there 3/2 are left to
-    /// the lower yield stress, half of which is used at `d = -1/2`; at `d = -2` two thirds; from there 3/2 to the
-    /// upper one, half of which is used at `d = -1/2`.
-    #[test]
-    fn a_cycle_by_hand() {
-        let law = MenegottoPinto {
-            hardening_stiffness: 5.0,
-            strength: 100.0,
-            yield_displacement: 2.0,
-            roundness: 1.0,
-            loss: 0.0,
-            ..MenegottoPinto::steel(1.0, 1.0, 0.0).unwrap()
-        };
-        let forces = run(&law, &[2.0, -1.0, -4.0, -1.0]);
-        let expected = [10.0 + 50.0, -5.0 - 25.0, -20.0 - 50.0, -5.0 + 25.0];
-        for (force, expected) in forces.iter().zip(expected) {
-            assert!((force - expected).abs() < 1e-12, "{force} and {expected}");
-        }
-    }
-
     /// Steel02 as its reference describes it: strains and stresses, intersections of asymptotes, without a memory of
     /// earlier branches.
     fn steel_02(path: &[f64]) -> Vec<f64> {

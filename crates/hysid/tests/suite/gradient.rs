@@ -104,26 +104,6 @@ fn the_jacobian_is_that_of_the_whole_simulation() {
     assert!(columns > 300 && vivid > 9 * columns / 10, "{vivid} of {columns}");
 }
 
-/// Derivatives are exactly 0 once a stop is dead, and right until then.
-#[test]
-fn a_dead_stop_has_no_slope() {
-    let sizes = Sizes { stops: 2, hidden: 0, relaxation: 0 };
-    let a = Architecture::new(Family::Gpnn, sizes, 1, false, false).unwrap();
-    // The first lives 3 thresholds of slip, the second long.
-    let network = Network::new(a, vec![3.0, 2.0, 3f64.ln(), 500f64.ln()], vec![0.1, 1.0, 1.0]).unwrap();
-    let x: Vec<f64> = (0..200).map(|k| (0.17 * k as f64).sin()).collect();
-    let drive = Drive { channels: vec![x], steps: Vec::new() };
-    let linearised = network.linearise(&drive);
-    for k in 0..4 {
-        let expected = quotient(&network, &drive, k, 1e-7, 1e-7);
-        assert!(distance(&linearised.jacobian[k], &expected) < 1e-6 * norm(&expected));
-        let late = |column: &[f64]| column[60..].iter().all(|&slope| slope == 0.0);
-        let first_stop = k % 2 == 0;
-        assert_eq!(late(&linearised.jacobian[k]), first_stop, "parameter {k}");
-        assert!(norm(&linearised.jacobian[k][..40]) > 1e-3);
-    }
-}
-
 /// Inputs for which a stop behind the weight 1 (of the first channel) exactly touches its threshold.
 #[test]
 fn at_a_kink_the_derivative_is_one_of_the_two() {

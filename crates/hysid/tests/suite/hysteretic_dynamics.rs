@@ -191,22 +191,6 @@ fn hysteresis_at_the_input_is_identified_with_a_mode_too_many() {
     assert!(unseen < 0.02, "{unseen}");
 }
 
-/// Random samples at three times the trained amplitude.
-#[test]
-fn outputs_stay_finite_far_beyond_the_training() {
-    let seen = data(vec![record(5, 800, false)]);
-    let quick = ClassicalOptions { epochs: Some(8), ..options(ClassicalModel::HystereticStateSpace) };
-    let law = HystereticStateSpace::fit(&seen, &quick, &mut go_on).unwrap().law;
-    let (low, high) = seen.input_range(0);
-    let largest = 3.0 * high.max(-low);
-    let mut motion = law.virgin();
-    for k in 0..20_000u64 {
-        let share = 2.0 * number(k * k) - 1.0;
-        let y = law.step(&mut motion, Sample { x: largest * share, rate: 0.0, step: 1.0 / RATE });
-        assert!(y.is_finite());
-    }
-}
-
 #[test]
 fn what_cannot_be_fitted_is_refused() {
     let without_time =

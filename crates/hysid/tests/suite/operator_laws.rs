@@ -207,13 +207,6 @@ fn virgin_relays_lie_above_and_below_the_demagnetised_curve() {
     assert_eq!(relay(1.0, 0.0).step(0.0), 1.0);
 }
 
-#[test]
-fn play_without_threshold_is_the_identity() {
-    let x = sine(2.0, 100, 1);
-    assert_eq!(play(0.0).run(&x), x);
-    assert_ne!(play(1e-3).run(&x), x);
-}
-
 /// The record starts where it starts: the way there from 0 is not slid.
 #[test]
 fn jump_to_the_first_sample_costs_no_strength() {
