@@ -129,20 +129,3 @@ pub fn same(a: &Path, b: &Path) -> bool {
         },
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_file_is_the_same_under_any_name_even_before_it_is_there() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.csv");
-        let detour = folder.path().join("./a.csv");
-        assert!(same(&path, &detour));
-        fs::write(&path, "x").unwrap();
-        assert!(same(&path, &detour));
-        assert!(!same(&path, &folder.path().join("b.csv")));
-        assert!(same(Path::new("./new.csv"), Path::new("new.csv")));
-    }
-}

@@ -79,30 +79,6 @@ fn look_at(error: &str, typed: impl IntoIterator<Item = String>) -> Option<Strin
 mod tests {
     use super::*;
 
-    fn help(line: &str) -> String {
-        of_command(line.split(' ').map(String::from))
-    }
-
-    #[test]
-    fn a_command_has_its_own_help_and_everything_else_that_of_the_program() {
-        assert_eq!(help("fit --starts"), "hysid fit --help");
-        assert_eq!(help("-q look"), "hysid look --help");
-        assert_eq!(help("--quiet generate x"), "hysid generate --help");
-        assert_eq!(help("fot data.csv"), "hysid --help");
-        assert_eq!(help("--unknown"), "hysid --help");
-        assert_eq!(help(""), "hysid --help");
-    }
-
-    #[test]
-    fn a_value_of_force_may_be_a_column() {
-        let value = |line: &str| value_of_force(line.split(' ').map(String::from));
-        assert_eq!(value("force a.csv --mass 2 --force F_N"), Some("F_N".into()));
-        assert_eq!(value("-q force a.csv --force=F_N"), Some("F_N".into()));
-        assert_eq!(value("force a.csv --force --mass 2"), None);
-        assert_eq!(value("force a.csv --mass 2 --force"), None);
-        assert_eq!(value("fit a.csv --force b.csv"), None);
-    }
-
     #[test]
     fn a_wrong_line_of_a_typed_table_points_to_look() {
         let look = |error: &str, line: &str| look_at(error, line.split(' ').map(String::from));

@@ -19,16 +19,3 @@ pub fn line(text: &str) -> Cow<'_, str> {
     let (head, tail) = (&text[..place(first)], &text[place(letters - last)..]);
     format!("{} … ({letters} characters) … {}", visible(head), visible(tail)).into()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn long_text_is_cut_and_says_how_long_it_was() {
-        let long = format!("begin{}\nend", "x".repeat(5000));
-        let cut = line(&long);
-        assert!(cut.starts_with("begin") && cut.ends_with(r"x\nend") && cut.chars().count() < 2000, "{cut}");
-        assert!(cut.contains("(5009 characters)"), "{cut}");
-    }
-}

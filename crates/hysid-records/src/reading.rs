@@ -142,19 +142,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_said_by_name_is_what_the_reader_takes() {
-        let choice: ReadingChoice = serde_json::from_str(
-            r#"{"delimiter": "semicolon", "decimal": "comma", "rows": "5:", "every": 2}"#,
-        )
-        .unwrap();
-        let reading = choice.reading().unwrap();
-        assert_eq!(reading.delimiter, Some(Delimiter::Character(b';')));
-        assert_eq!((reading.rows.first, reading.rows.last, reading.rows.every), (5, None, 2));
-        assert_eq!(ReadingChoice::default().reading().unwrap(), Reading::default());
-        assert_eq!(serde_json::to_string(&ReadingChoice::default()).unwrap(), "{}");
-    }
-
-    #[test]
     fn a_wrong_value_names_its_option() {
         for (json, option) in [
             (r#"{"rows": "x"}"#, "--rows"),

@@ -107,18 +107,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_model_is_listed_once_within_80_columns() {
-        let models = all();
-        let names: Vec<&str> = models.iter().map(|model| model.name).collect();
-        let expected: Vec<&str> =
-            std::iter::once("auto").chain(ModelName::all().map(ModelName::name)).collect();
-        assert_eq!(names, expected);
-        for line in text(&models).lines() {
-            assert!(line.chars().count() <= 80, "{line}");
-        }
-    }
-
-    #[test]
     fn rate_and_inputs_are_those_that_a_fit_checks() {
         for (listed, model) in all().iter().zip(std::iter::once(ModelName::AUTO).chain(ModelName::all())) {
             assert_eq!(listed.rate != "no", model.uses_rate(), "{}", listed.name);

@@ -10,14 +10,3 @@ pub fn text_label(name: &str) -> String {
         (name, None) => name.to_string(),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_unit_follows_a_comma() {
-        assert_eq!(text_label("energy [J/m3]"), "energy, J/m3");
-        assert_eq!(text_label("energy"), "energy");
-    }
-}

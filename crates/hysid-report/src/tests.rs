@@ -108,15 +108,6 @@ fn the_figures_of_the_errors_are_there() {
     );
 }
 
-#[test]
-fn a_picture_stands_alone() {
-    let data = data(false);
-    let model = model(&data);
-    let svg = loops(&set("training", &model, &data)).file("Hysid");
-    assert!(svg.starts_with("<svg") && svg.contains("force (kN)"));
-    balance::assert_balanced(&svg);
-}
-
 /// A long record, a single row, a constant output: nothing panics, nothing grows without bound.
 #[test]
 fn odd_data_can_be_shown() {

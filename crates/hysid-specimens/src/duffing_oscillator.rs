@@ -166,32 +166,4 @@ mod tests {
             assert!((motion.displacement - expected).abs() < 1e-8, "{t}: {motion:?} {expected}");
         }
     }
-
-    #[test]
-    fn half_the_step_changes_less_than_a_ten_thousandth() {
-        let force = period(1, 0, 2048, RMS.0);
-        let displacement = |force: &[f64], parts: usize| -> Vec<f64> {
-            let motion = DuffingOscillator::designed().motion(force, 1.0 / (ROWS_PER_SECOND * parts as f64));
-            motion.step_by(parts).map(|motion| motion.displacement).collect()
-        };
-        let every_second: Vec<f64> = force.iter().copied().step_by(2).collect();
-        let (whole, half) =
-            (displacement(&every_second, STEPS_PER_ROW / 2), displacement(&force, STEPS_PER_ROW));
-        let largest = half.iter().fold(0.0f64, |largest, y| largest.max(y.abs()));
-        let difference = whole.iter().zip(&half).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(difference < 1e-4 * largest, "{difference} of {largest}");
-        assert!((1e-3..3e-3).contains(&largest), "{largest}");
-    }
-
-    #[test]
-    fn a_seed_gives_its_own_records() {
-        assert_eq!(SPECIMEN.train_with_seed(5), SPECIMEN.train_with_seed(5));
-        assert_ne!(SPECIMEN.train_with_seed(5), SPECIMEN.train_with_seed(6));
-        let (train, test) = (SPECIMEN.train(), SPECIMEN.test());
-        assert_ne!(train.records()[0].inputs(), test.records()[0].inputs());
-        let rows = |data: &hysid_core::data::record::Dataset| -> Vec<usize> {
-            data.records().iter().map(Record::len).collect()
-        };
-        assert_eq!((rows(&train), rows(&test)), (vec![8192; 2], vec![8192, 16_384]));
-    }
 }

@@ -200,20 +200,6 @@ mod tests {
         ground_acceleration(&mut Draw::new(1, 2), 5.0)
     }
 
-    #[test]
-    fn half_the_step_changes_less_than_a_ten_thousandth() {
-        for building in [ShearBuilding::designed(), ShearBuilding { n: 1.0, ..ShearBuilding::designed() }] {
-            let roof = |parts: usize| -> Vec<f64> {
-                let motion = building.motion(earthquake(), TIME_STEP, parts);
-                motion.map(|motion| motion.roof_displacement()).collect()
-            };
-            let (whole, half) = (roof(STEPS_PER_ROW), roof(2 * STEPS_PER_ROW));
-            let largest = whole.iter().fold(0.0f64, |largest, y| largest.max(y.abs()));
-            let difference = whole.iter().zip(&half).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(difference < 1e-4 * largest, "{difference} of {largest}");
-        }
-    }
-
     /// With floors at the velocities `V_i`, the ground does the work `-∫ a Σ m_i V_i dt`.
     #[test]
     fn the_work_of_the_ground_becomes_energy_or_is_dissipated() {
@@ -284,12 +270,5 @@ mod tests {
         let largest =
             SPECIMEN.train().records().iter().flat_map(|record| record.output().to_vec()).fold(0.0, f64::max);
         assert!((0.02..0.2).contains(&largest), "{largest}");
-    }
-
-    #[test]
-    fn another_seed_is_another_earthquake() {
-        assert_eq!(SPECIMEN.train_with_seed(5), SPECIMEN.train_with_seed(5));
-        assert_ne!(SPECIMEN.train_with_seed(5), SPECIMEN.train_with_seed(6));
-        assert_ne!(SPECIMEN.train().records()[0].inputs(), SPECIMEN.test().records()[0].inputs());
     }
 }

@@ -363,7 +363,6 @@ fn grow<T: Default + Clone>(room: &mut Vec<T>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reading::RowSelection;
 
     /// Gives a text in pieces of so many bytes.
     struct Dripping(Vec<u8>, usize);
@@ -445,15 +444,5 @@ mod tests {
         // Not if rows follow.
         let error = read(b"t,x\n0,1\n1,2\nPart two\n2,3\n", 1000).unwrap_err().to_string();
         assert!(error.starts_with("f, line 4: has 1 cell") && error.ends_with("--rows 1:2)"), "{error}");
-    }
-
-    #[test]
-    fn rows_are_selected() {
-        let text = "t,x\n0,1\n1,2\n2,3\n3,4\n4,5\n";
-        let rows: RowSelection = "2:5".parse().unwrap();
-        let reading = Reading { rows: RowSelection { every: 2, ..rows }, ..Reading::default() };
-        let found = read_as(text.as_bytes(), 100, &reading).unwrap();
-        let lines: Vec<u64> = found.iter().map(|(line, _)| *line).skip(1).collect();
-        assert_eq!(lines, [3, 5]);
     }
 }

@@ -123,14 +123,3 @@ impl<'a> Printed<'a> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_file_name_becomes_an_identifier() {
-        assert_eq!(identifier(Path::new("a/piezo-2.model.json")).unwrap(), "piezo_2_model");
-        assert!(identifier(Path::new("2.json")).is_err());
-    }
-}

@@ -152,31 +152,17 @@ fn resuming_is_refused_with_other_options_or_data() {
     bench.put("other.csv", format!("{all_but_the_last}\n"));
     bench.put("text.bin", "x,y\n");
     let resume = "-o n.json --no-report --resume";
-    for (arguments, status, words) in [
-        (format!("fit good.csv {resume} c.bin --starts 3"), 2, "cannot be used with"),
-        (
-            format!("fit good.csv {resume} c.bin --rate savitzky-golay"),
-            2,
-            "--rate differs from that of the checkpoint",
-        ),
-        (format!("fit other.csv {resume} c.bin"), 1, "belongs to other data"),
-        (format!("fit good.csv {resume} text.bin"), 1, "text.bin: this is not a Hysid checkpoint"),
-        (format!("fit good.csv {resume} none.bin"), 1, "none.bin: cannot be read"),
-        ("fit good.csv -o m.json --checkpoint good.csv".into(), 2, "would be overwritten"),
-        (
-            "fit good.csv -o n.json --checkpoint d.bin".into(),
-            2,
-            "auto has no checkpoints: only a single network has them, such as --model xpnn+",
-        ),
-        (
-            "fit good.csv -o n.json --model xpnn --members 3 --checkpoint d.bin".into(),
-            2,
-            "an ensemble has no checkpoints",
-        ),
-        ("fit good.csv -o m.json --checkpoint m.json".into(), 2, "would be overwritten"),
-    ] {
-        let ran = bench.run(&arguments);
-        assert_eq!(ran.status, Some(status), "{arguments}: {}", ran.stderr);
-        assert!(ran.last_line().contains(words), "{arguments}: {}", ran.stderr);
-    }
+    bench.refuses_in_part(&format!(
+        "
+        2 fit good.csv {resume} c.bin --starts 3 => cannot be used with
+        2 fit good.csv {resume} c.bin --rate savitzky-golay => --rate differs from that of the checkpoint
+        1 fit other.csv {resume} c.bin => belongs to other data
+        1 fit good.csv {resume} text.bin => text.bin: this is not a Hysid checkpoint
+        1 fit good.csv {resume} none.bin => none.bin: cannot be read
+        2 fit good.csv -o m.json --checkpoint good.csv => would be overwritten
+        2 fit good.csv -o n.json --checkpoint d.bin => auto has no checkpoints: only a single network has them, such as --model xpnn+
+        2 fit good.csv -o n.json --model xpnn --members 3 --checkpoint d.bin => an ensemble has no checkpoints
+        2 fit good.csv -o m.json --checkpoint m.json => would be overwritten
+    "
+    ));
 }

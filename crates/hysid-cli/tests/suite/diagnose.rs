@@ -1,6 +1,6 @@
 //! `hysid diagnose` as a user runs it: text, JSON, page, and what it refuses.
 
-use crate::workbench::{Ran, Workbench, csv, error_line, rows, table, with_cell, with_column};
+use crate::workbench::{Workbench, csv, rows, succeeds, table};
 use serde_json::Value;
 
 const PROPERTIES: [&str; 10] = [
@@ -17,12 +17,6 @@ const PROPERTIES: [&str; 10] = [
 ];
 
 const VERDICTS: [&str; 3] = ["yes", "no", "not testable"];
-
-fn succeeds(bench: &Workbench, arguments: &str) -> Ran {
-    let ran = bench.run(arguments);
-    assert_eq!(ran.status, Some(0), "hysid {arguments}: {}", ran.stderr);
-    ran
-}
 
 fn json(bench: &Workbench, arguments: &str) -> Value {
     serde_json::from_str(&succeeds(bench, arguments).stdout).unwrap()
@@ -116,8 +110,7 @@ fn the_doctor_speaks_and_the_advice_can_be_followed() {
     assert!(ran.stdout.contains("\ndata quality"), "{}", ran.stdout);
     assert!(
         ran.stdout.contains("\nadvice\n    The simplest model that can represent these properties is gpnn"),
-        "{}",
-        ran.stdout
+        "{ran}"
     );
     let next = ran.stdout.lines().find(|line| line.starts_with("  hysid fit ")).unwrap();
     assert_eq!(next, "  hysid fit 'a joint.csv' --input 'the way, mm' --model gpnn");
@@ -270,94 +263,18 @@ fn several_tables_are_one_set_of_records() {
 }
 
 #[test]
-fn bad_input_gets_one_line() {
-    let bench = Workbench::with_model();
-    let model = bench.text("model.json");
-    let constant = |column| with_column(column, |_| "2.5".into());
-    let unsorted = with_cell(20, 0, "0.1");
-    let files: [(&str, String, i32, &str); 11] = [
-        ("empty", String::new(), 1, ": is empty (expected a header line and rows of numbers)"),
-        (
-            "NaN input",
-            with_cell(15, 1, "nan"),
-            1,
-            ", line 17, column \"x\": \"nan\" is a missing value (only the output may be blank; choose rows with --rows)",
-        ),
-        ("one sample", "t,x,y\n0,1,2\n".into(), 1, ": only 1 row has an output: at least 8 are needed"),
-        ("constant input", constant(1), 1, ": column \"x\" is constant (2.5): there is nothing to identify"),
-        ("constant output", constant(2), 1, ": column \"y\" is constant (2.5): there is nothing to identify"),
-        (
-            "blank output",
-            with_column(2, |_| String::new()),
-            1,
-            ": column \"y\" is blank in every row: there is nothing to compare with",
-        ),
-        (
-            "output alone",
-            "t,y\n0,1\n".into(),
-            1,
-            ": no column is left for the input besides output \"y\" (columns: t, y)",
-        ),
-        (
-            "unsorted",
-            unsorted,
-            1,
-            ", line 22, column \"t\": time 0.1 does not come after 1.9 (sort the rows, or name the records in a column `record`)",
-        ),
-        ("truncated model", model[..model.len() / 2].into(), 1, ""),
-        ("other JSON", "{\"a\": 1}".into(), 1, ""),
-        ("a brace", "{".into(), 1, ""),
-    ];
-    for (name, content, status, expected) in files {
-        bench.put("data", content);
-        let ran = bench.run("diagnose data --no-report");
-        let last = ran.last_line();
-        assert!(last.starts_with("error: data"), "{name}: {}", ran.stderr);
-        if expected.is_empty() {
-            assert!(last.contains("model file"), "{name}: {last}");
-        } else {
-            assert_eq!(last, format!("error: data{expected}"), "{name}");
-        }
-        assert_eq!((ran.status, ran.stdout.as_str()), (Some(status), ""), "{name}");
-        assert_eq!(ran.stderr.matches("error").count(), 1, "{name}: {}", ran.stderr);
-    }
-}
-
-#[test]
 fn requests_that_cannot_be_met_are_refused_in_one_line() {
     let bench = Workbench::with_model();
-    for (arguments, status, expected) in [
-        (
-            "diagnose good.csv model.json",
-            2,
-            "model.json is a model: diagnose it alone, without further files",
-        ),
-        ("diagnose good.csv -o good.csv", 2, "good.csv would be overwritten: name another file with --out"),
-        (
-            "diagnose model.json -o model.json",
-            2,
-            "model.json would be overwritten: name another file with --out",
-        ),
-        ("diagnose nowhere.csv", 1, "nowhere.csv: cannot be read: no such file or directory"),
-        (
-            "diagnose good.csv --input z",
-            1,
-            "good.csv: there is no column \"z\" for --input (columns: t, x, y)",
-        ),
-        (
-            "diagnose good.csv -o nowhere/a.html",
-            1,
-            "nowhere/a.html: cannot be written: no such file or directory",
-        ),
-        (
-            "diagnose good.csv --smallest-reversal 2",
-            2,
-            "invalid value '2' for '--smallest-reversal <FRACTION>': a number between 0 and 1 is needed",
-        ),
-    ] {
-        let ran = bench.run(arguments);
-        assert_eq!(ran.last_line(), error_line(arguments, status, expected), "hysid {arguments}");
-        assert_eq!((ran.status, ran.stdout.as_str()), (Some(status), ""), "hysid {arguments}");
-    }
+    bench.refuses(
+        r#"
+        2 diagnose good.csv model.json => model.json is a model: diagnose it alone, without further files
+        2 diagnose good.csv -o good.csv => good.csv would be overwritten: name another file with --out
+        2 diagnose model.json -o model.json => model.json would be overwritten: name another file with --out
+        1 diagnose nowhere.csv => nowhere.csv: cannot be read: no such file or directory
+        1 diagnose good.csv --input z => good.csv: there is no column "z" for --input (columns: t, x, y)
+        1 diagnose good.csv -o nowhere/a.html => nowhere/a.html: cannot be written: no such file or directory
+        2 diagnose good.csv --smallest-reversal 2 => invalid value '2' for '--smallest-reversal <FRACTION>': a number between 0 and 1 is needed
+    "#,
+    );
     assert!(!bench.path("good.diagnosis.html").exists());
 }

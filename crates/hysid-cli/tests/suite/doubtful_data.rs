@@ -1,7 +1,7 @@
 //! Data that are not what they seem: copies of a record, marks of missing values, a saturated sensor, too few rows. Each
 //! is told before the fit.
 
-use crate::workbench::{ROWS, Ran, Workbench, csv, rows, table, with_cell, with_column};
+use crate::workbench::{ROWS, Ran, Workbench, csv, rows, table, with_column};
 use serde_json::Value;
 
 const QUICK: &str = "--no-report --model prandtl-ishlinskii --operators 5";
@@ -42,19 +42,6 @@ fn a_file_given_twice_is_not_unseen_data() {
     let ran = succeeds(bench.run("compare n1.csv --test part.csv --models prandtl-ishlinskii --no-report"));
     let told = "warning: record \"part\" is a part of what the model was trained on";
     assert!(ran.stderr.contains(told), "{}", ran.stderr);
-}
-
-#[test]
-fn a_model_knows_the_records_that_it_was_trained_on() {
-    let bench = Workbench::new();
-    bench.put("n1.csv", table());
-    bench.put("other.csv", with_cell(7, 2, "0.5"));
-    succeeds(bench.run(&format!("fit n1.csv -o model.json {QUICK}")));
-    let ran = succeeds(bench.run("evaluate model.json n1.csv"));
-    let told = "is equal to what the model was trained on: its error does not estimate that on unseen data";
-    assert!(ran.stderr.contains(told), "{}", ran.stderr);
-    let ran = succeeds(bench.run("evaluate model.json other.csv"));
-    assert!(!ran.stderr.contains("trained on"), "{}", ran.stderr);
 }
 
 #[test]

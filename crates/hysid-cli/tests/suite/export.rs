@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::workbench::Workbench;
+use crate::workbench::{Workbench, cases};
 
 /// A bench with a model of a few stops.
 fn with_model() -> Workbench {
@@ -44,11 +44,7 @@ fn a_folder_appears_with_all_that_its_manifest_lists() {
     fs::write(folder.join("mine.c"), "mine").unwrap();
     let ran = bench.run("export stage-2.json --to c");
     assert_eq!(ran.status, Some(2));
-    assert!(
-        ran.stderr.contains("stage_2_c: a file is there already and is no export of Hysid"),
-        "{}",
-        ran.stderr
-    );
+    assert!(ran.stderr.contains("stage_2_c: a file is there already and is no export of Hysid"), "{ran}");
     assert_eq!(fs::read_to_string(folder.join("mine.c")).unwrap(), "mine");
     assert_eq!(bench.run("export stage-2.json --to c --force").status, Some(0));
     assert!(!folder.join("mine.c").exists());
@@ -74,31 +70,25 @@ fn without_a_compiler_a_unit_has_its_sources_and_the_user_is_told() {
 fn bad_requests_are_one_line_and_leave_nothing() {
     let bench = with_model();
     bench.put("file", "mine");
-    for (arguments, status, text) in [
-        ("--to c --name 2nd", 2, "--name: the name \"2nd\" is no identifier"),
-        ("--to c --precision f16", 2, "f16"),
-        ("--to onnx --precision f32", 2, "--precision: onnx computes in double precision"),
-        ("--to c --fmi 2", 2, "--fmi is a version of --to fmu"),
-        ("--to fmu --fmi 1", 2, "--fmi"),
-        ("--to cobol", 2, "cobol"),
-        (
-            "--to python --inverse",
-            2,
-            "--inverse: exports to python have no inverse: those to c and fmu have one",
-        ),
-        ("--to c --limits 0:1", 2, "--limits is for the input of an inverse: add --inverse"),
-        ("--to c --slew 1", 2, "--slew is for the input of an inverse: add --inverse"),
-        ("--to c --inverse --limits 3:1", 2, "'3:1' for '--limits <LOW:HIGH>': the low limit 3 is not below"),
-        ("--to c --inverse --limits nan:1", 2, "--limits <LOW:HIGH>': two numbers are needed"),
-        ("--to c --inverse --slew -1", 2, "'-1' for '--slew <RATE>': a number above 0 is needed"),
-        (
-            "--to c --inverse --precision f32 --limits 1:1.00000001",
-            2,
-            "--limits: the limits of the input are 1",
-        ),
-        ("--to c -o file", 2, "file: a file is there already"),
-        ("--to c -o train.csv/new", 1, "train.csv/new: cannot be written"),
-    ] {
+    for (status, arguments, text) in cases(
+        r#"
+        2 --to c --name 2nd => --name: the name "2nd" is no identifier
+        2 --to c --precision f16 => f16
+        2 --to onnx --precision f32 => --precision: onnx computes in double precision
+        2 --to c --fmi 2 => --fmi is a version of --to fmu
+        2 --to fmu --fmi 1 => --fmi
+        2 --to cobol => cobol
+        2 --to python --inverse => --inverse: exports to python have no inverse: those to c and fmu have one
+        2 --to c --limits 0:1 => --limits is for the input of an inverse: add --inverse
+        2 --to c --slew 1 => --slew is for the input of an inverse: add --inverse
+        2 --to c --inverse --limits 3:1 => '3:1' for '--limits <LOW:HIGH>': the low limit 3 is not below
+        2 --to c --inverse --limits nan:1 => --limits <LOW:HIGH>': two numbers are needed
+        2 --to c --inverse --slew -1 => '-1' for '--slew <RATE>': a number above 0 is needed
+        2 --to c --inverse --precision f32 --limits 1:1.00000001 => --limits: the limits of the input are 1
+        2 --to c -o file => file: a file is there already
+        1 --to c -o train.csv/new => train.csv/new: cannot be written
+    "#,
+    ) {
         let ran = bench.run(&format!("export stage-2.json {arguments}"));
         assert_eq!(ran.status, Some(status), "{arguments}: {}", ran.stderr);
         assert!(ran.stderr.contains(text) && ran.stderr.lines().count() == 1, "{arguments}: {}", ran.stderr);

@@ -1,7 +1,7 @@
 //! `hysid force`: restoring forces from tables of measured motion and force, what other commands make of them, and what is
 //! refused.
 
-use crate::workbench::{Ran, Workbench};
+use crate::workbench::{Ran, Workbench, cases};
 
 /// Rows of a table.
 const ROWS: usize = 1200;
@@ -91,11 +91,7 @@ fn millimetres_kilonewtons_and_gravity_are_converted() {
     let blank = found[3].iter().filter(|force| force.is_nan()).count();
     assert!((4..40).contains(&blank) && found[3][0].is_nan() && found[3][ROWS - 1].is_nan(), "{blank}");
     assert!(said.stderr.contains("acc [g]: name it with --acceleration"), "{}", said.stderr);
-    assert!(
-        said.stdout.contains(&format!("rows with a force   {} of {ROWS}", ROWS - blank)),
-        "{}",
-        said.stdout
-    );
+    assert!(said.stdout.contains(&format!("rows with a force   {} of {ROWS}", ROWS - blank)), "{said}");
     // Numbers without units are taken as they are.
     bench.put("plain.csv", table("t,y,u", |_, [t, y, _, _, u, _]| format!("{t},{y},{u}")));
     let said = ran(&bench, "force plain.csv --mass 2000 --displacement y --applied-force u");
@@ -299,59 +295,41 @@ fn what_has_no_restoring_force_is_refused_in_one_line() {
     bench.put("free.csv", rows("t_s,y_mm", &|_, at| format!("{},{}", at[0], at[1])));
     bench.put("stress.csv", rows("t_s,y_mm,s_MPa", &|_, at| format!("{},{},{}", at[0], at[1], at[4])));
     bench.put("no-time.csv", rows("y_mm,F_N", &|_, at| format!("{},{}", at[1], at[4])));
-    for (line, status, expected) in [
-        ("force rig.csv", 2, "--mass"),
-        ("force rig.csv --mass 0", 2, "a mass above 0 is needed"),
-        ("force rig.csv --mass -2", 2, "a mass above 0 is needed"),
-        ("force rig.csv --mass '2 stone'", 2, "the unit of the mass is unknown"),
-        ("force rig.csv --mass 2 --window 6", 2, "an odd number of rows is needed, 5 or more"),
-        (
-            "force rig.csv --mass 2 --window 1201",
-            1,
-            "column \"disp [mm]\" has 1200 rows: at least 1201 rows are needed",
-        ),
-        ("force rig.csv --mass 2 --displacement drift", 1, "there is no column \"drift\" for --displacement"),
-        (
-            "force rig.csv --mass 2 --applied-force none --acceleration 'force [kN]'",
-            1,
-            "is in kN, which is not an acceleration",
-        ),
-        (
-            "force rig.csv --mass 2 --velocity acc --acceleration acc",
-            2,
-            "is named twice, by --velocity and --acceleration",
-        ),
-        ("force rig.csv --mass 2 --absolute-acceleration acc", 1, "may be a force on the mass"),
-        ("force rig.csv --mass 2 --acceleration acc --absolute-acceleration acc", 2, "cannot be used with"),
-        ("force rig.csv --mass 2 -o rig.csv", 2, "would be overwritten"),
-        ("force rig.csv --mass 2 -o - --json", 2, "name a file for the table with -o"),
-        ("force constant.csv --mass 2", 1, "column \"y_mm\" is constant (3)"),
-        (
-            "force empty.csv --mass 2",
-            1,
-            "empty.csv, line 6, column \"y_mm\": the cell is empty (time, displacement and velocity need a number in every \
-             row; choose rows with --rows)",
-        ),
-        (
-            "force slow.csv --mass 2 --velocity v_mm_s",
-            1,
-            "slow.csv, line 4, column \"v_mm_s\": the cell is empty (time, displacement and velocity need",
-        ),
-        ("force word.csv --mass 2", 1, "(not the displacement? name it with --displacement)"),
-        ("force off.csv --mass 2", 1, "(if it stands for a missing value: --missing off)"),
-        ("force rig.csv --mass 2 --force force", 2, HINT),
-        ("force --force force rig.csv --mass 2", 2, HINT),
-        ("force rig.csv --mass 2 --force=force", 2, HINT),
-        ("force --mass 2 --force force", 1, HINT),
-        ("force rig.csv --mass 2 --force --bogus", 2, "(see `hysid force --help`)"),
-        ("force back.csv --mass 2", 1, "back.csv, line 7, column \"t_ms\": time 19 does not come after 20"),
-        ("force one.csv --mass 2", 1, "column \"y_mm\" has 1 row: at least 5 rows are needed"),
-        ("force two.csv --mass 2", 1, "several columns may be the displacement: y_mm, x_mm"),
-        ("force free.csv --mass 2", 1, "a free vibration has --applied-force none"),
-        ("force stress.csv --mass 2", 1, "is in MPa, which is not a force"),
-        ("force no-time.csv --mass 2", 1, "there is no column of time"),
-        ("force nowhere.csv --mass 2", 1, "nowhere.csv: cannot be read"),
-    ] {
+    for (status, line, expected) in cases(&format!(
+        r#"
+        2 force rig.csv => --mass
+        2 force rig.csv --mass 0 => a mass above 0 is needed
+        2 force rig.csv --mass -2 => a mass above 0 is needed
+        2 force rig.csv --mass '2 mm' => the unit of the mass is unknown
+        2 force rig.csv --mass '2 stone' => the unit of the mass is unknown
+        2 force rig.csv --mass 2 --window 6 => an odd number of rows is needed, 5 or more
+        1 force rig.csv --mass 2 --window 1201 => column "disp [mm]" has 1200 rows: at least 1201 rows are needed
+        1 force rig.csv --mass 2 --displacement drift => there is no column "drift" for --displacement
+        1 force rig.csv --mass 2 --applied-force none --acceleration 'force [kN]' => is in kN, which is not an acceleration
+        2 force rig.csv --mass 2 --velocity acc --acceleration acc => is named twice, by --velocity and --acceleration
+        1 force rig.csv --mass 2 --absolute-acceleration acc => may be a force on the mass
+        2 force rig.csv --mass 2 --acceleration acc --absolute-acceleration acc => cannot be used with
+        2 force rig.csv --mass 2 -o rig.csv => would be overwritten
+        2 force rig.csv --mass 2 -o - --json => name a file for the table with -o
+        1 force constant.csv --mass 2 => column "y_mm" is constant (3)
+        1 force empty.csv --mass 2 => empty.csv, line 6, column "y_mm": the cell is empty (time, displacement and velocity need a number in every row; choose rows with --rows)
+        1 force slow.csv --mass 2 --velocity v_mm_s => slow.csv, line 4, column "v_mm_s": the cell is empty (time, displacement and velocity need
+        1 force word.csv --mass 2 => (not the displacement? name it with --displacement)
+        1 force off.csv --mass 2 => (if it stands for a missing value: --missing off)
+        2 force rig.csv --mass 2 --force force => {HINT}
+        2 force --force force rig.csv --mass 2 => {HINT}
+        2 force rig.csv --mass 2 --force=force => {HINT}
+        1 force --mass 2 --force force => {HINT}
+        2 force rig.csv --mass 2 --force --bogus => (see `hysid force --help`)
+        1 force back.csv --mass 2 => back.csv, line 7, column "t_ms": time 19 does not come after 20
+        1 force one.csv --mass 2 => column "y_mm" has 1 row: at least 5 rows are needed
+        1 force two.csv --mass 2 => several columns may be the displacement: y_mm, x_mm
+        1 force free.csv --mass 2 => a free vibration has --applied-force none
+        1 force stress.csv --mass 2 => is in MPa, which is not a force
+        1 force no-time.csv --mass 2 => there is no column of time
+        1 force nowhere.csv --mass 2 => nowhere.csv: cannot be read
+    "#
+    )) {
         refused(line, status, expected);
     }
     assert_eq!(ran(&bench, "force free.csv --mass 2 --applied-force none").status, Some(0));

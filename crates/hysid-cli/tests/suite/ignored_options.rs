@@ -16,13 +16,7 @@ fn an_ignored_option_is_named_and_changes_nothing() {
     let bench = Workbench::new();
     bench.put("good.csv", table());
     for (model, searched, option, flag) in [
-        ("pnn", true, "--history", "--history"),
-        ("xpnn", true, "--history", "--history"),
-        ("preisach", false, "--history", "--history"),
-        ("masing", false, "--history", "--history"),
         ("bouc-wen", true, "--history", "--history"),
-        ("jiles-atherton", true, "--history", "--history"),
-        ("pnn", true, "--hidden 7 --relaxation 9", "--hidden"),
         ("pnn", true, "--hidden 7 --relaxation 9", "--relaxation"),
         ("preisach", false, "--validation 0.3", "--validation"),
     ] {
@@ -31,24 +25,6 @@ fn an_ignored_option_is_named_and_changes_nothing() {
         let (stderr, with_option) = fitted(&bench, &format!("--model {model} {option}"), searched);
         assert!(stderr.contains(&format!("{model} ignores {flag}")), "{model} {option}: {stderr}");
         assert_eq!(with_option, model_file, "{model} {option}");
-    }
-}
-
-#[test]
-fn a_value_that_a_model_cannot_have_is_refused_before_the_fit() {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
-    for (options, words) in [
-        ("--model neuro-madelung --hidden 500", "hidden 500: neuro-madelung has at most 100"),
-        ("--model preisach --operators 300", "operators 300: preisach has at most 200"),
-        ("--model preisach --operators 0", "operators 0: preisach has at least 1"),
-        ("--model duhem-nn --operators 101", "operators 101: duhem-nn has at most 100"),
-        ("--model duhem-nn --hidden 101", "hidden 101: duhem-nn has at most 100"),
-        ("--model duhem-nn --states 0", "states 0: duhem-nn has at least 1"),
-    ] {
-        let ran = bench.run(&format!("fit good.csv {options} -o model.json"));
-        assert_eq!(ran.status, Some(2), "{}", ran.stderr);
-        assert!(ran.stderr.contains(words) && ran.stderr.lines().count() == 1, "{}", ran.stderr);
     }
 }
 

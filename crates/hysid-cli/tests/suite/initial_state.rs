@@ -1,12 +1,7 @@
 //! The initial state of records, as a user gives it or lets it be found.
 
-use crate::workbench::{Ran, Workbench, csv};
+use crate::workbench::{Workbench, csv, json};
 use serde_json::Value;
-
-fn json(ran: &Ran) -> Value {
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
-    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
-}
 
 /// Rows of a play of threshold 0.5 that was driven to `past` before the record begins at 0.
 fn rows(name: &str, past: f64, size: f64, pace: f64) -> Vec<Vec<String>> {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::workbench::{Ran, Workbench};
+use crate::workbench::{Workbench, cases, succeeds};
 
 /// The training data: growing loops of a spring beside a friction slider.
 fn training() -> Vec<(f64, f64)> {
@@ -23,7 +23,7 @@ fn with_model() -> Workbench {
     let bench = Workbench::new();
     let rows: String = training().iter().map(|(x, y)| format!("{x},{y}\n")).collect();
     bench.put("train.csv", format!("x_mm,F_kN\n{rows}"));
-    done(&bench, "fit train.csv --model prandtl-ishlinskii -o stage.json --no-report");
+    succeeds(&bench, "fit train.csv --model prandtl-ishlinskii -o stage.json --no-report");
     bench
 }
 
@@ -37,12 +37,6 @@ fn put_wanted(bench: &Workbench) {
     let rows: String =
         wanted().iter().enumerate().map(|(k, y)| format!("{},{y}\n", 0.5 * k as f64)).collect();
     bench.put("wanted.csv", format!("t_s,F_kN\n{rows}"));
-}
-
-fn done(bench: &Workbench, arguments: &str) -> Ran {
-    let ran = bench.run(arguments);
-    assert_eq!(ran.status, Some(0), "{arguments}: {}", ran.stderr);
-    ran
 }
 
 /// Cells of a column of a table.
@@ -66,19 +60,19 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 fn the_drive_goes_straight_into_a_simulation() {
     let bench = with_model();
     put_wanted(&bench);
-    let ran = done(&bench, "invert stage.json wanted.csv -o drive.csv");
+    let ran = succeeds(&bench, "invert stage.json wanted.csv -o drive.csv");
     assert!(ran.stdout.contains("rows reached: 120 of 120 rows"), "{}", ran.stdout);
     assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
     let header = bench.text("drive.csv").lines().next().unwrap().to_string();
     assert_eq!(header, "t_s,F_kN,x_mm,F_kN_reached,reach,extrapolated");
-    done(&bench, "simulate stage.json drive.csv -o simulated.csv");
+    succeeds(&bench, "simulate stage.json drive.csv -o simulated.csv");
     let simulated = numbers(&bench, "simulated.csv", "F_kN_model");
     assert!(largest_difference(&simulated, &wanted()) <= 1e-9 * 10.0);
     assert_eq!(simulated, numbers(&bench, "drive.csv", "F_kN_reached"));
     assert!(column(&bench.text("drive.csv"), "extrapolated", ',').iter().all(|cell| cell == "no"));
 
     // Its own result is replaced, and the report.
-    done(&bench, "invert stage.json wanted.csv -o drive.csv --limits=-1:1");
+    succeeds(&bench, "invert stage.json wanted.csv -o drive.csv --limits=-1:1");
     assert_eq!(
         bench.files(""),
         ["drive.csv", "drive.html", "simulated.csv", "stage.json", "train.csv", "wanted.csv"]
@@ -88,7 +82,7 @@ fn the_drive_goes_straight_into_a_simulation() {
 #[test]
 fn a_reference_that_has_the_input_keeps_it() {
     let bench = with_model();
-    done(&bench, "invert stage.json train.csv -o drive.csv --no-report");
+    succeeds(&bench, "invert stage.json train.csv -o drive.csv --no-report");
     let drive = bench.text("drive.csv");
     assert!(drive.starts_with("x_mm,F_kN,x_mm_inverse,F_kN_reached,reach,extrapolated\n"), "{drive}");
     let (given, found) = (numbers(&bench, "drive.csv", "x_mm"), numbers(&bench, "drive.csv", "x_mm_inverse"));
@@ -101,7 +95,7 @@ fn a_reference_that_has_the_input_keeps_it() {
 fn limits_and_a_slew_limit_bound_the_input_and_the_reason_is_given() {
     let bench = with_model();
     put_wanted(&bench);
-    let ran = done(&bench, "invert stage.json wanted.csv -o drive.csv --limits=-1:1.5");
+    let ran = succeeds(&bench, "invert stage.json wanted.csv -o drive.csv --limits=-1:1.5");
     let drive = numbers(&bench, "drive.csv", "x_mm");
     let reach = column(&bench.text("drive.csv"), "reach", ',');
     for (x, reach) in drive.iter().zip(&reach) {
@@ -117,7 +111,7 @@ fn limits_and_a_slew_limit_bound_the_input_and_the_reason_is_given() {
     }
     assert!(ran.stderr.contains("the model does not follow the reference"), "{}", ran.stderr);
 
-    let ran = done(&bench, "invert stage.json wanted.csv -o drive.csv --slew 0.3");
+    let ran = succeeds(&bench, "invert stage.json wanted.csv -o drive.csv --slew 0.3");
     let drive = numbers(&bench, "drive.csv", "x_mm");
     assert!(drive.windows(2).all(|pair| (pair[1] - pair[0]).abs() <= 0.15 + 1e-12));
     assert!(ran.stderr.contains("at most 0.3 mm/s\n"), "{}", ran.stderr);
@@ -132,7 +126,7 @@ fn each_record_begins_in_the_initial_state() {
     let rows =
         |record: &str| -> String { wanted().iter().take(40).map(|y| format!("{record},{y}\n")).collect() };
     bench.put("wanted.csv", format!("record,F_kN\n{}{}", rows("a"), rows("b")));
-    done(&bench, "invert stage.json wanted.csv -o drive.csv");
+    succeeds(&bench, "invert stage.json wanted.csv -o drive.csv");
     let drive = numbers(&bench, "drive.csv", "x_mm");
     assert_eq!(drive[..40], drive[40..]);
     let page = bench.text("drive.html");
@@ -142,14 +136,14 @@ fn each_record_begins_in_the_initial_state() {
 #[test]
 fn each_record_of_a_model_that_lags_has_its_preview() {
     let bench = Workbench::new();
-    done(&bench, "generate magnetostrictive-actuator -o train.csv --test test.csv");
+    succeeds(&bench, "generate magnetostrictive-actuator -o train.csv --test test.csv");
     let fit = "fit train.csv --model rate-dependent-prandtl-ishlinskii -o stage.json --no-report";
-    done(&bench, fit);
+    succeeds(&bench, fit);
     let table = bench.text("test.csv");
     let rows = table.lines().filter(|line| !line.ends_with(','));
     bench.put("wanted.csv", rows.collect::<Vec<_>>().join("\n"));
     let previews = |arguments: &str| -> Vec<f64> {
-        let ran = done(&bench, &format!("invert stage.json wanted.csv -o drive.csv --json {arguments}"));
+        let ran = succeeds(&bench, &format!("invert stage.json wanted.csv -o drive.csv --json {arguments}"));
         let answer: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
         serde_json::from_value(answer["previews"].clone()).unwrap()
     };
@@ -159,9 +153,9 @@ fn each_record_of_a_model_that_lags_has_its_preview() {
         "{found:?}"
     );
     assert_eq!(previews("--preview 0.0005"), [0.0005; 2]);
-    let ran = done(&bench, "invert stage.json wanted.csv -o drive.csv");
+    let ran = succeeds(&bench, "invert stage.json wanted.csv -o drive.csv");
     assert!(ran.stderr.contains(" s, by record (chosen; change: --preview)"), "{}", ran.stderr);
-    let ran = done(&bench, "invert stage.json wanted.csv -o drive.csv --preview 1e300");
+    let ran = succeeds(&bench, "invert stage.json wanted.csv -o drive.csv --preview 1e300");
     assert!(ran.stderr.contains("the model does not follow the reference"), "{}", ran.stderr);
 }
 
@@ -175,14 +169,14 @@ fn further_inputs_are_read_from_the_reference() {
         .map(|(k, (x, y))| format!("{x},{},{}\n", heat(k), y + 0.5 * heat(k)))
         .collect();
     bench.put("train.csv", format!("x_mm,T_C,F_kN\n{rows}"));
-    done(&bench, "fit train.csv --model xpnn+ --starts 1 --epochs 40 -o two.json --no-report");
+    succeeds(&bench, "fit train.csv --model xpnn+ --starts 1 --epochs 40 -o two.json --no-report");
     let rows: String =
         wanted().iter().enumerate().map(|(k, y)| format!("{},{}\n", heat(k), 0.5 * y)).collect();
     bench.put("wanted.csv", format!("T_C,F_kN\n{rows}"));
-    done(&bench, "invert two.json wanted.csv -o drive.csv");
+    succeeds(&bench, "invert two.json wanted.csv -o drive.csv");
     let header = bench.text("drive.csv").lines().next().unwrap().to_string();
     assert_eq!(header, "T_C,F_kN,x_mm,F_kN_reached,reach,extrapolated");
-    done(&bench, "simulate two.json drive.csv -o simulated.csv");
+    succeeds(&bench, "simulate two.json drive.csv -o simulated.csv");
     let reached = numbers(&bench, "drive.csv", "F_kN_reached");
     let simulated = numbers(&bench, "simulated.csv", "F_kN_model");
     assert!(largest_difference(&reached, &simulated) <= 1e-9);
@@ -196,14 +190,14 @@ fn a_table_with_semicolons_and_decimal_commas_stays_one() {
     let comma = |value: f64| value.to_string().replace('.', ",");
     let rows: String = wanted().iter().map(|y| format!("\"remark; {y:.0}\";{}\r\n", comma(*y))).collect();
     bench.put("wanted.csv", format!("\u{feff}remark;F_kN\r\n{rows}"));
-    done(&bench, "invert stage.json wanted.csv -o drive.csv");
+    succeeds(&bench, "invert stage.json wanted.csv -o drive.csv");
     let drive = bench.text("drive.csv");
     assert!(drive.starts_with("remark;F_kN;x_mm;F_kN_reached;reach;extrapolated"), "{drive}");
     let second = drive.lines().nth(2).unwrap();
     assert!(second.starts_with("\"remark; 1\";0,54") && !second.contains('.'), "{second}");
     put_wanted(&bench);
-    done(&bench, "invert stage.json wanted.csv -o point.csv");
-    done(&bench, "simulate stage.json drive.csv -o simulated.csv");
+    succeeds(&bench, "invert stage.json wanted.csv -o point.csv");
+    succeeds(&bench, "simulate stage.json drive.csv -o simulated.csv");
     let simulated: Vec<f64> = column(&bench.text("simulated.csv").replace("remark; ", ""), "F_kN_model", ';')
         .iter()
         .map(|cell| cell.replace(',', ".").parse().unwrap())
@@ -216,10 +210,10 @@ fn a_reference_in_another_unit_is_converted() {
     let bench = with_model();
     let rows: String = wanted().iter().map(|y| format!("{}\n", 1000.0 * y)).collect();
     bench.put("newton.csv", format!("F_N\n{rows}"));
-    let ran = done(&bench, "invert stage.json newton.csv -o drive.csv");
+    let ran = succeeds(&bench, "invert stage.json newton.csv -o drive.csv");
     assert!(ran.stderr.contains("F_N"), "{}", ran.stderr);
     put_wanted(&bench);
-    done(&bench, "invert stage.json wanted.csv -o kilonewton.csv");
+    succeeds(&bench, "invert stage.json wanted.csv -o kilonewton.csv");
     let (a, b) = (numbers(&bench, "drive.csv", "x_mm"), numbers(&bench, "kilonewton.csv", "x_mm"));
     assert!(largest_difference(&a, &b) <= 1e-9);
     bench.put("second.csv", "F_s\n1\n2\n");
@@ -232,8 +226,8 @@ fn a_band_gives_the_inputs_whose_band_contains_the_wanted_output() {
     put_wanted(&bench);
     refused(&bench, "stage.json wanted.csv --band 0.9", 1, "this model has no prediction band");
     let fit = "fit train.csv --model xpnn --members 3 --starts 3 --epochs 20 -o many.json --no-report";
-    done(&bench, fit);
-    done(&bench, "invert many.json wanted.csv -o drive.csv --band 0.9");
+    succeeds(&bench, fit);
+    succeeds(&bench, "invert many.json wanted.csv -o drive.csv --band 0.9");
     let header = bench.text("drive.csv").lines().next().unwrap().to_string();
     assert_eq!(header, "t_s,F_kN,x_mm,x_mm_low,x_mm_high,F_kN_reached,reach,extrapolated");
     let [low, high] = ["x_mm_low", "x_mm_high"].map(|name| numbers(&bench, "drive.csv", name));
@@ -246,24 +240,14 @@ fn a_band_gives_the_inputs_whose_band_contains_the_wanted_output() {
 fn the_result_as_json_and_the_table_on_stdout() {
     let bench = with_model();
     put_wanted(&bench);
-    let ran = done(&bench, "invert stage.json wanted.csv -o drive.csv --json --limits=-1:1");
+    let ran = succeeds(&bench, "invert stage.json wanted.csv -o drive.csv --json --limits=-1:1");
     let answer: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
     let mut names: Vec<&String> = answer.as_object().unwrap().keys().collect();
     names.sort();
+    let names = names.into_iter().map(String::as_str).collect::<Vec<_>>().join(" ");
     assert_eq!(
         names,
-        [
-            "drive",
-            "drive_range",
-            "errors",
-            "extrapolated",
-            "not_reached",
-            "previews",
-            "reached",
-            "records",
-            "report",
-            "rows"
-        ]
+        "drive drive_range errors extrapolated not_reached previews reached records report rows"
     );
     let count = |reach: &str| answer["not_reached"][reach].as_u64().unwrap();
     assert_eq!(answer["reached"].as_u64().unwrap() + count("low-limit") + count("high-limit"), 120);
@@ -274,7 +258,7 @@ fn the_result_as_json_and_the_table_on_stdout() {
 
     let table = bench.text("drive.csv");
     for out in ["", "-o -"] {
-        let ran = done(&bench, &format!("invert stage.json wanted.csv --limits=-1:1 {out}"));
+        let ran = succeeds(&bench, &format!("invert stage.json wanted.csv --limits=-1:1 {out}"));
         assert_eq!(ran.stdout, table);
     }
     assert!(!bench.path("-").exists() && !bench.path("-.html").exists());
@@ -284,7 +268,7 @@ fn the_result_as_json_and_the_table_on_stdout() {
 fn the_report_is_self_contained_and_has_the_numbers() {
     let bench = with_model();
     put_wanted(&bench);
-    done(&bench, "invert stage.json wanted.csv -o drive.csv --limits=-1:1.5");
+    succeeds(&bench, "invert stage.json wanted.csv -o drive.csv --limits=-1:1.5");
     let page = bench.text("drive.html");
     let reached =
         column(&bench.text("drive.csv"), "reach", ',').iter().filter(|cell| *cell == "reached").count();
@@ -326,38 +310,32 @@ fn bad_references_are_refused_with_their_place() {
     bench.put("taken.csv", "F_kN,reach\n1,far\n2,far\n");
     bench.put("taken_too.csv", "F_kN,x_mm,x_mm_inverse\n1,1,1\n2,2,2\n");
     bench.put("both.csv", "F_kN,x_mm\n1,1\n2,2\n");
-    for (arguments, status, text) in [
-        ("stage.json blank.csv -o d.csv", 1, "blank.csv, line 3, column \"F_kN\": the cell is empty"),
-        ("stage.json word.csv -o d.csv", 1, "word.csv, line 3, column \"F_kN\""),
-        ("stage.json other.csv -o d.csv", 1, "other.csv: there is no column \"F_kN\", the model's output"),
-        ("stage.json unsorted.csv -o d.csv --slew 1", 1, "unsorted.csv, line 4"),
-        (
-            "stage.json both.csv -o d.csv --slew 1",
-            1,
-            "both.csv: there is no column of time, which the rate, a slew limit",
-        ),
-        ("stage.json none.csv -o d.csv", 1, "none.csv"),
-        ("stage.json empty.csv -o d.csv", 1, "empty.csv"),
-        ("stage.json missing.csv -o d.csv", 1, "missing.csv"),
-        ("missing.json one.csv -o d.csv", 1, "missing.json"),
-        ("stage.json taken.csv -o d.csv", 1, "taken.csv: there is already a column \"reach\""),
-        ("stage.json taken_too.csv -o d.csv", 1, "taken_too.csv: there is already a column \"x_mm_inverse\""),
-        ("stage.json one.csv --json", 2, "--json prints to stdout in place of the table"),
-        ("stage.json one.csv --limits 3:1", 2, "the low limit 3 is not below the high one"),
-        (
-            "stage.json one.csv --input F_kN -o d.csv",
-            2,
-            "the model has no further inputs; leave --input away",
-        ),
-        ("stage.json one.csv --slew 0", 2, "a number above 0 is needed"),
-        ("stage.json one.csv --preview soon", 2, "`auto` or a time of 0 or more is needed"),
-        ("stage.json one.csv -o train.csv", 2, "train.csv"),
-        ("stage.json one.csv -o one.csv", 2, "one.csv"),
-    ] {
+    for (status, arguments, text) in cases(
+        r#"
+        1 stage.json blank.csv -o d.csv => blank.csv, line 3, column "F_kN": the cell is empty
+        1 stage.json word.csv -o d.csv => word.csv, line 3, column "F_kN"
+        1 stage.json other.csv -o d.csv => other.csv: there is no column "F_kN", the model's output
+        1 stage.json unsorted.csv -o d.csv --slew 1 => unsorted.csv, line 4
+        1 stage.json both.csv -o d.csv --slew 1 => both.csv: there is no column of time, which the rate, a slew limit
+        1 stage.json none.csv -o d.csv => none.csv
+        1 stage.json empty.csv -o d.csv => empty.csv
+        1 stage.json missing.csv -o d.csv => missing.csv
+        1 missing.json one.csv -o d.csv => missing.json
+        1 stage.json taken.csv -o d.csv => taken.csv: there is already a column "reach"
+        1 stage.json taken_too.csv -o d.csv => taken_too.csv: there is already a column "x_mm_inverse"
+        2 stage.json one.csv --json => --json prints to stdout in place of the table
+        2 stage.json one.csv --limits 3:1 => the low limit 3 is not below the high one
+        2 stage.json one.csv --input F_kN -o d.csv => the model has no further inputs; leave --input away
+        2 stage.json one.csv --slew 0 => a number above 0 is needed
+        2 stage.json one.csv --preview soon => `auto` or a time of 0 or more is needed
+        2 stage.json one.csv -o train.csv => train.csv
+        2 stage.json one.csv -o one.csv => one.csv
+    "#,
+    ) {
         refused(&bench, arguments, status, text);
     }
     // Of a single row there is an input.
-    let ran = done(&bench, "invert stage.json one.csv -o d.csv");
+    let ran = succeeds(&bench, "invert stage.json one.csv -o d.csv");
     assert!(ran.stdout.contains("rows reached: 1 of 1 row;"), "{}", ran.stdout);
 }
 
@@ -372,7 +350,7 @@ fn a_foreign_file_is_replaced_by_force_only() {
         fs::remove_file(bench.path(file)).unwrap();
     }
     bench.put("drive.csv", "mine");
-    done(&bench, "invert stage.json wanted.csv -o drive.csv --force");
+    succeeds(&bench, "invert stage.json wanted.csv -o drive.csv --force");
     assert_ne!(bench.text("drive.csv"), "mine");
 }
 

@@ -137,11 +137,7 @@ fn decimal_commas_are_written_wherever_the_first_of_them_stands() {
     // A pipe cannot be read twice.
     let piped = bench.shell("cat late.csv | hysid simulate central.json /dev/stdin");
     assert_eq!(piped.status, Some(1));
-    assert!(
-        piped.stderr.starts_with("error: /dev/stdin: the first decimal comma comes after"),
-        "{}",
-        piped.stderr
-    );
+    assert!(piped.stderr.starts_with("error: /dev/stdin: the first decimal comma comes after"), "{piped}");
 
     let commas = long(';', |value| plain(value).replace('.', ","));
     bench.put("commas.csv", &commas);

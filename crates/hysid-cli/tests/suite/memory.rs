@@ -133,15 +133,3 @@ fn what_needs_more_than_there_is_is_refused_at_once() {
         assert!(!bench.path("model.json").exists());
     }
 }
-
-/// It took 850 MB, because a matrix as wide as the parameters was made of fifty rows.
-#[test]
-fn few_rows_of_many_inputs_take_little() {
-    let bench = Workbench::new();
-    data(&bench, 50, 99);
-    for training in ["subgradient", "levenberg-marquardt"] {
-        let options = format!("--model xpnn+ --training {training} --starts 2 --epochs 2");
-        let taken = peak(&bench, &format!("{options}{}", named(99)));
-        assert!(taken < 200e6, "{training}: {taken:.2e} bytes");
-    }
-}

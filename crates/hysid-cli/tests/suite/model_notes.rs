@@ -1,13 +1,8 @@
 //! What a user is told of a model beside its errors: rows that it was not trained on, data that cannot tell
 //! candidates apart, inputs that are measured from elsewhere than 0.
 
-use crate::workbench::{Ran, Workbench, csv, table};
+use crate::workbench::{Workbench, csv, json, table};
 use serde_json::Value;
-
-fn json(ran: &Ran) -> Value {
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
-    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
-}
 
 /// Some cycles of one loop.
 fn one_loop() -> String {

@@ -63,11 +63,7 @@ fn the_demo_and_the_reproduction_look_before_they_work() {
         bench.put(&format!("out/{name}"), MEASURED);
         let ran = bench.run("demo -o out");
         assert_eq!((ran.status, ran.stderr.lines().count()), (Some(2), 1), "{}", ran.stderr);
-        assert!(
-            ran.stderr.starts_with(&format!("error: out/{name}: a file is there already")),
-            "{}",
-            ran.stderr
-        );
+        assert!(ran.stderr.starts_with(&format!("error: out/{name}: a file is there already")), "{ran}");
         assert_eq!(bench.files("out"), [name], "nothing is written");
         fs::remove_file(bench.path(&format!("out/{name}"))).unwrap();
     }

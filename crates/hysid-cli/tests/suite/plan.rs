@@ -1,6 +1,6 @@
 //! `hysid plan`: drives from data and for kinds of specimens, their files, and what is refused.
 
-use crate::workbench::{Ran, Workbench};
+use crate::workbench::{Workbench, succeeds};
 
 /// Cycles of one amplitude, 400 rows.
 fn cycles(header: &str, has_time: bool) -> String {
@@ -22,12 +22,6 @@ fn bench() -> Workbench {
     bench
 }
 
-fn ran(bench: &Workbench, line: &str) -> Ran {
-    let ran = bench.run(line);
-    assert_eq!(ran.status, Some(0), "{line}: {}", ran.stderr);
-    ran
-}
-
 /// The columns of a drive.
 fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
     let mut lines = text.lines();
@@ -42,7 +36,7 @@ fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
 #[test]
 fn a_drive_has_the_columns_of_the_data_and_a_page_beside_it() {
     let bench = bench();
-    let said = ran(&bench, "plan --like data.csv");
+    let said = succeeds(&bench, "plan --like data.csv");
     let (header, columns) = columns(&bench.text("data.drive.csv"));
     assert_eq!(header, ["t_s", "disp_mm"]);
     let [t, x] = &columns[..] else { panic!("two columns") };
@@ -57,13 +51,13 @@ fn a_drive_has_the_columns_of_the_data_and_a_page_beside_it() {
     let widest = said.stdout.lines().map(|line| line.chars().count()).max().unwrap();
     assert!(widest <= 80, "{}", said.stdout);
     // The same again replaces the files of before.
-    assert_eq!(ran(&bench, "plan --like data.csv").stdout, said.stdout);
+    assert_eq!(succeeds(&bench, "plan --like data.csv").stdout, said.stdout);
 }
 
 #[test]
 fn data_without_time_give_a_drive_without_time() {
     let bench = bench();
-    let said = ran(&bench, "plan --like slow.csv -o -");
+    let said = succeeds(&bench, "plan --like slow.csv -o -");
     let (header, columns) = columns(&said.stdout);
     assert_eq!(header, ["disp_mm"]);
     assert!(columns[0].len() > 300);
@@ -74,7 +68,7 @@ fn data_without_time_give_a_drive_without_time() {
 #[test]
 fn the_json_object_has_the_segments_with_their_reasons() {
     let bench = bench();
-    let said = ran(&bench, "plan --like data.csv --json -o drive.csv --no-report");
+    let said = succeeds(&bench, "plan --like data.csv --json -o drive.csv --no-report");
     let told: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
     assert_eq!(told["drive"], "drive.csv");
     assert!(told["page"].is_null());
@@ -92,7 +86,8 @@ fn a_kind_of_specimen_has_a_first_test() {
     let (header, columns) = columns(&bench.text("structure.drive.csv"));
     assert_eq!(header, ["x"]);
     assert!(columns[0].len() <= 3000 && columns[0].contains(&50.0) && columns[0].contains(&-50.0));
-    let said = ran(&bench, "plan --for piezo --range 0:150 --step 0.001 --duration 5 -o piezo.csv --json");
+    let said =
+        succeeds(&bench, "plan --for piezo --range 0:150 --step 0.001 --duration 5 -o piezo.csv --json");
     let told: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
     assert!(told["duration"].as_f64().unwrap() <= 5.0 && told["limits"]["range"][1] == 150.0);
 }

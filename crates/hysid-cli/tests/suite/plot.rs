@@ -2,16 +2,10 @@
 
 use std::fs;
 
-use crate::workbench::{Ran, Workbench, error_line};
+use crate::workbench::{Workbench, succeeds};
 
 /// What a machine without fonts says of PDF and PNG. Set where no proof may be missing.
 const PROVE_ALL: &str = "HYSID_PROVE_ALL";
-
-fn succeeds(bench: &Workbench, arguments: &str) -> Ran {
-    let ran = bench.run(arguments);
-    assert_eq!(ran.status, Some(0), "hysid {arguments}: {}", ran.stderr);
-    ran
-}
 
 /// Draws as PDF or PNG; `false`, said aloud, on a machine that has no fonts for it.
 fn is_drawn(bench: &Workbench, arguments: &str) -> bool {
@@ -166,8 +160,7 @@ fn a_pdf_has_its_size_its_font_and_its_maker() {
     assert_eq!(ran.status, Some(2));
     assert!(
         ran.last_line().contains("theirs.pdf: a file is there already and is no drawing of Hysid"),
-        "{}",
-        ran.stderr
+        "{ran}"
     );
 }
 
@@ -203,11 +196,7 @@ fn records_are_chosen_and_data_or_a_model_drawn_alone() {
     let ran = succeeds(&bench, "plot model.json two.csv --kind histories -o both.svg");
     // Both are copies of the training data, which is said of each by its name.
     for record in ["first", "second"] {
-        assert!(
-            ran.stderr.contains(&format!("record \"{record}\" is equal to what the model")),
-            "{}",
-            ran.stderr
-        );
+        assert!(ran.stderr.contains(&format!("record \"{record}\" is equal to what the model")), "{ran}");
     }
     let both = bench.text("both.svg");
     assert!(has_text(&both, "first") && has_text(&both, "second"));
@@ -230,50 +219,19 @@ fn what_cannot_be_drawn_is_said_in_one_line_and_nothing_is_written() {
     let bench = with_member();
     bench.put("line.csv", "x,y\n0,0\n1,1\n2,2\n3,3\n4,4\n5,5\n6,6\n7,7\n8,8\n9,9\n10,10\n");
     let before = bench.files(".");
-    let cases = [
-        (
-            "plot member.csv -o figure.jpg",
-            2,
-            "figure.jpg: the ending tells the format of the figure: .svg, .pdf or .png",
-        ),
-        (
-            "plot member.csv -o figure",
-            2,
-            "figure: the ending tells the format of the figure: .svg, .pdf or .png",
-        ),
-        (
-            "plot model.json",
-            2,
-            "model.json is a model: name data to draw it on, or let `hysid cycles` drive and draw it alone",
-        ),
-        (
-            "plot member.csv --kind errors",
-            2,
-            "errors need a model: hysid plot MODEL.json DATA.csv --kind errors",
-        ),
-        ("plot member.csv --band 0.9", 2, "--band needs a model: hysid plot MODEL.json DATA.csv"),
-        (
-            "plot model.json member.csv --kind errors --height 30",
-            2,
-            "--height 30 has no room for 2 charts: choose more, or draw fewer with --only",
-        ),
-        (
-            "plot member.csv --only third",
-            1,
-            "member.csv: there is no record \"third\" for --only (records: member)",
-        ),
-        (
-            "plot member.csv --kind frequency",
-            1,
-            "member.csv: no amplitude was run at several frequencies (or there is no time), so there is nothing to draw over frequency",
-        ),
-    ];
-    for (arguments, status, said) in cases {
-        let ran = bench.run(arguments);
-        assert_eq!(ran.status, Some(status), "{arguments}: {}", ran.stderr);
-        assert_eq!(ran.last_line(), error_line(arguments, status, said), "{arguments}");
-        assert_eq!(bench.files("."), before, "{arguments}");
-    }
+    bench.refuses(
+        r#"
+        2 plot member.csv -o figure.jpg => figure.jpg: the ending tells the format of the figure: .svg, .pdf or .png
+        2 plot member.csv -o figure => figure: the ending tells the format of the figure: .svg, .pdf or .png
+        2 plot model.json => model.json is a model: name data to draw it on, or let `hysid cycles` drive and draw it alone
+        2 plot member.csv --kind errors => errors need a model: hysid plot MODEL.json DATA.csv --kind errors
+        2 plot member.csv --band 0.9 => --band needs a model: hysid plot MODEL.json DATA.csv
+        2 plot model.json member.csv --kind errors --height 30 => --height 30 has no room for 2 charts: choose more, or draw fewer with --only
+        1 plot member.csv --only third => member.csv: there is no record "third" for --only (records: member)
+        1 plot member.csv --kind frequency => member.csv: no amplitude was run at several frequencies (or there is no time), so there is nothing to draw over frequency
+    "#,
+    );
+    assert_eq!(bench.files("."), before);
     let refused = [
         "plot model.json member.csv --band 0.9",
         "plot line.csv --kind cycles",

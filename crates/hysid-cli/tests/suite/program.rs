@@ -69,17 +69,6 @@ fn a_law_is_shown_with_its_parameters_and_an_ensemble_with_its_members() {
 }
 
 #[test]
-fn what_is_no_model_file_is_refused_in_one_line() {
-    let bench = Workbench::new();
-    bench.put("data.csv", "x,y\n1,2\n");
-    for file in ["data.csv", "gone.json"] {
-        let ran = bench.run(&format!("models {file}"));
-        assert_eq!((ran.status, ran.stdout.as_str(), ran.stderr.lines().count()), (Some(1), "", 1));
-        assert!(ran.stderr.starts_with(&format!("error: {file}: ")), "{}", ran.stderr);
-    }
-}
-
-#[test]
 fn completions_of_every_shell_know_commands_and_options() {
     let bench = Workbench::new();
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {

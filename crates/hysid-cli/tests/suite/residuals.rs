@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::workbench::{Ran, Workbench};
+use crate::workbench::{Workbench, json};
 use serde_json::Value;
 
 /// Numbers that look random, between -1 and 1.
@@ -38,11 +38,6 @@ fn bench() -> (Workbench, Value) {
     (bench, fit)
 }
 
-fn json(ran: &Ran) -> Value {
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
-    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
-}
-
 fn finding<'v>(residuals: &'v Value, test: &str) -> &'v Value {
     residuals["findings"].as_array().unwrap().iter().find(|finding| finding["test"] == test).unwrap()
 }
@@ -53,11 +48,7 @@ fn evaluate_says_what_the_residual_tells_and_what_helps() {
     let told = bench.run("evaluate law.json viscous.csv --residuals");
     assert_eq!(told.status, Some(0), "{}", told.stderr);
     assert!(told.stdout.contains("The residual is correlated with the rate of x"), "{}", told.stdout);
-    assert!(
-        told.stdout.contains("option rate") && told.stdout.contains("RMSE of force_kN, kN"),
-        "{}",
-        told.stdout
-    );
+    assert!(told.stdout.contains("option rate") && told.stdout.contains("RMSE of force_kN, kN"), "{told}");
     assert!(told.stdout.lines().all(|line| line.chars().count() <= 80), "{}", told.stdout);
 
     let viscous = json(&bench.run("evaluate law.json viscous.csv --residuals --json"));

@@ -1,6 +1,6 @@
 //! Tables in other units than the model's, and numbers that are not what they look like.
 
-use crate::workbench::{Ran, Workbench, csv, rows};
+use crate::workbench::{Ran, Workbench, csv, json, rows};
 use serde_json::Value;
 
 /// A model of `disp_mm` and `force_kN` over `t_s`, and its own data.
@@ -21,19 +21,14 @@ fn scaled(header: &str, factors: [f64; 3]) -> String {
     csv(header, ",", "\n", &rows().into_iter().map(scale).collect::<Vec<_>>())
 }
 
-fn errors(ran: &Ran) -> Value {
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
-    serde_json::from_str(&ran.stdout).unwrap()
-}
-
 #[test]
 fn known_units_are_converted_to_the_model_s() {
     let bench = bench();
-    let own = errors(&bench.run("evaluate model.json good.csv --json"));
+    let own = json(&bench.run("evaluate model.json good.csv --json"));
     bench.put("other.csv", scaled("clock_ms,displacement_m,force_N", [1e3, 1e-3, 1e3]));
     let named = "--time clock_ms --input displacement_m --output force_N";
     let ran = bench.run(&format!("evaluate model.json other.csv {named} --json"));
-    let found = errors(&ran);
+    let found = json(&ran);
     let rmse = |errors: &Value| errors["rmse"].as_f64().unwrap();
     assert!((rmse(&found) / rmse(&own) - 1.0).abs() < 1e-6, "{found} {own}");
     assert_eq!(found["output"], "force_kN");
@@ -46,7 +41,7 @@ fn known_units_are_converted_to_the_model_s() {
     }
     // The same quantity in another unit is found without being named.
     bench.put("found.csv", scaled("t_ms,disp_m,force_N", [1e3, 1e-3, 1e3]));
-    let found = errors(&bench.run("evaluate model.json found.csv --json"));
+    let found = json(&bench.run("evaluate model.json found.csv --json"));
     assert!((rmse(&found) / rmse(&own) - 1.0).abs() < 1e-6, "{found} {own}");
     let [one, other] =
         ["good.csv", "found.csv"].map(|data| bench.run(&format!("simulate model.json {data}")));
@@ -67,12 +62,12 @@ fn other_units_are_refused_unless_they_are_said_to_be_the_same() {
     let ran: Ran = bench.command("--same-units").args(asked).output().unwrap().into();
     assert_ne!(ran.status, Some(0), "an option stands behind its command");
     let ran: Ran = bench.command("").args(asked).arg("--same-units").output().unwrap().into();
-    assert_eq!(errors(&ran), errors(&bench.run("evaluate model.json good.csv --json")));
+    assert_eq!(json(&ran), json(&bench.run("evaluate model.json good.csv --json")));
     let ran = bench.run("simulate model.json good.csv --input force_kN");
     assert!(ran.last_line().contains("column \"force_kN\" is in kN, the model's \"disp_mm\" in mm"));
     // A column without a unit is taken as it is.
     bench.put("plain.csv", csv("t,x,y", ",", "\n", &rows()));
-    errors(&bench.run("evaluate model.json plain.csv --time t --input x --output y --json"));
+    json(&bench.run("evaluate model.json plain.csv --time t --input x --output y --json"));
 }
 
 #[test]

@@ -177,30 +177,19 @@ mod tests {
     #[test]
     fn forces_follow_displacements() {
         let swapped = |input: &str, output: &str| Part::are_swapped(Part::of(input), Part::of(output));
-        for (drives, follows) in [
-            ("disp_mm", "force_kN"),
-            ("x_mm", "F_N"),
-            ("strain_true", "stress_true_MPa"),
-            ("Weg [mm]", "Kraft [kN]"),
-            ("H_A_per_m", "B_T"),
-            ("H", "B"),
-            ("V_V", "P_uC_per_cm2"),
-            ("theta_deg", "M_kN_m"),
-        ] {
+        let pairs = |text: &'static str| text.split("; ").map(|pair| pair.split_once(" | ").unwrap());
+        for (drives, follows) in pairs(
+            "disp_mm | force_kN; x_mm | F_N; strain_true | stress_true_MPa; Weg [mm] | Kraft [kN]; \
+             H_A_per_m | B_T; H | B; V_V | P_uC_per_cm2; theta_deg | M_kN_m",
+        ) {
             assert!(swapped(follows, drives), "{follows} {drives}");
             assert!(!swapped(drives, follows), "{drives} {follows}");
         }
-        for (input, output) in [
-            ("Kraft", "Weg"),
-            ("Effort (kN)", "Déplacement (mm)"),
-            ("Fuerza", "Desplazamiento"),
-            ("Сила", "Перемещение"),
-            ("荷重(kN)", "変位(mm)"),
-            ("恢复力", "位移"),
-            ("磁感应强度", "磁场强度"),
-            ("displacement_um", "voltage_V"),
-            ("y_um", "current_A"),
-        ] {
+        for (input, output) in pairs(
+            "Kraft | Weg; Effort (kN) | Déplacement (mm); Fuerza | Desplazamiento; \
+             Сила | Перемещение; 荷重(kN) | 変位(mm); 恢复力 | 位移; 磁感应强度 | 磁场强度; \
+             displacement_um | voltage_V; y_um | current_A",
+        ) {
             assert!(swapped(input, output), "{input} {output}");
             assert!(!swapped(output, input), "{output} {input}");
         }
@@ -210,15 +199,10 @@ mod tests {
         assert_eq!(Part::of("Spannung"), None);
         assert_eq!(Part::of("Spannung [MPa]"), Some(Part::Follows(Domain::Mechanics)));
         assert_eq!(Part::of("Spannung [V]"), Some(Part::Drives(Domain::Electricity)));
-        for (input, output) in [
-            ("u_V", "y_um"),
-            ("x", "y"),
-            ("H_fit_V", "B_V_us"),
-            ("excitation_force_N", "displacement_m"),
-            ("Anregung [N]", "Weg [mm]"),
-            ("加振力(N)", "変位(mm)"),
-            ("excitation [V]", "current [A]"),
-        ] {
+        for (input, output) in pairs(
+            "u_V | y_um; x | y; H_fit_V | B_V_us; excitation_force_N | displacement_m; \
+             Anregung [N] | Weg [mm]; 加振力(N) | 変位(mm); excitation [V] | current [A]",
+        ) {
             assert!(!swapped(input, output), "{input} {output}");
         }
     }

@@ -141,16 +141,6 @@ mod tests {
     }
 
     #[test]
-    fn names_are_read_as_they_are_written() {
-        for state in InitialState::ALL {
-            assert_eq!(state.name().parse(), Ok(state));
-            assert_eq!(serde_json::to_value(state).unwrap(), state.name());
-        }
-        let error = "saturated".parse::<InitialState>().unwrap_err().to_string();
-        assert!(error.contains("saturated-up") && error.contains("unknown"), "{error}");
-    }
-
-    #[test]
     fn a_level_comes_after_the_farther_end() {
         let tried = lead_ins_tried((0.0, 9.0));
         assert_eq!(tried.len(), 11);

@@ -118,7 +118,6 @@ pub fn noise(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::operator::{Operator, Play};
     use crate::random::mix;
 
     fn column(values: &[f64], tolerance: f64) -> Column<'_> {
@@ -177,19 +176,6 @@ mod tests {
             let rows = polyline(&[column(&ramp[..count], 0.1)], |_| 1.0, |_| false);
             assert_eq!(rows, (0..count).collect::<Vec<_>>());
         }
-    }
-
-    #[test]
-    fn a_play_is_led_to_within_the_tolerance() {
-        let x: Vec<f64> =
-            (0..20_000).map(|k| (1e-3 * f64::from(k)).sin() * (1e-4 * f64::from(k)).cos()).collect();
-        let rows = polyline(&[column(&x, 1e-3)], |_| 1.0, |row| row % 97 == 0);
-        assert!(rows.len() < 500, "{}", rows.len());
-        let (mut whole, mut short) = (Play::new(0.2).unwrap(), Play::new(0.2).unwrap());
-        let whole = whole.run(&x);
-        let short = short.run(&rows.iter().map(|&row| x[row]).collect::<Vec<_>>());
-        let apart = rows.iter().zip(short).map(|(&row, p)| (whole[row] - p).abs()).fold(0.0, f64::max);
-        assert!(apart > 0.0 && apart <= 1.001e-3, "{apart}");
     }
 
     #[test]

@@ -171,14 +171,4 @@ mod tests {
         // Few rows a period are no shuffle.
         assert!(!warned((0..n).map(|k| at(21 * k)).collect()));
     }
-
-    #[test]
-    fn a_good_record_is_not() {
-        let n = 500;
-        let x: Vec<f64> = (0..n).map(|k| (k as f64 * 0.1).sin()).collect();
-        let data = data((0..n).map(|k| k as f64).collect(), x.clone(), x);
-        let summary = Summary::of(&data);
-        assert_eq!((summary.rows, summary.turning_points()), (n, 16));
-        assert!(summary.warnings(&data).is_empty());
-    }
 }

@@ -40,12 +40,4 @@ mod tests {
         assert_eq!(turning_points(&x, 0.1), [3, 8]);
         assert_eq!(turning_points(&x, 0.0).len(), 8);
     }
-
-    #[test]
-    fn a_sine_turns_twice_a_period() {
-        let x: Vec<f64> = (0..10_000).map(|k| (k as f64 * 0.01).sin()).collect();
-        assert_eq!(turning_points(&x, 0.05).len(), 32);
-        assert!(turning_points(&[1.0; 5], 0.0).is_empty());
-        assert!(turning_points(&[], 0.1).is_empty());
-    }
 }

@@ -140,15 +140,3 @@ impl fmt::Display for Warning {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn warnings_say_what_helps() {
-        let warning = Warning::FewTurningPoints { record: "r1".into(), found: 1 };
-        assert!(warning.to_string().contains("turns only once"));
-        assert!(warning.to_string().contains("several cycles"));
-    }
-}

@@ -169,30 +169,3 @@ impl Law for Masing {
         [WIPES_OUT.as_slice(), &[CONGRUENT, MASING, ODD]].concat()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::law::series::{run, samples_of};
-
-    #[test]
-    fn slopes_may_be_negative() {
-        // Against a spring of slope -1 that becomes one of slope 0.5 beyond 1: by hand.
-        let parts = MasingParts { constant: 0.0, thresholds: vec![1.0], slopes: vec![-1.0, 0.5] };
-        let law = Masing::new(parts).unwrap();
-        assert_eq!(
-            [0.5, -0.5, 1.0, 2.0, -3.0, 0.0].map(|x| law.virgin_curve(x)),
-            [-0.5, 0.5, -1.0, -0.5, 0.0, 0.0]
-        );
-        // y = (m_1 - m_2) stop_r[x] + m_2 x, theory.md (7.13).
-        let x = [0.5, 2.0, -1.0, 0.3, -4.0, 1.0];
-        let mut play: f64 = 0.0;
-        let expected = x.map(|x| {
-            play = play.clamp(x - 1.0, x + 1.0);
-            -1.5 * (x - play) + 0.5 * x
-        });
-        for (found, expected) in run(&law, &samples_of(&x)).into_iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-14, "{found}, not {expected}");
-        }
-    }
-}

@@ -399,37 +399,6 @@ mod tests {
         path
     }
 
-    #[test]
-    fn monotone_loading_is_the_curve_of_menegotto_and_pinto() {
-        let law = MenegottoPinto { roundness: 4.0, ..MenegottoPinto::steel(200.0, 400.0, 0.02).unwrap() };
-        for strain in [0.5, 2.0, 3.0, 10.0, 80.0] {
-            let z: f64 = strain / 2.0;
-            let expected = 400.0 * (0.02 * z + 0.98 * z / (1.0 + z.powi(4)).powf(0.25));
-            assert!((run(&law, &[0.3 * strain, strain])[1] - expected).abs() < 1e-10, "{strain}");
-            assert!((run(&law, &[-strain])[0] + expected).abs() < 1e-10, "{strain}");
-        }
-    }
-
-    /// By hand, with `R = 1`, so that the curve is `z/(1 + z)`: up to `d = 1`, where `q = 1/2`; from there 3/2 are left to
-    /// the lower yield stress, half of which is used at `d = -1/2`; at `d = -2` two thirds; from there 3/2 to the
-    /// upper one, half of which is used at `d = -1/2`.
-    #[test]
-    fn a_cycle_by_hand() {
-        let law = MenegottoPinto {
-            hardening_stiffness: 5.0,
-            strength: 100.0,
-            yield_displacement: 2.0,
-            roundness: 1.0,
-            loss: 0.0,
-            ..MenegottoPinto::steel(1.0, 1.0, 0.0).unwrap()
-        };
-        let forces = run(&law, &[2.0, -1.0, -4.0, -1.0]);
-        let expected = [10.0 + 50.0, -5.0 - 25.0, -20.0 - 50.0, -5.0 + 25.0];
-        for (force, expected) in forces.iter().zip(expected) {
-            assert!((force - expected).abs() < 1e-12, "{force} and {expected}");
-        }
-    }
-
     /// Steel02 as its reference describes it: strains and stresses, intersections of asymptotes, without a memory of
     /// earlier branches.
     fn steel_02(path: &[f64]) -> Vec<f64> {
@@ -493,16 +462,6 @@ mod tests {
         // Steel02 runs above it.
         let [whole, looped] = [&[10.0, -8.0, 3.0, 6.0][..], &[10.0, -8.0, 3.0, 2.0, 6.0]].map(steel_02);
         assert!(looped[4] > whole[3] + 10.0, "{} and {}", looped[4], whole[3]);
-    }
-
-    #[test]
-    fn rows_between_turning_points_change_nothing() {
-        let law = steel();
-        let turning: Vec<f64> = numbers(400).iter().map(|u| 12.0 * u).collect();
-        let (coarse, fine) = (run(&law, &turning), run(&law, &refined(&turning, 7)));
-        for (index, stress) in coarse.iter().enumerate() {
-            assert!((stress - fine[7 * index + 6]).abs() < 1e-8, "turning point {index}");
-        }
     }
 
     #[test]

@@ -395,12 +395,4 @@ mod tests {
             assert_eq!(sample, [u[row], m[row], p[row]]);
         }
     }
-
-    #[test]
-    fn nothing_asked_for_is_nothing_done() {
-        let data = data();
-        let preprocessing = InputOptions::default().of(&data, None, Origin::OfData).unwrap();
-        assert!(preprocessing.is_none());
-        assert!(matches!(preprocessing.data(&data, None).unwrap().0, Cow::Borrowed(_)));
-    }
 }

@@ -265,17 +265,4 @@ mod tests {
         let gpnn = Architecture::new(Family::Gpnn, sizes, 1, true, true).unwrap();
         assert_eq!(gpnn.parameters(), 3 * 7 + constant);
     }
-
-    #[test]
-    fn families_have_their_parts() {
-        let sizes = Sizes { stops: 3, hidden: 2, relaxation: 4 };
-        let of = |family| Architecture::new(family, sizes, 1, true, true).unwrap();
-        assert!(!of(Family::PreisachNn).rate && !of(Family::PreisachNn).deterioration);
-        assert_eq!(of(Family::Xpnn).relaxation, 0);
-        assert_eq!(of(Family::XpnnPlus).memory_neurons(), 1 + 3 + 4);
-        assert_eq!(of(Family::XpnnPlus).output_weights(), 1 + 2 + 8);
-        assert_eq!("epnn".parse::<Family>().unwrap(), Family::Xpnn);
-        assert!(Architecture::new(Family::Xpnn, sizes, 2, true, true).is_err());
-        assert!(Architecture::new(Family::XpnnPlus, sizes, 2, true, true).is_ok());
-    }
 }

@@ -121,19 +121,6 @@ mod tests {
     use crate::options::classical::ClassicalOptions;
 
     #[test]
-    fn a_default_in_words_names_every_model_with_another_value() {
-        let words = |name: &str| FitOption::named(name).unwrap().default_in_words();
-        assert_eq!(words("seed"), "1");
-        assert_eq!(words("members"), "6 for auto; otherwise 1");
-        assert_eq!(words("dead_zones"), "6");
-        assert_eq!(
-            words("states"),
-            "3 for duhem-nn; 2 (0 with degradation) for hysteretic-oscillator and hysteretic-state-space"
-        );
-        assert!(words("starts").starts_with("2 for subgradient and auto; 8 for levenberg-marquardt,"));
-    }
-
-    #[test]
     fn a_printed_default_is_the_value_that_a_fit_takes() {
         for &law in ClassicalModel::ALL {
             let options = ClassicalOptions::of(law);

@@ -78,20 +78,4 @@ mod tests {
         // It has deteriorating stops.
         assert_eq!(label(degrading), "hysteretic-oscillator (degradation, 2 modes)");
     }
-
-    #[test]
-    fn the_simplest_variant_comes_first() {
-        let bouc_wen = ModelName::Classical(ClassicalModel::BoucWen);
-        assert_eq!(labels(bouc_wen, None), ["bouc-wen", "bouc-wen (degradation)"]);
-        assert_eq!(
-            labels(bouc_wen, Some(RateMethod::Central)),
-            ["bouc-wen", "bouc-wen (degradation)", "bouc-wen (rate)", "bouc-wen (degradation, rate)"]
-        );
-        let sides = ["", " (asymmetric)", " (degradation)", " (asymmetric, degradation)"];
-        assert_eq!(
-            labels(ModelName::Classical(ClassicalModel::PeakOriented), None),
-            sides.map(|sides| format!("peak-oriented{sides}"))
-        );
-        assert_eq!(labels(ModelName::AUTO, None), ["auto"]);
-    }
 }

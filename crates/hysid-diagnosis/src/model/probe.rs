@@ -263,19 +263,3 @@ pub(super) fn extent(values: &[f64]) -> f64 {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_path_visits_its_turning_points_in_equal_steps() {
-        let path = path(5.0, 2.0, &[0.0, 1.0, -0.3, 0.05], 20);
-        let turns: Vec<f64> = path.turns.iter().map(|&row| path.x[row]).collect();
-        assert_eq!(turns, [5.0, 7.0, 5.0 - 2.0 * (6.0 / 20.0), 5.0 + 2.0 * (1.0 / 20.0)]);
-        assert_eq!(path.x.len(), 1 + 20 + 26 + 7);
-        assert!(path.x.windows(2).all(|pair| ((pair[1] - pair[0]).abs() - 0.1).abs() < 1e-12));
-        let time = times(&path.x, 0.5);
-        assert!((time[time.len() - 1] - 0.1 * 53.0 / 0.5).abs() < 1e-9);
-    }
-}

@@ -138,14 +138,6 @@ fn a_linear_oscillator_is_found_exactly() {
     check(&named("t_s", vec![part(300..900), part(901..1500)]), 1.0);
 }
 
-#[test]
-fn a_duffing_oscillator_is_a_resonance() {
-    let found =
-        Resonance::of(&dataset(oscillator(1500, 50.0, |y, _| 1e5 * y + 1e10 * y.powi(3), |_, _| 0.0)));
-    let found = found.unwrap();
-    assert!(found.is_found(), "{found:?}");
-}
-
 /// Each earthquake leaves it in another place, so that no linear oscillator fits its displacement.
 #[test]
 fn a_building_that_yields_is_a_resonance_in_the_changes() {

@@ -1,7 +1,4 @@
-use plotters::style::RGBColor;
-
 use super::frame::legend_lines;
-use super::palette::{GRID, INK};
 use super::*;
 use crate::balance::assert_balanced;
 
@@ -81,16 +78,6 @@ fn odd_series_can_be_drawn() {
     let cases = [vec![], vec![(1.0, 2.0)], vec![(0.0, 5.0); 9], vec![(f64::NAN, 1.0)], vec![(1e150, -1e150)]];
     for points in cases {
         assert_balanced(&chart(points).svg());
-    }
-}
-
-#[test]
-fn every_marker_is_recoloured() {
-    let colours =
-        [Colour::Measured, Colour::Simulated, Colour::Input, Colour::Error, Colour::Faint, Colour::Band];
-    let markers = colours.map(Colour::marker).into_iter().chain([INK, GRID]);
-    for RGBColor(r, g, b) in markers {
-        assert!(style().contains(&format!("[stroke=\"#{r:02X}{g:02X}{b:02X}\"]")));
     }
 }
 

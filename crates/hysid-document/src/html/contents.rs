@@ -74,10 +74,4 @@ mod tests {
         let with_own = [vec![Part::Contents(vec!["Section 1".into()])], sections(4, 40)].concat();
         assert_eq!(of(&with_own), None);
     }
-
-    #[test]
-    fn empty_sections_are_left_out() {
-        let all = [sections(4, 40), vec![Part::section("Empty", [])]].concat();
-        assert!(matches!(of(&all), Some(Part::Contents(headings)) if headings.len() == 4));
-    }
 }

@@ -1,24 +1,13 @@
 //! The automatic model: what it promises of itself, its ensembles, bands and validation.
 
-use std::ops::ControlFlow;
+use crate::scaffold::*;
 use std::sync::OnceLock;
 
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::cross_validate;
-use hysid::fit::identify;
-use hysid::fit::network::{Observer, Progress};
-use hysid::law::Classical;
-use hysid::model::{Ensemble, Group, Model, Node, NodeKind, Predictor, Weights};
-use hysid::network::Family;
-use hysid::options::auto::AutoOptions;
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::options::{FitSpec, ModelName};
-use hysid::termination::Termination;
+use hysid::fit::network::Observer;
+use hysid::model::{Ensemble, Group, Node, NodeKind, Predictor, Weights};
 use hysid::validation::folds;
 
 use crate::noisy_record::noisy;
-use crate::small_models::{record, small};
 
 fn names() -> ColumnNames {
     ColumnNames { time: Some("t_s".into()), inputs: vec!["x_mm".into()], rate: None, output: "f_kN".into() }
@@ -32,10 +21,6 @@ fn data() -> Dataset {
 fn shared() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
     MODEL.get_or_init(|| fitted(&data(), options(None)))
-}
-
-fn on(_: &Progress) -> ControlFlow<()> {
-    ControlFlow::Continue(())
 }
 
 fn options(rate: Option<RateMethod>) -> AutoOptions {
@@ -132,17 +117,6 @@ fn answer(group: &Group, of_member: &dyn Fn(usize) -> f64) -> f64 {
         if share_below(middle) < 0.5 { low = middle } else { high = middle }
     }
     0.5 * (low + high)
-}
-
-#[test]
-fn threads_do_not_change_the_model() {
-    let data = data();
-    let text = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| fitted(&data, options(None)).to_json())
-    };
-    let one = shared().to_json();
-    assert_eq!(text(3), one);
 }
 
 #[test]
@@ -280,57 +254,6 @@ fn data_too_few_to_hold_any_out_still_give_a_model() {
     let model = fitted(&few, options(None));
     assert!(model.band().is_none() && model.provenance().selection.is_none());
     assert!(model.provenance().train.nrmse_std_percent.unwrap() < 100.0);
-}
-
-#[test]
-fn folds_hold_out_what_they_do_not_train_on() {
-    let data = data();
-    let of_records = folds(&data, 5);
-    assert_eq!(of_records.len(), 3);
-    for fold in &of_records {
-        let held: Vec<&str> = fold.held_out.records().iter().map(Record::name).collect();
-        assert!(fold.train.records().iter().all(|record| !held.contains(&record.name())));
-        assert_eq!(fold.train.scored() + fold.held_out.scored(), data.scored());
-    }
-    assert_eq!(folds(&data, 2).len(), 2);
-
-    let one = Dataset::new(names(), vec![record(200, "one")]).unwrap();
-    let of_one = folds(&one, 5);
-    assert_eq!(of_one.len(), 5);
-    let whole = &one.records()[0];
-    for fold in &of_one {
-        let (train, held) = (&fold.train.records()[0], &fold.held_out.records()[0]);
-        assert!(held.scored() > 0);
-        for row in 0..held.len() {
-            let trained_on = row < train.len() && !train.output()[row].is_nan();
-            assert!(!trained_on || held.output()[row].is_nan(), "{} row {row}", fold.name);
-            // The memory runs through everything before.
-            assert_eq!(held.inputs()[0][row], whole.inputs()[0][row]);
-        }
-    }
-}
-
-#[test]
-fn cross_validation_is_a_fit_to_each_fold_and_its_error_on_the_rest() {
-    let data = data();
-    let request = FitSpec::Classical(ClassicalOptions {
-        operators: Some(8),
-        ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii)
-    });
-    let validation = cross_validate(&data, &request, 5, &mut on).unwrap();
-    assert_eq!(validation.folds.len(), 3);
-    let mut logarithms = 0.0;
-    for (fold, judged) in folds(&data, 5).iter().zip(&validation.folds) {
-        let model = identify(&fold.train, &request, &mut on).unwrap().model;
-        assert_eq!(model.evaluate(&fold.held_out).unwrap(), judged.unseen);
-        assert_eq!(judged.held_out, fold.name);
-        logarithms += judged.unseen.nrmse_std_percent.unwrap().ln();
-    }
-    let mean = validation.unseen_nrmse_std_percent.unwrap();
-    assert!((mean - (logarithms / 3.0).exp()).abs() < 1e-9 * mean);
-    assert_eq!(validation.unseen.samples, data.scored());
-    let few = Dataset::new(names(), vec![record(30, "short")]).unwrap();
-    assert!(cross_validate(&few, &request, 5, &mut on).unwrap_err().to_string().contains("too few"));
 }
 
 #[test]

@@ -1,15 +1,9 @@
 //! A fit that is cut short and taken up again comes to what it would have come to, to the last bit, for
 //! every trainer and any number of threads.
 
-use std::ops::ControlFlow;
-
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::network::{Checkpoint, Fitted, Progress, fit, resume};
-use hysid::network::{Family, Sizes};
-use hysid::operator::{Operator, Stop};
-use hysid::options::network::{FitOptions, Method, Trainer};
-use hysid::termination::Termination;
+use crate::scaffold::*;
+use hysid::fit::network::{Checkpoint, fit, resume};
+use hysid::options::network::{Method, Trainer};
 
 fn data() -> Dataset {
     let x: Vec<f64> =

@@ -1,11 +1,10 @@
 //! The data doctor: each complaint on data that have exactly its defect, and none on data that have not.
 
+use crate::scaffold::*;
 use std::f64::consts::TAU;
 
-use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::diagnosis::{DataIssue, DataIssueKind, Diagnosis, DiagnosisOptions};
-use hysid::operator::{Operator, Stop};
-use hysid::specimens::{Ferromagnet, Specimen, with_noise};
+use hysid::specimens::{Ferromagnet, Specimen};
 
 /// Springs and sliders: a Prandtl-Ishlinskii law, as a force.
 fn sliders(x: &[f64]) -> Vec<f64> {
@@ -73,7 +72,7 @@ fn dataset(records: Vec<Record>) -> Dataset {
 }
 
 /// Noise of so many percent of the range of the output.
-fn noisy(data: &Dataset, percent: f64, seed: u64) -> Dataset {
+pub fn noisy(data: &Dataset, percent: f64, seed: u64) -> Dataset {
     let outputs: Vec<f64> =
         data.records().iter().flat_map(|r| r.output()).copied().filter(|y| !y.is_nan()).collect();
     let n = outputs.len() as f64;

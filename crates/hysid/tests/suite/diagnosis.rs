@@ -3,11 +3,9 @@
 mod laboratory;
 mod subjects;
 
-use hysid::data::record::{ColumnNames, Dataset, Record};
+use crate::data_doctor::noisy;
+use crate::scaffold::*;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
-use hysid::operator::Operator;
-use hysid::specimens::with_noise;
-use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -15,20 +13,6 @@ use subjects::{Subject, laws, specimens, timed};
 
 fn all() -> Vec<Subject> {
     laws().into_iter().chain(timed()).chain(specimens()).collect()
-}
-
-/// The data with noise of so many percent of the output's range.
-fn noisy(data: &Dataset, percent: f64, seed: u64) -> Dataset {
-    if percent == 0.0 {
-        return data.clone();
-    }
-    let output: Vec<f64> =
-        data.records().iter().flat_map(|record| record.output()).copied().filter(|y| !y.is_nan()).collect();
-    let n = output.len() as f64;
-    let mean = output.iter().sum::<f64>() / n;
-    let deviation = (output.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / n).sqrt();
-    let (low, high) = data.output_range();
-    with_noise(data, percent * (high - low) / deviation, seed).unwrap()
 }
 
 /// How often a verdict was right, wrong, or not given.
@@ -50,7 +34,7 @@ fn counts(subject: &Subject, percent: f64, seeds: u64) -> Vec<(Property, Count)>
     let count = |property: Property| {
         let mut count = Count::default();
         for diagnosis in &diagnoses {
-            match (diagnosis.verdict(property), (subject.truth)(property)) {
+            match (diagnosis.verdict(property), subject.truth(property)) {
                 (Verdict::NotTestable, _) => count.none += 1,
                 (Verdict::Yes, Some(false)) | (Verdict::No, Some(true)) => count.wrong += 1,
                 _ => count.right += 1,
@@ -85,7 +69,7 @@ fn hardly_any_verdict_is_wrong_under_noise() {
         println!("\nNoise of {percent} % of the range, {seeds} seeds: right / wrong / not testable\n");
         let (mut right, mut wrong, mut none) = (0, 0, 0);
         for subject in &subjects {
-            let known = |property: Property| (subject.truth)(property).is_some();
+            let known = |property: Property| subject.truth(property).is_some();
             let counts = counts(subject, percent, seeds);
             let cells: Vec<String> = counts
                 .iter()
@@ -152,7 +136,7 @@ fn the_published_indices_are_found() {
 #[test]
 fn noise_alone_gives_the_index_that_is_said() {
     let options = DiagnosisOptions { smoothing: false, ..DiagnosisOptions::default() };
-    for subject in laws().into_iter().filter(|subject| (subject.truth)(Property::WipingOut) == Some(true)) {
+    for subject in laws().into_iter().filter(|subject| subject.truth(Property::WipingOut) == Some(true)) {
         for percent in [1.0] {
             const SEEDS: u64 = 4;
             let (mut index, mut said) = (0.0, 0.0);
@@ -203,26 +187,8 @@ fn without_a_delay_none_is_found_and_the_rate_does_not_matter() {
 }
 
 #[test]
-fn numbers_of_a_loop_are_those_of_a_stop() {
-    // A stop with threshold r driven to ±X: area 4 r (X - r), height 2 r, coercive input X - r ... theory.md (1.8).
-    let (r, amplitude) = (0.5, 2.0);
-    let x: Vec<f64> = (0..4001).map(|k| amplitude * (TAU * k as f64 / 1000.0).sin()).collect();
-    let y = hysid::operator::Stop::new(r).unwrap().run(&x);
-    let data = Dataset::new(ColumnNames::plain(1), vec![Record::new("stop", vec![x], y).unwrap()]).unwrap();
-    let diagnosis = Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap();
-    let cycle = diagnosis.cycles.last().unwrap();
-    assert!((cycle.energy - 4.0 * r * (amplitude - r)).abs() < 0.01, "{cycle:?}");
-    assert!((cycle.area - cycle.energy).abs() < 0.02, "{cycle:?}");
-    assert!((cycle.height() - 2.0 * r).abs() < 1e-9);
-    assert!((cycle.coercive_input.unwrap() - (amplitude - r)).abs() < 0.01, "{cycle:?}");
-    assert!((cycle.remanent_output.unwrap() - r).abs() < 1e-9);
-    assert!((cycle.secant_stiffness - r / amplitude).abs() < 1e-6);
-    assert!((cycle.width - 2.0 * (amplitude - r)).abs() < 0.02);
-}
-
-#[test]
 fn jitter_of_the_input_makes_no_cycles() {
-    let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(3);
+    let mut generator = Generator::seed_from_u64(3);
     let clean: Vec<f64> = (0..6000).map(|k| (TAU * k as f64 / 1500.0).sin()).collect();
     let y = hysid::operator::Stop::new(0.3).unwrap().run(&clean);
     // Uniform within 3 % of the range, so that single rows go back by as much.

@@ -1,28 +1,9 @@
 //! The Duhem neural network: its cell against closed forms, its derivatives against difference
 //! quotients, and its identification.
 
-use std::ops::ControlFlow;
-
-use hysid::data::metrics::ErrorSums;
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::error::Error;
-use hysid::fit::identify;
-use hysid::fit::law::Identify;
+use crate::scaffold::*;
 use hysid::law::duhem_nn::{Cell, DuhemNn, Input, Layout, Run, Shape};
-use hysid::law::series::{Series, run};
-use hysid::law::{Law, Sample};
-use hysid::model::Model;
-use hysid::options::FitSpec;
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::stop_check::StopCheck;
-use hysid::termination::Termination;
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus as Generator;
-
-fn between(generator: &mut Generator, low: f64, high: f64) -> f64 {
-    low + (high - low) * generator.random::<f64>()
-}
+use hysid::law::series::run;
 
 /// A law without offset and scales, of one state that starts at `s_0` and is the output.
 fn relaxation(c: f64, tau: f64, q: f64, s_0: f64) -> DuhemNn {
@@ -141,24 +122,6 @@ fn outputs_are_finite_for_any_parameters() {
             })
             .collect();
         assert!(run(&law, &samples).iter().all(|y| y.is_finite()), "{shape:?}");
-    }
-}
-
-#[test]
-fn a_run_that_is_divided_is_the_same_to_the_last_bit() {
-    let mut generator = Generator::seed_from_u64(7);
-    for shape in shapes() {
-        let law = law_of(random_cell(shape, 1.0, &mut generator));
-        let samples: Vec<Sample> = (0..200)
-            .map(|k| Sample { x: (0.3 * f64::from(k)).sin(), rate: (0.3 * f64::from(k)).cos(), step: 0.1 })
-            .collect();
-        let whole = run(&law, &samples);
-        let mut state = law.virgin();
-        for (row, (&sample, y)) in samples.iter().zip(&whole).enumerate() {
-            let stepped = law.step(&mut state, sample);
-            assert_eq!(stepped.to_bits(), y.to_bits(), "{shape:?}, row {row}");
-            state = state.clone();
-        }
     }
 }
 
@@ -296,20 +259,7 @@ fn data(law: &DuhemNn, rate: Option<RateMethod>, records: Vec<Record>) -> Datase
 }
 
 fn options(rate: Option<RateMethod>) -> ClassicalOptions {
-    ClassicalOptions { rate, ..ClassicalOptions::of(ClassicalModel::DuhemNn) }
-}
-
-/// Error in percent of the standard deviation.
-fn error(law: &DuhemNn, data: &Dataset, rate: Option<RateMethod>) -> f64 {
-    let mut sums = ErrorSums::default();
-    for series in Series::all(data, rate).unwrap() {
-        sums.add(&series.output, &run(law, &series.samples));
-    }
-    sums.errors("y").unwrap().nrmse_std_percent.unwrap()
-}
-
-fn go_on(_: hysid::fit::law::search::SearchProgress) -> ControlFlow<()> {
-    ControlFlow::Continue(())
+    ClassicalOptions { rate, ..of(ClassicalModel::DuhemNn) }
 }
 
 #[test]
@@ -326,9 +276,9 @@ fn it_learns_its_own_kind() {
     let options = ClassicalOptions { starts: Some(4), ..options(rate) };
     let found = DuhemNn::fit(&seen, &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 1.0, "{}", found.train_nrmse_percent);
-    let unseen = error(&found.law, &unseen, rate);
+    let unseen = error_of(&found.law, &unseen, rate);
     assert!(unseen < 1.0, "{unseen}");
-    assert!((error(&found.law, &seen, rate) - found.train_nrmse_percent).abs() < 1e-6);
+    assert!((error_of(&found.law, &seen, rate) - found.train_nrmse_percent).abs() < 1e-6);
 }
 
 #[test]
@@ -367,50 +317,6 @@ fn a_model_without_rate_or_time_has_only_what_its_data_have() {
         assert_eq!((channels == 2, relaxes), (has_rate, has_time), "{rate:?}");
         let error = again.evaluate(&data).unwrap().nrmse_std_percent.unwrap();
         assert!(error < 10.0, "{rate:?}: {error} %");
-    }
-}
-
-#[test]
-fn the_number_of_threads_does_not_matter() {
-    let law = relaxation(1.0, 0.5, 0.8, 0.0);
-    let rate = Some(RateMethod::Central);
-    let data = data(&law, rate, vec![timed("a", 300, 1.0), timed("b", 300, 1.7)]);
-    let options = ClassicalOptions { starts: Some(5), epochs: Some(14), ..options(rate) };
-    let found = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let found = pool.install(|| DuhemNn::fit(&data, &options, &mut go_on)).unwrap();
-        (found.law, found.evaluations)
-    };
-    assert_eq!(found(1), found(3));
-}
-
-#[test]
-fn a_fit_can_be_broken_off_and_gives_the_best_so_far() {
-    let law = relaxation(1.0, 0.5, 0.8, 0.0);
-    let rate = Some(RateMethod::Central);
-    let data = data(&law, rate, vec![timed("a", 300, 1.0), timed("b", 300, 1.7)]);
-    for starts in [1, 4] {
-        let options = ClassicalOptions { starts: Some(starts), epochs: Some(12), ..options(rate) };
-        // In the search, and in the epochs on all data that follow if there was a choice.
-        for last in [3, 13] {
-            let (mut told, mut so_far) = (Vec::new(), None);
-            let mut observer = |progress: hysid::fit::law::search::SearchProgress| {
-                told.push(progress.round);
-                so_far = progress.law_so_far();
-                if progress.round == last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            };
-            let found = DuhemNn::fit(&data, &options, &mut observer).unwrap();
-            let is_stopped = told.last() == Some(&last);
-            assert!(is_stopped || starts == 1 && last == 13, "{told:?}");
-            assert_eq!(found.termination == Termination::Stopped, is_stopped);
-            assert_eq!(so_far, Some(found.law.clone().into()));
-            assert!(error(&found.law, &data, rate) < 100.0);
-        }
-        let untrained = ClassicalOptions { epochs: Some(0), ..options.clone() };
-        let untrained = DuhemNn::fit(&data, &untrained, &mut go_on).unwrap();
-        assert!((error(&untrained.law, &data, rate) - untrained.train_nrmse_percent).abs() < 1e-6);
-        let stopped = DuhemNn::identify(&data, &options, &mut go_on, StopCheck::new(&|| true));
-        assert!(matches!(stopped, Err(Error::Stopped)));
     }
 }
 

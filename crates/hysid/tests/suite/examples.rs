@@ -35,37 +35,16 @@ fn assert_prints(name: &str, printed: hysid::Result<String>) {
     assert!(folder.join(name).with_extension("py").exists(), "{name} has no Python twin");
 }
 
-#[test]
-fn a_law_with_known_parameters() {
-    assert_prints("classical_law", classical_law::report());
+macro_rules! prints {
+    ($($test:ident: $example:ident),*) => {
+        $(#[test]
+        fn $test() {
+            assert_prints(stringify!($example), $example::report());
+        })*
+    };
 }
 
-#[test]
-fn a_closed_loop() {
-    assert_prints("closed_loop", closed_loop::report());
-}
-
-#[test]
-fn a_comparison() {
-    assert_prints("compare", compare::report());
-}
-
-#[test]
-fn a_diagnosis() {
-    assert_prints("diagnose", diagnose::report());
-}
-
-#[test]
-fn from_columns_to_a_file() {
-    assert_prints("identify", identify::report());
-}
-
-#[test]
-fn sample_by_sample() {
-    assert_prints("step", step::report());
-}
-
-#[test]
-fn a_cross_validation() {
-    assert_prints("validate", validate::report());
-}
+prints!(
+    a_law_with_known_parameters: classical_law, a_closed_loop: closed_loop, a_comparison: compare,
+    a_diagnosis: diagnose, from_columns_to_a_file: identify, sample_by_sample: step, a_cross_validation: validate
+);

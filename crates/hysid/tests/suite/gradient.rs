@@ -1,17 +1,7 @@
 //! Derivatives against difference quotients of the whole simulation, and the gradient of the
 //! objective against those of its value.
 
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::network::objective::Objective;
-use hysid::network::scaling::Scaling;
-use hysid::network::{Architecture, Drive, Family, Layout, Network, Sizes};
-use hysid::options::network::FitOptions;
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus as Generator;
-
-fn between(generator: &mut Generator, low: f64, high: f64) -> f64 {
-    low + (high - low) * generator.random::<f64>()
-}
+use crate::scaffold::*;
 
 /// Turning points at random, five samples between, no two alike.
 fn path(rows: usize, generator: &mut Generator) -> Vec<f64> {
@@ -48,7 +38,7 @@ fn random_parameters(layout: &Layout, ln_beta: f64, generator: &mut Generator) -
         .collect()
 }
 
-fn run(network: &Network, drive: &Drive) -> Vec<f64> {
+pub fn run(network: &Network, drive: &Drive) -> Vec<f64> {
     let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
     let mut y = vec![0.0; drive.len()];
     network.simulator().run(&u, &drive.steps, &mut y);
@@ -112,26 +102,6 @@ fn the_jacobian_is_that_of_the_whole_simulation() {
         }
     }
     assert!(columns > 300 && vivid > 9 * columns / 10, "{vivid} of {columns}");
-}
-
-/// Derivatives are exactly 0 once a stop is dead, and right until then.
-#[test]
-fn a_dead_stop_has_no_slope() {
-    let sizes = Sizes { stops: 2, hidden: 0, relaxation: 0 };
-    let a = Architecture::new(Family::Gpnn, sizes, 1, false, false).unwrap();
-    // The first lives 3 thresholds of slip, the second long.
-    let network = Network::new(a, vec![3.0, 2.0, 3f64.ln(), 500f64.ln()], vec![0.1, 1.0, 1.0]).unwrap();
-    let x: Vec<f64> = (0..200).map(|k| (0.17 * k as f64).sin()).collect();
-    let drive = Drive { channels: vec![x], steps: Vec::new() };
-    let linearised = network.linearise(&drive);
-    for k in 0..4 {
-        let expected = quotient(&network, &drive, k, 1e-7, 1e-7);
-        assert!(distance(&linearised.jacobian[k], &expected) < 1e-6 * norm(&expected));
-        let late = |column: &[f64]| column[60..].iter().all(|&slope| slope == 0.0);
-        let first_stop = k % 2 == 0;
-        assert_eq!(late(&linearised.jacobian[k]), first_stop, "parameter {k}");
-        assert!(norm(&linearised.jacobian[k][..40]) > 1e-3);
-    }
 }
 
 /// Inputs for which a stop behind the weight 1 (of the first channel) exactly touches its threshold.
@@ -323,39 +293,5 @@ fn value_and_gradient_are_sums_over_the_scored_rows() {
             let ridge = if i == 0 { 0.0 } else { 1e-3 };
             assert!((dot(feature, &residual) / n + ridge * weights[i]).abs() < 1e-9);
         }
-    }
-}
-
-/// theory.md section 3: the projected form of the gradient needs `Qᵀr = 0`, and so no ridge.
-#[test]
-fn the_projected_form_is_not_the_gradient_with_a_ridge() {
-    for (ridge, alike) in [(0.0, true), (1e-1, false)] {
-        let case = case(Family::PreisachNn, ridge, 0.0);
-        let objective = case.objective();
-        let value = objective.value(&case.parameters);
-        let (features, jacobian, residual) = case.dense(value.output_weights());
-        // Q by Gram and Schmidt, twice, which is enough for an orthonormal one.
-        let mut q: Vec<Vec<f64>> = Vec::new();
-        for mut column in features {
-            for _ in 0..2 {
-                for unit in &q {
-                    let share = dot(unit, &column);
-                    column.iter_mut().zip(unit).for_each(|(c, u)| *c -= share * u);
-                }
-            }
-            let length = norm(&column);
-            q.push(column.iter().map(|c| c / length).collect());
-        }
-        let n = residual.len() as f64;
-        let projected: Vec<f64> = jacobian
-            .iter()
-            .map(|j| (dot(j, &residual) - q.iter().map(|q| dot(q, j) * dot(q, &residual)).sum::<f64>()) / n)
-            .collect();
-        let expected = case.expected_gradient();
-        let error = distance(&projected, &expected) / norm(&expected);
-        let right = distance(&objective.gradient(&case.parameters, &value), &expected) / norm(&expected);
-        assert!(right < 1e-5, "ridge {ridge}: {right}");
-        assert_eq!(error < 1e-5, alike, "ridge {ridge}: {error}");
-        assert!(alike || error > 0.05, "ridge {ridge}: {error}");
     }
 }

@@ -1,21 +1,10 @@
 //! Hysteretic oscillators and state space models on data whose law is known, and the promises of every fit.
 
-use std::ops::ControlFlow;
-
+use crate::scaffold::*;
 use hysid::Fit;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::error::Error;
-use hysid::fit::law::Identify;
-use hysid::fit::law::search::{Identified, SearchProgress};
 use hysid::law::hysteretic_oscillator::HystereticOscillator;
 use hysid::law::hysteretic_state_space::HystereticStateSpace;
-use hysid::law::series::{Series, run};
-use hysid::law::{Law, Sample};
-use hysid::operator::{DeterioratingStop, Operator};
-use hysid::options::ModelName;
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::specimens::{BoucWenOscillator, DuffingOscillator, PiezoStage};
-use hysid::stop_check::StopCheck;
 
 /// Rows a second, and steps of the integration in a row.
 const RATE: f64 = 750.0;
@@ -24,10 +13,6 @@ const STEPS: usize = 8;
 /// A number between 0 and 1 that `k` decides: the fractional parts of multiples of the golden ratio.
 fn number(k: u64) -> f64 {
     (k as f64 * 0.618_033_988_749_895).fract()
-}
-
-fn go_on(_: SearchProgress) -> ControlFlow<()> {
-    ControlFlow::Continue(())
 }
 
 /// A force of tones with random phases, in N, at time `t` in s.
@@ -103,21 +88,12 @@ fn data(records: Vec<Record>) -> Dataset {
 }
 
 fn options(model: ClassicalModel) -> ClassicalOptions {
-    ClassicalOptions { starts: Some(2), epochs: Some(100), hidden: Some(6), ..ClassicalOptions::of(model) }
+    ClassicalOptions { starts: Some(2), epochs: Some(100), hidden: Some(6), ..of(model) }
 }
 
 /// Error of a law on data, as a share of the standard deviation of their output.
 fn error<L: Law>(law: &L, data: &Dataset) -> f64 {
-    let series = Series::all(data, None).unwrap();
-    let (mut square, mut of_output) = (0.0, 0.0);
-    for Series { samples, output } in &series {
-        let mean = output.iter().sum::<f64>() / output.len() as f64;
-        for (y, measured) in run(law, samples).iter().zip(output) {
-            square += (y - measured) * (y - measured);
-            of_output += (measured - mean) * (measured - mean);
-        }
-    }
-    f64::sqrt(square / of_output)
+    error_of(law, data, None) / 100.0
 }
 
 #[test]
@@ -213,54 +189,6 @@ fn hysteresis_at_the_input_is_identified_with_a_mode_too_many() {
     let found = HystereticStateSpace::fit(&seen, &asked, &mut go_on).unwrap();
     let unseen = error(&found.law, &unseen);
     assert!(unseen < 0.02, "{unseen}");
-}
-
-/// Random samples at three times the trained amplitude.
-#[test]
-fn outputs_stay_finite_far_beyond_the_training() {
-    let seen = data(vec![record(5, 800, false)]);
-    let quick = ClassicalOptions { epochs: Some(8), ..options(ClassicalModel::HystereticStateSpace) };
-    let law = HystereticStateSpace::fit(&seen, &quick, &mut go_on).unwrap().law;
-    let (low, high) = seen.input_range(0);
-    let largest = 3.0 * high.max(-low);
-    let mut motion = law.virgin();
-    for k in 0..20_000u64 {
-        let share = 2.0 * number(k * k) - 1.0;
-        let y = law.step(&mut motion, Sample { x: largest * share, rate: 0.0, step: 1.0 / RATE });
-        assert!(y.is_finite());
-    }
-}
-
-#[test]
-fn the_same_seed_gives_the_same_law_for_any_number_of_threads() {
-    let seen = data(vec![record(6, 500, false)]);
-    let quick = ClassicalOptions {
-        starts: Some(3),
-        epochs: Some(6),
-        hidden: Some(3),
-        ..ClassicalOptions::of(ClassicalModel::HystereticOscillator)
-    };
-    let with = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| HystereticOscillator::fit(&seen, &quick, &mut go_on).unwrap().law)
-    };
-    assert_eq!(with(1), with(3));
-}
-
-#[test]
-fn a_search_can_be_stopped_and_keeps_its_best() {
-    let seen = data(vec![record(7, 500, false)]);
-    let quick = ClassicalOptions { hidden: Some(3), ..options(ClassicalModel::HystereticOscillator) };
-    let mut laws = 0;
-    let mut stop_soon = |progress: SearchProgress| {
-        laws += usize::from(progress.law_so_far().is_some());
-        if progress.round == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    };
-    let Identified { law, .. } = HystereticOscillator::fit(&seen, &quick, &mut stop_soon).unwrap();
-    assert_eq!(laws, 3);
-    assert!(error(&law, &seen) < 1.0);
-    let never_begun = HystereticOscillator::identify(&seen, &quick, &mut go_on, StopCheck::new(&|| true));
-    assert!(matches!(never_begun, Err(Error::Stopped)));
 }
 
 #[test]

@@ -1,34 +1,12 @@
 //! Initial states: lead-ins drive the memory as rows before the record do, unknown ones are found, and data that
 //! begin in the virgin state are not touched.
 
-use std::ops::ControlFlow;
-
-use hysid::data::initial_state::InitialState;
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Excitation, Record};
-use hysid::fit::network::objective::Objective;
-use hysid::fit::{cross_validate, identify};
+use crate::scaffold::*;
 use hysid::law::preisach::{Preisach, PreisachWeights};
-use hysid::law::series::{run, samples_of};
-use hysid::model::Model;
-use hysid::network::scaling::Scaling;
-use hysid::network::{Architecture, Family, Network, Sizes};
-use hysid::options::auto::AutoOptions;
-use hysid::options::chosen::NamedOptions;
-use hysid::options::classical::ClassicalModel;
-use hysid::options::network::FitOptions;
-use hysid::options::{FitSpec, ModelName};
-
-use crate::small_models::{record, small};
-use rand::{RngExt, SeedableRng};
+use hysid::law::series::run;
 
 fn fitted(data: &Dataset, request: &FitSpec) -> Model {
     identify(data, request, &mut |_| ControlFlow::Continue(())).unwrap().model
-}
-
-fn request(options: serde_json::Value) -> FitSpec {
-    let serde_json::Value::Object(options) = options else { panic!("a map") };
-    NamedOptions::of(options).unwrap().request(None, false)
 }
 
 fn untimed(records: Vec<Record>) -> Dataset {
@@ -42,10 +20,6 @@ fn without_time(record: &Record) -> Record {
         record.output().to_vec(),
     )
     .unwrap()
-}
-
-fn bits(values: &[f64]) -> Vec<u64> {
-    values.iter().map(|value| value.to_bits()).collect()
 }
 
 /// Small oscillations about 0 that grow and shrink.
@@ -146,26 +120,7 @@ fn a_lead_in_drives_the_memory_as_rows_before_the_record_do() {
 
 /// Rows of a record, in blocks that go round in a circle.
 fn in_blocks(model: &Model, record: &Record, lengths: &[usize]) -> Vec<f64> {
-    let (mut simulation, mut output, mut first) = (model.simulation(), Vec::new(), 0);
-    simulation.begin(record.name());
-    for &length in lengths.iter().cycle() {
-        let rows = first..record.len().min(first + length);
-        let inputs = record.inputs().iter().map(|input| &input[rows.clone()]).collect();
-        let mut block = Excitation::new(record.name(), inputs).unwrap();
-        if let Some(time) = record.time() {
-            block = block.with_time(&time[rows.clone()]).unwrap();
-        }
-        if let Some(lead_in) = record.lead_in().filter(|_| first == 0) {
-            block = block.with_lead_in(lead_in).unwrap();
-        }
-        output.extend(simulation.take(&block).unwrap().output);
-        first = rows.end;
-        if first == record.len() {
-            break;
-        }
-    }
-    output.extend(simulation.finish().unwrap().output);
-    output
+    crate::simulation::in_blocks(&mut model.simulation(), record, lengths).output
 }
 
 #[test]
@@ -252,7 +207,7 @@ fn gradients_are_right_behind_a_lead_in() {
     let options = FitOptions { model: Family::XpnnPlus, sizes, rate, ..FitOptions::default() };
     let (scaling, architecture) = (Scaling::of(&data, rate).unwrap(), options.architecture(&data).unwrap());
     let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
-    let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(7);
+    let mut generator = Generator::seed_from_u64(7);
     let mut point: Vec<f64> =
         (0..objective.layout().len()).map(|_| generator.random::<f64>() - 0.5).collect();
     objective.layout().ln_beta.clone().for_each(|index| point[index] += 6.0);

@@ -1,20 +1,14 @@
 //! Confidence intervals of the parameters of laws: how often they contain the parameters that made the data.
 
-use std::ops::ControlFlow;
-
+use crate::scaffold::*;
 use hysid::Dataset;
-use hysid::fit::identify;
 use hysid::fit::intervals::{IntervalStatus, ParameterIntervals};
+use hysid::law::Parameter;
 use hysid::law::bouc_wen::BoucWen;
 use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid::law::menegotto_pinto::MenegottoPinto;
 use hysid::law::prandtl_ishlinskii::PrandtlIshlinskii;
-use hysid::law::series::{run, samples_of};
-use hysid::law::{Law, Parameter};
-use hysid::options::FitSpec;
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
+use hysid::law::series::run;
 
 const ROWS: usize = 1500;
 
@@ -35,7 +29,7 @@ fn input() -> Vec<f64> {
 
 /// Noise of deviation 1 whose rows are correlated by `a`.
 fn noise(seed: u64, a: f64) -> Vec<f64> {
-    let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut generator = Generator::seed_from_u64(seed);
     let mut normal = || {
         let (u, v): (f64, f64) = (generator.random::<f64>().max(1e-300), generator.random());
         (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
@@ -115,7 +109,7 @@ fn check<L: Law>(name: &str, case: &Case<L>, least: [f64; 2]) {
 }
 
 fn searched(model: ClassicalModel, near: &[f64]) -> ClassicalOptions {
-    ClassicalOptions { near: near.to_vec(), ..ClassicalOptions::of(model) }
+    ClassicalOptions { near: near.to_vec(), ..of(model) }
 }
 
 fn bouc_wen() -> Case<BoucWen> {
@@ -167,10 +161,7 @@ fn menegotto_pinto() -> Case<MenegottoPinto> {
 fn prandtl_ishlinskii() -> Case<PrandtlIshlinskii> {
     let thresholds = vec![0.1, 0.25, 0.45];
     let law = PrandtlIshlinskii::new(0.2, 1.0, thresholds.clone(), vec![0.8, 0.5, 0.4]).unwrap();
-    let options = ClassicalOptions {
-        thresholds: Some(thresholds),
-        ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii)
-    };
+    let options = ClassicalOptions { thresholds: Some(thresholds), ..of(ClassicalModel::PrandtlIshlinskii) };
     Case { law, options, share: 0.05 }
 }
 
@@ -259,18 +250,9 @@ fn every_law_is_linearised_about_its_own_fit() {
         run(&bouc_wen().law, &samples_of(&x)).iter().zip(noise(4, 0.0)).map(|(y, e)| y + 0.05 * e).collect();
     let record = hysid::Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
     let data = Dataset::new(hysid::ColumnNames::plain(1), vec![record]).unwrap();
-    for name in [
-        "masing",
-        "prandtl-ishlinskii",
-        "modified-prandtl-ishlinskii",
-        "generalized-prandtl-ishlinskii",
-        "rate-dependent-prandtl-ishlinskii",
-        "bouc-wen",
-        "peak-oriented",
-        "menegotto-pinto",
-        "jiles-atherton",
-        "lugre",
-    ] {
+    let names = "masing prandtl-ishlinskii modified-prandtl-ishlinskii generalized-prandtl-ishlinskii \
+                 rate-dependent-prandtl-ishlinskii bouc-wen peak-oriented menegotto-pinto jiles-atherton lugre";
+    for name in names.split(' ') {
         let model = hysid::Fit::new().model(name).option("starts", 2).option("epochs", 5).run(&data).unwrap();
         let found = ParameterIntervals::of(&model, &data).unwrap().expect(name);
         assert_eq!(found.parameters.len(), model.law().unwrap().parameters().len(), "{name}");

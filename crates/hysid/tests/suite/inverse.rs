@@ -96,12 +96,16 @@ fn the_drive_itself_is_found_where_the_model_increases_strictly() {
     for name in ["prandtl-ishlinskii", "modified-prandtl-ishlinskii", "menegotto-pinto"] {
         let model = model(name);
         let (low, high) = model.trained_ranges().inputs[0];
-        let (mut stepper, mut inverse) = (model.stepper(), model.inverse());
+        let (mut stepper, mut inverse, mut trials) = (model.stepper(), model.inverse(), 0);
         for (x, others, time) in drive(model, 2000) {
             let wanted = stepper.step(&[x], time, None).unwrap();
-            let found = inverse.step(wanted, &others, time).unwrap().input;
+            let found = inverse.step(wanted, &others, time).unwrap();
+            trials += found.trials;
+            let found = found.input;
             assert!((found - x).abs() <= 1e-8 * (high - low), "{name} at {time}: {found}, not {x}");
         }
+        // Where the closed inverse is exact, one trial confirms it; two more find the first slope.
+        assert!(name == "menegotto-pinto" || trials == 2000 + 2, "{name}: {trials}");
     }
 }
 
@@ -174,24 +178,6 @@ fn invalid_samples_leave_the_inverse_as_it_was() {
     let error = model.inverse().slew(1.0).unwrap().step(wanted(0), &[], f64::NAN).unwrap_err();
     let expected = "the time of the sample is missing or not finite, and the model, its slew limit or its preview needs it";
     assert_eq!(error.to_string(), expected);
-}
-
-/// Where the closed inverse is exact, one trial confirms it.
-#[test]
-fn laws_with_a_closed_inverse_need_one_trial() {
-    for name in ["prandtl-ishlinskii", "modified-prandtl-ishlinskii"] {
-        let model = model(name);
-        let (mut stepper, mut inverse) = (model.stepper(), model.inverse());
-        let mut trials = 0;
-        for (x, others, time) in drive(model, 2000) {
-            let wanted = stepper.step(&[x], time, None).unwrap();
-            let found = inverse.step(wanted, &others, time).unwrap();
-            assert_eq!(found.reach, Reach::Reached);
-            trials += found.trials;
-        }
-        // Two more find the first slope.
-        assert_eq!(trials, 2000 + 2, "{name}");
-    }
 }
 
 /// A law that wears needs another input for the same output later.
@@ -333,14 +319,8 @@ fn records_are_refused_with_the_row() {
 }
 
 /// Laws whose fits to these data are monotone.
-const MONOTONE: [&str; 6] = [
-    "prandtl-ishlinskii",
-    "modified-prandtl-ishlinskii",
-    "generalized-prandtl-ishlinskii",
-    "masing",
-    "preisach",
-    "jiles-atherton",
-];
+const MONOTONE: &str = "prandtl-ishlinskii modified-prandtl-ishlinskii generalized-prandtl-ishlinskii masing \
+    preisach jiles-atherton";
 
 /// The diagnosis drives a model to other pasts than the round trip: where the first finds a model monotone, the second
 /// must find the inputs.
@@ -361,7 +341,7 @@ fn models_judged_invertible_are_inverted() {
         let missed = count(Reach::NotMonotone) + count(Reach::Jump);
         assert!(verdict != Verdict::Yes || missed <= ROWS / 1000, "{name}: {counts:?}");
         assert!(missed == 0 || verdict == Verdict::No, "{name}: {counts:?}");
-        if MONOTONE.contains(&name.split(' ').next().unwrap()) {
+        if MONOTONE.split(' ').any(|monotone| name.split(' ').next() == Some(monotone)) {
             assert_eq!(verdict, Verdict::Yes, "{name}");
         }
     }

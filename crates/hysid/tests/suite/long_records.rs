@@ -1,14 +1,6 @@
 //! Searches look at some of many rows. Whatever the rows of a cycle, what they find there holds for all rows.
 
-use std::ops::ControlFlow;
-
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::identify;
-use hysid::model::Model;
-use hysid::operator::{Operator, Stop};
-use hysid::options::FitSpec;
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
+use crate::scaffold::*;
 
 /// Growing cycles of so many rows each, of three plays in parallel.
 fn cycles(rows: usize, period: usize) -> Dataset {
@@ -32,7 +24,7 @@ fn fitted(data: &Dataset, model: ClassicalModel) -> Model {
         operators: Some(6),
         hidden: (model == ClassicalModel::NeuroMadelung).then_some(3),
         rate: model.needs_rate().then_some(RateMethod::Central),
-        ..ClassicalOptions::of(model)
+        ..of(model)
     };
     identify(data, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(())).unwrap().model
 }

@@ -25,6 +25,7 @@ mod plan;
 mod progress;
 mod restoring_force;
 mod rivals;
+mod scaffold;
 mod simulation;
 mod small_models;
 mod space_dilatation;

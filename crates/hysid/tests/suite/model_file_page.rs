@@ -1,19 +1,12 @@
 //! `docs/model-file.md` is complete and true: its tables have every field that model files have, and no other, and its
 //! examples are model files that compute what the page says.
 
+use crate::scaffold::*;
 use crate::small_models;
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::ControlFlow;
 use std::path::Path;
 
-use hysid::data::initial_state::InitialState;
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::identify;
-use hysid::model::Model;
-use hysid::network::Family;
 use hysid::options::input_options::InputOptions;
-use hysid::options::{FitSpec, ModelName};
 use serde_json::{Value, json};
 
 /// The fields of each object, by the path of the object from the root.

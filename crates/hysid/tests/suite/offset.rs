@@ -1,16 +1,7 @@
 //! Where the input is measured from does not matter: the same data at 198 to 202 mm in place of -2 to 2 give
 //! the same model.
 
-use std::ops::ControlFlow;
-
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::identify;
-use hysid::model::Model;
-use hysid::options::ModelName;
-use hysid::options::classical::ClassicalModel;
-
-use crate::small_models::{record, small};
+use crate::scaffold::*;
 
 fn shifted(by: f64) -> Dataset {
     let records = [record(180, "a"), record(140, "b")].map(|record| {

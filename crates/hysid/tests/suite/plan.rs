@@ -1,12 +1,11 @@
 //! Plans of experiments: limits of the machine, what single amplitudes and single speeds leave out, and a lower error than
 //! by repeating a test.
 
-use hysid::data::record::{ColumnNames, Dataset, Record};
+use crate::scaffold::*;
 use hysid::diagnosis::Verdict;
-use hysid::operator::{Operator, Stop};
 use hysid::plan::{Kind, Leg, Limits, Path, Plan, PlanOptions, Wanted, Wave};
 use hysid::property::Property;
-use hysid::specimens::{Ferromagnet, with_noise};
+use hysid::specimens::Ferromagnet;
 use hysid::{Fit, diagnose};
 use proptest::prelude::*;
 

@@ -1,29 +1,16 @@
 //! What an observer of a fit can see: the best model so far, and the candidates of `auto`.
 
+use crate::scaffold::*;
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 
-use hysid::data::record::{ColumnNames, Dataset};
 use hysid::fit::auto::Standing;
-use hysid::fit::identify;
-use hysid::fit::network::{Fitted, Progress};
-use hysid::model::Model;
 use hysid::model::history::Phase;
-use hysid::options::chosen::NamedOptions;
-use hysid::options::{FitSpec, ModelName};
-use hysid::termination::Termination;
 use serde_json::json;
 
 use crate::noisy_record::noisy;
-use crate::small_models::small;
 
 fn data() -> Dataset {
     Dataset::new(ColumnNames::plain(1), vec![noisy(150, "a"), noisy(110, "b"), noisy(130, "c")]).unwrap()
-}
-
-fn request(options: serde_json::Value) -> FitSpec {
-    let serde_json::Value::Object(options) = options else { panic!("a map") };
-    NamedOptions::of(options).unwrap().request(None, false)
 }
 
 /// A fit with the models that an observer sees on the way.
@@ -100,6 +87,23 @@ fn the_last_law_so_far_is_the_one_that_is_found() {
 }
 
 #[test]
+fn a_search_that_is_stopped_gives_the_law_that_was_shown() {
+    let data = data();
+    for model in ["bouc-wen", "duhem-nn", "neuro-madelung", "hysteretic-oscillator"] {
+        let (mut rounds, mut shown) = (0, None);
+        let fitted =
+            identify(&data, &request(json!({"model": model, "starts": 2, "epochs": 12})), &mut |seen| {
+                let Some(law) = seen.model_so_far() else { return ControlFlow::Continue(()) };
+                (rounds, shown) = (rounds + 1, Some(law));
+                if rounds == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+        let found = fitted.unwrap().model;
+        assert_eq!((rounds, found.provenance().termination), (3, Termination::Stopped), "{model}");
+        assert_eq!(simulated(&shown.unwrap(), &data), simulated(&found, &data), "{model}");
+    }
+}
+
+#[test]
 fn a_law_without_a_search_has_no_model_on_its_way() {
     let (_, models) = seen(&data(), &request(json!({"model": "prandtl-ishlinskii"})), |_| true);
     assert!(models.is_empty());
@@ -158,18 +162,6 @@ fn the_candidates_that_are_told_are_those_of_the_selection() {
     let complete = told.values().filter(|told| told.standing == Standing::Complete).count();
     assert_eq!(complete, selection.candidates.len());
     assert!(told.values().all(|told| told.standing != Standing::Trying));
-}
-
-#[test]
-fn a_stop_when_a_candidate_is_told_leaves_a_model() {
-    let data = data();
-    for most in [1, 4, 12] {
-        let (model, told) = told(&data, &small(ModelName::AUTO, None), most);
-        assert!(!told.is_empty() && told.len() <= most);
-        assert_eq!(model.provenance().termination, Termination::Stopped);
-        assert!(simulated(&model, &data).iter().flatten().all(|y| y.is_finite()));
-        assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
-    }
 }
 
 #[test]

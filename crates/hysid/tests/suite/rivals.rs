@@ -1,24 +1,11 @@
 //! What every model promises, whatever it is: it is found by its name, its file holds it to the last bit,
 //! stepping and simulating agree, its parameters are named, a wild input leaves it finite.
 
-use std::ops::ControlFlow;
-
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::error::Error;
-use hysid::fit::identify;
-use hysid::fit::law::Identify;
-use hysid::fit::network::Fitted;
+use crate::scaffold::*;
+use hysid::law::Dimension;
 use hysid::law::lugre::Lugre;
 use hysid::law::series::samples;
-use hysid::law::{Classical, Dimension};
-use hysid::model::{Model, Predictor};
-use hysid::network::Family;
-use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::options::{FitSpec, ModelName};
-use hysid::termination::Termination;
-
-use crate::small_models::{record, small};
+use hysid::model::Predictor;
 
 fn data() -> Dataset {
     let names = ColumnNames {
@@ -52,7 +39,7 @@ fn names_are_found_and_are_different() {
 }
 
 #[test]
-fn every_model_comes_back_from_its_file_and_steps_as_it_simulates() {
+fn every_model_comes_back_from_its_file() {
     for name in ModelName::all() {
         let fitted = quietly(&small(name, Some(RateMethod::Central)));
         let model = &fitted.model;
@@ -61,22 +48,23 @@ fn every_model_comes_back_from_its_file_and_steps_as_it_simulates() {
         let again = Model::from_json(&text).unwrap_or_else(|error| panic!("{name:?}: {error}"));
         assert_eq!((&again, again.to_json()), (model, text));
         let data = data();
-        let record = &data.records()[1];
-        let whole = again.simulate(record).unwrap();
-        let rates = RateMethod::Central.rate(record).unwrap();
-        let mut stepper = again.stepper();
-        for _ in 0..2 {
-            for (row, y) in whole.iter().enumerate() {
-                let (x, time) = (record.inputs()[0][row], record.time().unwrap()[row]);
-                let stepped = stepper.step(&[x], time, Some(rates[row])).unwrap();
-                assert_eq!(stepped.to_bits(), y.to_bits(), "{name:?}, row {row}: {stepped}, not {y}");
-            }
-            stepper.reset();
-        }
         // Better than the mean, or it has learnt nothing.
         let error = model.evaluate(&data).unwrap().nrmse_std_percent.unwrap();
         assert!(error < 60.0, "{name:?}: {error} %");
         assert_eq!(error, model.provenance().train.nrmse_std_percent.unwrap());
+    }
+}
+
+#[test]
+fn the_number_of_threads_does_not_matter() {
+    for name in ModelName::all().chain([ModelName::AUTO]) {
+        let request = small(name, Some(RateMethod::Central).filter(|_| name.uses_rate()));
+        let of = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let fitted = pool.install(|| quietly(&request));
+            (fitted.model.to_json(), fitted.evaluations)
+        };
+        assert_eq!(of(1), of(3), "{name:?}");
     }
 }
 
@@ -200,7 +188,7 @@ fn what_a_model_cannot_be_fitted_to_is_said() {
         (ClassicalModel::PrandtlIshlinskii, 0),
         (ClassicalModel::GeneralizedPrandtlIshlinskii, 0),
     ] {
-        let options = ClassicalOptions { operators: Some(operators), ..ClassicalOptions::of(model) };
+        let options = ClassicalOptions { operators: Some(operators), ..of(model) };
         let error = refused(&FitSpec::Classical(options));
         assert!(matches!(&error, Error::Option(error) if error.option == "operators"), "{error}");
     }
@@ -223,11 +211,8 @@ fn the_friction_of_a_joint_is_found_again() {
     let blank = Record::new("joint", vec![x], vec![0.0; 2000]).unwrap().with_time(time).unwrap();
     let output = Classical::from(law).run(&samples(&blank.excitation(), Some(RateMethod::Central)).unwrap());
     let data = Dataset::new(ColumnNames::plain(1), vec![blank.with_output(output).unwrap()]).unwrap();
-    let options = ClassicalOptions {
-        starts: Some(4),
-        rate: Some(RateMethod::Central),
-        ..ClassicalOptions::of(ClassicalModel::Lugre)
-    };
+    let options =
+        ClassicalOptions { starts: Some(4), rate: Some(RateMethod::Central), ..of(ClassicalModel::Lugre) };
     let found = Lugre::fit(&data, &options, &mut |_| ControlFlow::Continue(())).unwrap();
     let close = |found: f64, true_value: f64| (found - true_value).abs() < 1e-3 * true_value;
     assert!(found.train_nrmse_percent < 1e-3, "{found:?}");

@@ -1,20 +1,9 @@
 //! Free runs in blocks: however a record is cut, the outputs are those of the whole to the last bit.
 
-use std::ops::ControlFlow;
-
-use hysid::data::metrics::ErrorSums;
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Excitation, Record};
-use hysid::error::{DataProblem, Error};
-use hysid::fit::identify;
-use hysid::model::{Model, Prediction, Simulation};
-use hysid::network::Family;
-use hysid::options::chosen::NamedOptions;
-use hysid::options::classical::ClassicalModel;
-use hysid::options::{FitSpec, ModelName};
+use crate::scaffold::*;
+use hysid::model::{Prediction, Simulation};
 
 use crate::noisy_record::noisy;
-use crate::small_models::{record, small};
 
 const METHODS: [RateMethod; 4] =
     [RateMethod::Given, RateMethod::Central, RateMethod::Backward, RateMethod::SavitzkyGolay];
@@ -49,6 +38,9 @@ fn rows<'r>(record: &'r Record, range: std::ops::Range<usize>) -> Excitation<'r>
     if let Some(time) = record.time() {
         rows = rows.with_time(&time[range.clone()]).unwrap();
     }
+    if let Some(lead_in) = record.lead_in().filter(|_| range.start == 0) {
+        rows = rows.with_lead_in(lead_in).unwrap();
+    }
     match record.given_rate() {
         Some(rate) => rows.with_given_rate(&rate[range]).unwrap(),
         None => rows,
@@ -56,7 +48,7 @@ fn rows<'r>(record: &'r Record, range: std::ops::Range<usize>) -> Excitation<'r>
 }
 
 /// A simulation cut into blocks whose lengths go round in a circle.
-fn in_blocks(simulation: &mut Simulation<'_>, record: &Record, lengths: &[usize]) -> Prediction {
+pub fn in_blocks(simulation: &mut Simulation<'_>, record: &Record, lengths: &[usize]) -> Prediction {
     let mut all = Prediction { output: Vec::new(), low: Vec::new(), high: Vec::new() };
     let mut add = |some: Prediction| {
         all.output.extend(some.output);
@@ -72,10 +64,6 @@ fn in_blocks(simulation: &mut Simulation<'_>, record: &Record, lengths: &[usize]
     }
     add(simulation.finish().unwrap());
     all
-}
-
-fn bits(values: &[f64]) -> Vec<u64> {
-    values.iter().map(|value| value.to_bits()).collect()
 }
 
 /// Whole, cut in many ways, and several records one after another.

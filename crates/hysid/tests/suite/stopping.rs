@@ -1,17 +1,10 @@
 //! A stop is heard in the midst of all long work, and harms nothing.
 
-use std::ops::ControlFlow;
+use crate::scaffold::*;
 use std::time::{Duration, Instant};
 
 use hysid::Error;
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::identify;
-use hysid::fit::network::{Checkpoint, Progress, fit, resume};
-use hysid::options::chosen::NamedOptions;
-use hysid::options::network::FitOptions;
-use hysid::options::{FitSpec, ModelName};
-use hysid::termination::Termination;
+use hysid::fit::network::{Checkpoint, fit, resume};
 use serde_json::json;
 
 /// After so long a fit is asked to stop.

@@ -1,9 +1,8 @@
 //! Laws of members and of steel are found again from their own data, and predict other paths.
 
-use hysid::law::Classical;
+use crate::scaffold::*;
 use hysid::law::menegotto_pinto::{Downwards, MenegottoPinto};
 use hysid::law::peak_oriented::{Degradation, PeakOriented, Side};
-use hysid::law::series::samples_of;
 use hysid::{Dataset, Fit, Model};
 use serde_json::json;
 

@@ -1,22 +1,9 @@
 //! Fits of synthetic data that the library's own operators generate, and what every fit promises.
 
-use std::ops::ControlFlow;
-
-use hysid::data::rate::RateMethod;
-use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::error::{DataProblem, Error};
-use hysid::fit::cross_validate;
-use hysid::fit::network::{Fitted, Progress, fit};
+use crate::scaffold::*;
+use hysid::fit::network::fit;
 use hysid::model::history::{Phase, Run};
-use hysid::network::{Architecture, Family, Layout, Network, Sizes};
-use hysid::operator::{DeterioratingStop, Operator, Stop};
-use hysid::options::FitSpec;
-use hysid::options::network::FitOptions;
 use hysid::options::network::Regularisation;
-use hysid::specimens::with_noise;
-use hysid::termination::Termination;
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 
 /// A path between random turning points, in unequal steps.
 fn path(rows: usize, amplitude: f64, seed: u64) -> Vec<f64> {
@@ -130,23 +117,12 @@ fn two_speeds() -> Dataset {
 }
 
 #[test]
-fn the_rate_tells_two_speeds_apart_on_any_number_of_threads() {
+fn the_rate_tells_two_speeds_apart() {
     let data = two_speeds();
     let with = FitOptions { rate: Some(RateMethod::Backward), ..small(Family::Xpnn, 4, 3) };
-    let on = |threads: usize, options: &FitOptions| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| quietly(&data, options))
-    };
-    let (one, two) = (on(1, &with), on(2, &with));
-    assert_eq!(bits(&one), bits(&two));
-    assert_eq!(one.model, two.model);
-    assert_eq!(one.evaluations, two.evaluations);
-    let without = quietly(&data, &FitOptions { rate: None, ..with.clone() });
-    assert!(nrmse(&one, &data) < 5.0, "{} %", nrmse(&one, &data));
-    assert!(nrmse(&without, &data) > 20.0, "{} %", nrmse(&without, &data));
-
-    let other = on(2, &FitOptions { seed: 2, ..with });
-    assert_ne!(bits(&one), bits(&other));
+    let error = |options: &FitOptions| nrmse(&quietly(&data, options), &data);
+    let (without, with) = (error(&FitOptions { rate: None, ..with.clone() }), error(&with));
+    assert!(with < 5.0 && without > 20.0, "{with} %, {without} %");
 }
 
 // ---------------------------------------------------------------------------------------- observer
@@ -208,26 +184,16 @@ fn stopped_after(calls: usize, data: &Dataset, options: &FitOptions) -> (Fitted,
 }
 
 #[test]
-fn a_fit_that_is_stopped_in_its_first_start_or_its_last_phase_is_usable() {
+fn a_fit_that_is_stopped_is_usable() {
     let data = bank_data(150);
-    let options = FitOptions { starts: 2, epochs: 4, ..small(Family::PreisachNn, 3, 2) };
-    for calls in [1, 3, 9, 12] {
+    let options = FitOptions { starts: 3, epochs: 4, ..small(Family::PreisachNn, 3, 2) };
+    for calls in [1, 3, 6, 9, 18] {
         let (fitted, seen) = stopped_after(calls, &data, &options);
         assert_eq!(seen, calls, "the observer was called again after it said stop");
         assert_eq!(fitted.model.provenance().termination, Termination::Stopped);
         assert!(nrmse(&fitted, &data) < 120.0);
         let file = fitted.model.to_json();
         assert_eq!(hysid::model::Model::from_json(&file).unwrap(), fitted.model);
-    }
-}
-
-#[test]
-fn a_fit_that_is_stopped_in_a_later_start_says_so() {
-    let data = bank_data(150);
-    let options = FitOptions { starts: 3, epochs: 4, ..small(Family::PreisachNn, 3, 2) };
-    for calls in [5, 6, 8, 9, 17, 18] {
-        let (fitted, _) = stopped_after(calls, &data, &options);
-        assert_eq!(fitted.model.provenance().termination, Termination::Stopped, "after {calls} calls");
     }
 }
 
@@ -409,33 +375,4 @@ fn any_number_of_epochs_is_a_number_or_an_error() {
         calls += 1;
         if calls == 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-}
-
-#[test]
-fn data_that_tell_nothing_are_refused() {
-    let problem = |x: Vec<f64>, y: Vec<f64>| {
-        let data = dataset(vec![Record::new("r", vec![x], y).unwrap()]);
-        let options = FitOptions { starts: 1, epochs: 1, ..small(Family::Pnn, 2, 0) };
-        match fit(&data, &options, &mut |_| ControlFlow::Continue(())) {
-            Err(Error::Data(defect)) => Some(defect.problem),
-            Err(other) => panic!("{other}"),
-            Ok(_) => None,
-        }
-    };
-    let x = path(50, 1.0, 1);
-    let constant = vec![2.0; 50];
-    assert_eq!(problem(x.clone(), x.clone()), None);
-    assert_eq!(problem(constant.clone(), x.clone()), Some(DataProblem::ConstantInput(2.0)));
-    assert_eq!(problem(x.clone(), constant), Some(DataProblem::ConstantOutput(2.0)));
-    assert_eq!(problem(x.clone(), vec![f64::NAN; 50]), Some(DataProblem::NothingToScore));
-    let few: Vec<f64> = (0..50).map(|k| if k < 9 { x[k] } else { f64::NAN }).collect();
-    assert_eq!(problem(x, few), Some(DataProblem::TooFewRows { found: 9, needed: 10 }));
-}
-
-#[test]
-fn every_start_begins_within_the_bounds_of_the_search() {
-    let fitted = quietly(&bank_data(100), &FitOptions { epochs: 0, ..small(Family::XpnnPlus, 4, 2) });
-    let network = fitted.model.network().unwrap();
-    Layout::new(*network.architecture()).check(network.parameters()).unwrap();
-    assert!(fitted.model.provenance().runs.iter().all(|run| run.history.len() == 1));
 }

@@ -1,4 +1,5 @@
 //! A folder to run the program in, and measured data to put there.
+use std::fmt::{self, Display, Formatter};
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -24,6 +25,12 @@ impl Ran {
     /// The last line of stderr.
     pub fn last_line(&self) -> &str {
         self.stderr.lines().last().unwrap_or_default()
+    }
+}
+
+impl Display for Ran {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.stdout, self.stderr)
     }
 }
 
@@ -96,6 +103,24 @@ impl Workbench {
         self.command(arguments).output().unwrap().into()
     }
 
+    /// Runs the lines of a table of [`cases`], and compares exit status and last line of stderr.
+    pub fn refuses(&self, table: &str) {
+        for (status, arguments, expected) in cases(table) {
+            let ran = self.run(arguments);
+            assert_eq!(ran.last_line(), error_line(arguments, status, expected), "hysid {arguments}");
+            assert_eq!((ran.status, ran.stdout.as_str()), (Some(status), ""), "hysid {arguments}");
+        }
+    }
+
+    /// Runs the lines of such a table, each with a part of the last line of stderr.
+    pub fn refuses_in_part(&self, table: &str) {
+        for (status, arguments, part) in cases(table) {
+            let ran = self.run(arguments);
+            assert_eq!(ran.status, Some(status), "hysid {arguments}: {}", ran.stderr);
+            assert!(ran.last_line().contains(part), "hysid {arguments}: {}", ran.stderr);
+        }
+    }
+
     /// Runs a line of shell in the folder; `hysid` is the program.
     pub fn shell(&self, line: &str) -> Ran {
         let program = assert_cmd::cargo::cargo_bin!("hysid");
@@ -104,13 +129,35 @@ impl Workbench {
     }
 }
 
+/// Runs what must succeed.
+pub fn succeeds(bench: &Workbench, arguments: &str) -> Ran {
+    let ran = bench.run(arguments);
+    assert_eq!(ran.status, Some(0), "hysid {arguments}: {}", ran.stderr);
+    ran
+}
+
+/// What a run that succeeded printed as JSON.
+pub fn json(ran: &Ran) -> serde_json::Value {
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
+}
+
+/// Rows of a table: on each line the exit status, the arguments of the program, `=>`, and what it says.
+pub fn cases(table: &str) -> impl Iterator<Item = (i32, &str, &str)> {
+    table.lines().filter(|line| !line.trim().is_empty()).map(|line| {
+        let (asked, said) = line.trim().split_once(" => ").unwrap();
+        let (status, arguments) = asked.split_once(' ').unwrap();
+        (status.parse().unwrap(), arguments, said)
+    })
+}
+
 /// How errors begin that the parser of the command line finds.
 const OF_THE_PARSER: [&str; 5] =
     ["invalid value", "unexpected argument", "the argument", "the following", "unrecognized"];
 
 /// The line of an error as the program says it. A wrong command line (status 2) points to the help of its command, unless
 /// the program itself names an option or a command that helps.
-pub fn error_line(arguments: &str, status: i32, said: &str) -> String {
+fn error_line(arguments: &str, status: i32, said: &str) -> String {
     let is_of_the_parser = OF_THE_PARSER.iter().any(|beginning| said.starts_with(beginning));
     let names_help = said.contains("--") || said.contains("hysid ");
     let help = match arguments.split(' ').next() {

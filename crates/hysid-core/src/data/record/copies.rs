@@ -285,13 +285,4 @@ mod tests {
         let all = [part, repeated, one, timed, copy];
         assert_eq!(measurements(&all), [vec![2, 3, 4, 0], vec![1]]);
     }
-
-    #[test]
-    fn equal_ones_are_found_among_very_many() {
-        let many: Vec<Record> =
-            (0..400).map(|k| record(20, 1.0 + 0.01 * f64::from(k % 350), 0.0, 1)).collect();
-        let found = equal_ones(&many);
-        assert_eq!(found.len(), 50);
-        assert_eq!(found[0], Copy { copy: 350, of: 0, likeness: Likeness::Equal });
-    }
 }

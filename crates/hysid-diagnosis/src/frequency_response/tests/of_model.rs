@@ -139,12 +139,3 @@ fn a_bias_is_raised_smoothly() {
         assert!(compared > 20, "{factor}: {compared}");
     }
 }
-
-#[test]
-fn data_without_a_response_are_no_error() {
-    let data = dataset(vec![moved(&multisine(4000))]);
-    let model = model(linear(), &data);
-    let short = dataset(vec![moved(&coloured(200, 9))]);
-    let simulated = vec![model.simulate(&short.records()[0]).unwrap()];
-    assert_eq!(ModelResponses::of(&model, &short, &simulated).unwrap(), Err(NoResponse::TooFewRows));
-}

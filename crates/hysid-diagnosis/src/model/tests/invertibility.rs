@@ -149,17 +149,3 @@ fn a_lag_needs_long_time_steps() {
     assert_eq!(little.finding.verdict, Verdict::Yes);
     assert!(little.shortest_time_step.unwrap() <= 0.001 / k * 2.0);
 }
-
-#[test]
-fn it_is_printed_as_a_property() {
-    let diagnosis = ModelDiagnosis::of(&stops(false, vec![1.4], vec![], vec![0.3, 1.0])).unwrap();
-    let printed = serde_json::to_value(&diagnosis).unwrap();
-    let properties = printed["properties"].as_array().unwrap();
-    assert_eq!(properties.len(), Property::ALL.len() + 1);
-    let last = properties.last().unwrap();
-    assert_eq!((&last["name"], &last["verdict"]), (&"invertible".into(), &"yes".into()));
-    for (field, _) in properties[0].as_object().unwrap() {
-        assert!(last.get(field).is_some(), "{field}");
-    }
-    assert!(last["always"].is_array() && last["worst"].is_null() && printed.get("invertibility").is_none());
-}

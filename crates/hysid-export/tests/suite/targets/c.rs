@@ -79,9 +79,10 @@ fn the_header_is_good_for_cpp() {
     succeeds(&mut Command::new(folder.path().join("main")));
 }
 
-/// Reads rows of arguments in binary, writes outputs in binary.
-fn driver(arguments: usize) -> String {
+/// Reads rows of arguments in binary, and does with each what `step` says; ARGUMENTS stands for them.
+fn driver(arguments: usize, step: &str) -> String {
     let given: String = (0..arguments).map(|index| format!(", row[{index}]")).collect();
+    let step = step.replace("ARGUMENTS", &given);
     format!(
         "#include <stdio.h>
 #include \"actuator.h\"
@@ -91,14 +92,25 @@ int main(void)
     double row[{arguments}];
     actuator_reset(&model);
     while (fread(row, sizeof(double), {arguments}, stdin) == {arguments}) {{
-        double y = actuator_step(&model{given});
-        fwrite(&y, sizeof y, 1, stdout);
+{step}
     }}
     return 0;
 }}
 "
     )
 }
+
+/// Writes outputs in binary.
+const OUTPUTS: &str = "double y = actuator_step(&modelARGUMENTS); fwrite(&y, sizeof y, 1, stdout);";
+
+/// Writes outputs and half widths of the band.
+const BAND: &str = "double pair[2];
+        pair[0] = actuator_trial(&modelARGUMENTS);
+        pair[1] = actuator_half_width(&model);
+        actuator_commit(&model);
+        if (pair[1] != actuator_half_width(&model))
+            return 1;
+        fwrite(pair, sizeof pair, 1, stdout);";
 
 /// `HYSID_ROWS=1000000 cargo test --release -p hysid-export --test targets last_bit` is the long one.
 #[test]
@@ -109,7 +121,7 @@ fn outputs_equal_those_of_the_library_to_the_last_bit() {
         let case = Case::of(model, rows);
         let folder = tempfile::tempdir().unwrap();
         written(model, Target::C, &Options::named(NAME), folder.path());
-        fs::write(folder.path().join("driver.c"), driver(case.arguments.len())).unwrap();
+        fs::write(folder.path().join("driver.c"), driver(case.arguments.len(), OUTPUTS)).unwrap();
         let files = ["actuator.c", "driver.c", "-lm", "-o", "driver"];
         succeeds(Command::new(&compiler).current_dir(folder.path()).args(STRICT).args(files));
         let input = folder.path().join("rows");
@@ -210,32 +222,6 @@ fn random_steps_survive_the_sanitizers() {
     }
 }
 
-/// Reads rows of arguments in binary, writes outputs and half widths of the band.
-fn band_driver(arguments: usize) -> String {
-    let given: String = (0..arguments).map(|index| format!(", row[{index}]")).collect();
-    format!(
-        "#include <stdio.h>
-#include \"actuator.h\"
-int main(void)
-{{
-    static actuator_model model;
-    double row[{arguments}];
-    actuator_reset(&model);
-    while (fread(row, sizeof(double), {arguments}, stdin) == {arguments}) {{
-        double pair[2];
-        pair[0] = actuator_trial(&model{given});
-        pair[1] = actuator_half_width(&model);
-        actuator_commit(&model);
-        if (pair[1] != actuator_half_width(&model))
-            return 1;
-        fwrite(pair, sizeof pair, 1, stdout);
-    }}
-    return 0;
-}}
-"
-    )
-}
-
 #[test]
 fn the_band_is_that_of_the_library() {
     const ROWS: usize = 600;
@@ -274,7 +260,7 @@ fn the_band_is_that_of_the_library() {
         }
     }
     fs::write(folder.path().join("rows"), rows).unwrap();
-    fs::write(folder.path().join("driver.c"), band_driver(arguments.len())).unwrap();
+    fs::write(folder.path().join("driver.c"), driver(arguments.len(), BAND)).unwrap();
     let files = ["actuator.c", "driver.c", "-lm", "-o", "driver"];
     succeeds(Command::new(&compiler).current_dir(folder.path()).args(STRICT).args(files));
     let input = fs::File::open(folder.path().join("rows")).unwrap();

@@ -217,15 +217,6 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_found_in_variables_and_in_structures() {
-        let found = variables(&file()).unwrap();
-        let names: Vec<&str> = found.iter().map(|variable| variable.name.as_str()).collect();
-        assert_eq!(names, ["x", "data.force"]);
-        assert_eq!(found[0].columns, [[0.5, -1.5, 2.5]]);
-        assert_eq!(found[1].columns, [[1.0, -1.0, 3.0]]);
-    }
-
-    #[test]
     fn damaged_files_are_refused_and_nothing_else_happens() {
         let whole = file();
         for end in 0..whole.len() {

@@ -1,14 +1,11 @@
 //! Laws whose properties are known, on the protocol of theory.md (10.15) or on one of their own.
 
+use crate::scaffold::*;
 use std::f64::consts::TAU;
 
-use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::diagnosis::Property;
 use hysid::law::bouc_wen::BoucWen;
 use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
-use hysid::law::{Law, Sample};
-use hysid::network::{Architecture, Family, Layout, Network, Sizes};
-use hysid::operator::{Operator, Stop};
 use hysid::specimens::{Ferromagnet, Specimen, shape_memory_actuator};
 
 /// Turning points of the protocol.
@@ -24,9 +21,8 @@ const ROWS: f64 = 200.0;
 pub struct Subject {
     pub name: &'static str,
     pub data: Dataset,
-    /// `Some(true)` if it has the property, `Some(false)` if not; `None` where it is near the threshold, or
-    /// where the record does not tell.
-    pub truth: fn(Property) -> Option<bool>,
+    /// One letter a property, in the order of `Property::ALL`: `y`, `n`, or `.` where nothing is known.
+    truth: &'static str,
     /// Properties that this record contains the evidence for.
     pub testable: &'static [Property],
 }
@@ -136,10 +132,10 @@ pub fn preisach_nn(x: &[f64]) -> Dataset {
 }
 
 const LAWS: &[Property] = &[
+    Property::Congruency,
     Property::StaticHysteresis,
     Property::Orientation,
     Property::WipingOut,
-    Property::Congruency,
     Property::Masing,
     Property::OddSymmetry,
     Property::Saturation,
@@ -148,31 +144,23 @@ const LAWS: &[Property] = &[
 ];
 
 /// Where the small loops of the protocol lie outside the large one, or differ by nearly what matters: no congruency.
-const WITHOUT_CONGRUENCY: &[Property] = &[
-    Property::StaticHysteresis,
-    Property::Orientation,
-    Property::WipingOut,
-    Property::Masing,
-    Property::OddSymmetry,
-    Property::Saturation,
-    Property::Deterioration,
-    Property::LoopClosure,
-];
+const WITHOUT_CONGRUENCY: &[Property] = LAWS.split_first().unwrap().1;
 
-/// Verdicts as one letter a property, in the order of `Property::ALL`: `y`, `n`, or `.` where nothing is known.
-fn letters(text: &'static str, property: Property) -> Option<bool> {
-    let place = Property::ALL.iter().position(|other| *other == property).unwrap();
-    match text.as_bytes()[place] {
-        b'y' => Some(true),
-        b'n' => Some(false),
-        _ => None,
+impl Subject {
+    /// `Some(true)` if it has the property, `Some(false)` if not; `None` where it is near the threshold, or
+    /// where the record does not tell.
+    pub fn truth(&self, property: Property) -> Option<bool> {
+        let place = Property::ALL.iter().position(|other| *other == property).unwrap();
+        match self.truth.as_bytes()[place] {
+            b'y' => Some(true),
+            b'n' => Some(false),
+            _ => None,
+        }
     }
 }
 
-macro_rules! subject {
-    ($name:expr, $data:expr, $truth:literal, $testable:expr) => {
-        Subject { name: $name, data: $data, truth: |property| letters($truth, property), testable: $testable }
-    };
+fn subject(name: &'static str, data: Dataset, truth: &'static str, testable: &'static [Property]) -> Subject {
+    Subject { name, data, truth, testable }
 }
 
 /// The laws on the protocol. Letters: static hysteresis, orientation clockwise, rate dependence, wiping-out,
@@ -180,18 +168,18 @@ macro_rules! subject {
 pub fn laws() -> Vec<Subject> {
     let x = protocol();
     vec![
-        subject!("Prandtl-Ishlinskii", record(x.clone(), prandtl_ishlinskii(&x)), "yy.yyyyyny", LAWS),
-        subject!("Preisach M330-50A", m330(&x), "yn.yynyyny", WITHOUT_CONGRUENCY),
-        subject!("GPIM-SMA", shape_memory(&x), "yn.y.nnyny", WITHOUT_CONGRUENCY),
-        subject!(
+        subject("Prandtl-Ishlinskii", record(x.clone(), prandtl_ishlinskii(&x)), "yy.yyyyyny", LAWS),
+        subject("Preisach M330-50A", m330(&x), "yn.yynyyny", WITHOUT_CONGRUENCY),
+        subject("GPIM-SMA", shape_memory(&x), "yn.y.nnyny", WITHOUT_CONGRUENCY),
+        subject(
             "GPNN, beta 25",
             gpnn(&x),
             "yy.nnn..y.",
-            &[Property::WipingOut, Property::Congruency, Property::Masing]
+            &[Property::WipingOut, Property::Congruency, Property::Masing],
         ),
-        subject!("Bouc-Wen, n 1.5", bouc_wen(&x), "yy.n.nyyn.", WITHOUT_CONGRUENCY),
-        subject!("Jiles-Atherton 1992", jiles_atherton(&x), "yn.yynyyny", WITHOUT_CONGRUENCY),
-        subject!("Preisach network", preisach_nn(&x), "y..ynnn.ny", LAWS),
+        subject("Bouc-Wen, n 1.5", bouc_wen(&x), "yy.n.nyyn.", WITHOUT_CONGRUENCY),
+        subject("Jiles-Atherton 1992", jiles_atherton(&x), "yn.yynyyny", WITHOUT_CONGRUENCY),
+        subject("Preisach network", preisach_nn(&x), "y..ynnn.ny", LAWS),
     ]
 }
 
@@ -216,59 +204,41 @@ const TIMED: &[Property] = &[Property::RateDependence, Property::StaticHysteresi
 pub fn timed() -> Vec<Subject> {
     let steel = |x: &[f64]| m330(x).records()[0].output().to_vec();
     vec![
-        subject!(
+        subject(
             "Prandtl-Ishlinskii, three speeds",
             at_three_speeds(prandtl_ishlinskii, 1e-3, 0.0),
             "yyn..y.y.y",
-            TIMED
+            TIMED,
         ),
         // At the fastest speed, the rows on the steep part are too far apart to show that the outputs agree.
-        subject!(
+        subject(
             "Preisach, three speeds",
             at_three_speeds(steel, 1e-3, 0.0),
             "ynn....y.y",
-            &[Property::StaticHysteresis, Property::Orientation]
+            &[Property::StaticHysteresis, Property::Orientation],
         ),
-        subject!(
+        subject(
             "Prandtl-Ishlinskii, delayed",
             at_three_speeds(prandtl_ishlinskii, 1e-3, 5e-4),
             "yyn....y..",
-            TIMED
+            TIMED,
         ),
     ]
 }
 
 /// The synthetic specimens, on the data they are trained on.
 pub fn specimens() -> Vec<Subject> {
-    let data = |name: &str| Specimen::named(name).unwrap().train();
+    const WIPING_OUT: &[Property] = &[Property::WipingOut];
+    const RATE: &[Property] = &[Property::RateDependence];
+    let of = |name, truth, testable| subject(name, Specimen::named(name).unwrap().train(), truth, testable);
     vec![
-        subject!("ferromagnet", data("ferromagnet"), "ynnyynyyny", &[]),
-        subject!(
-            "reinforced-concrete-joint",
-            data("reinforced-concrete-joint"),
-            "yynnnn.yy.",
-            &[Property::Deterioration]
-        ),
-        subject!("terfenol-actuator", data("terfenol-actuator"), "ynny.nnnny", &[Property::WipingOut]),
-        subject!(
-            "shape-memory-actuator",
-            data("shape-memory-actuator"),
-            "ynny.nnyny",
-            &[Property::WipingOut]
-        ),
-        subject!("concrete", data("concrete"), "yynnnnn.yn", &[]),
-        subject!("piezo-actuator", data("piezo-actuator"), "yny.......", &[Property::RateDependence]),
-        subject!(
-            "rate-dependent-actuator",
-            data("rate-dependent-actuator"),
-            "yny.yyynny",
-            &[Property::RateDependence]
-        ),
-        subject!(
-            "magnetostrictive-actuator",
-            data("magnetostrictive-actuator"),
-            "yny....n..",
-            &[Property::RateDependence]
-        ),
+        of("ferromagnet", "ynnyynyyny", &[]),
+        of("reinforced-concrete-joint", "yynnnn.yy.", &[Property::Deterioration]),
+        of("terfenol-actuator", "ynny.nnnny", WIPING_OUT),
+        of("shape-memory-actuator", "ynny.nnyny", WIPING_OUT),
+        of("concrete", "yynnnnn.yn", &[]),
+        of("piezo-actuator", "yny.......", RATE),
+        of("rate-dependent-actuator", "yny.yyynny", RATE),
+        of("magnetostrictive-actuator", "yny....n..", RATE),
     ]
 }

@@ -1,0 +1,87 @@
+//! What most tests of the suite use.
+
+pub use std::ops::ControlFlow;
+
+pub use hysid::data::initial_state::InitialState;
+pub use hysid::data::metrics::ErrorSums;
+pub use hysid::data::rate::RateMethod;
+pub use hysid::data::record::{ColumnNames, Dataset, Excitation, Record};
+pub use hysid::error::{DataProblem, Error};
+pub use hysid::fit::law::Identify;
+pub use hysid::fit::law::search::SearchProgress;
+pub use hysid::fit::network::objective::Objective;
+pub use hysid::fit::network::{Fitted, Progress};
+pub use hysid::fit::{cross_validate, identify};
+pub use hysid::law::series::{Series, samples_of};
+pub use hysid::law::{Classical, Law, Sample};
+pub use hysid::model::Model;
+pub use hysid::network::scaling::Scaling;
+pub use hysid::network::{Architecture, Drive, Family, Layout, Network, Sizes};
+pub use hysid::operator::{DeterioratingStop, Operator, Relay, Stop};
+pub use hysid::options::auto::AutoOptions;
+pub use hysid::options::chosen::NamedOptions;
+pub use hysid::options::classical::{ClassicalModel, ClassicalOptions};
+pub use hysid::options::network::FitOptions;
+pub use hysid::options::{FitSpec, ModelName};
+pub use hysid::specimens::with_noise;
+pub use hysid::stop_check::StopCheck;
+pub use hysid::termination::Termination;
+pub use rand::{RngExt, SeedableRng};
+pub use rand_xoshiro::Xoshiro256PlusPlus as Generator;
+
+pub use crate::small_models::{record, small};
+
+/// An observer of a search that lets it go on.
+pub fn go_on(_: SearchProgress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// An observer of a fit that lets it go on.
+pub fn on(_: &Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// The default options of a law.
+pub fn of(model: ClassicalModel) -> ClassicalOptions {
+    ClassicalOptions::of(model)
+}
+
+/// A fit without rate by the names of its options.
+pub fn request(options: serde_json::Value) -> FitSpec {
+    let serde_json::Value::Object(options) = options else { panic!("a map") };
+    NamedOptions::of(options).unwrap().request(None, false)
+}
+
+pub fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+pub fn between(generator: &mut Generator, low: f64, high: f64) -> f64 {
+    low + (high - low) * generator.random::<f64>()
+}
+
+/// A path through turning points, each swing in `steps` equal steps.
+pub fn through(turning: &[f64], steps: usize) -> Vec<f64> {
+    let mut path = vec![turning[0]];
+    for ends in turning.windows(2) {
+        path.extend((1..=steps).map(|k| ends[0] + (ends[1] - ends[0]) * k as f64 / steps as f64));
+    }
+    path
+}
+
+pub fn outputs<L: Law>(law: &L, x: &[f64]) -> Vec<f64> {
+    hysid::law::series::run(law, &samples_of(x))
+}
+
+pub fn last<L: Law>(law: &L, x: &[f64]) -> f64 {
+    outputs(law, x)[x.len() - 1]
+}
+
+/// Error of a free run of a law in percent of the output's standard deviation.
+pub fn error_of<L: Law>(law: &L, data: &Dataset, rate: Option<RateMethod>) -> f64 {
+    let mut sums = ErrorSums::default();
+    for series in Series::all(data, rate).unwrap() {
+        sums.add(&series.output, &hysid::law::series::run(law, &series.samples));
+    }
+    sums.errors("y").unwrap().nrmse_std_percent.unwrap()
+}
