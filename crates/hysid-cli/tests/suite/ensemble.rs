@@ -127,7 +127,7 @@ fn auto_chooses_among_kinds_and_is_the_same_for_any_number_of_threads() {
     let bench = bench();
     let fit = |options: &str| {
         let ran =
-            bench.run(&format!("fit good.csv -o a.json --rate none --companding 0.1 --epochs 8 {options}"));
+            bench.run(&format!("fit good.csv -o a.json --rate none --companding 0.1 --epochs 4 {options}"));
         assert_eq!(ran.status, Some(0), "{}", ran.stderr);
         (ran, bench.text("a.json"))
     };
