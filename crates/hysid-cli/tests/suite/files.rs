@@ -287,9 +287,11 @@ fn every_file_has_a_test_and_a_place_on_the_page() {
     let files = fs::read_dir(root.join("tests/files")).unwrap();
     let names: Vec<String> = files.map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
     assert!(names.len() >= 60, "{}", names.len());
+    let tested: Vec<&str> =
+        include_str!("files.rs").split(|c: char| c.is_whitespace() || "\":".contains(c)).collect();
     for name in names {
         assert!(page.contains(&format!("`{name}`")), "docs/files.md lacks {name}");
-        assert!(include_str!("files.rs").contains(&format!("\"{name}\"")), "{name} has no test");
+        assert!(tested.contains(&name.as_str()), "{name} has no test");
     }
 }
 
