@@ -56,7 +56,7 @@ fn random(bits: &mut u64) -> f64 {
 
 #[test]
 fn outputs_are_equal_and_finite_on_wild_paths() {
-    const ROWS: usize = 4000;
+    const ROWS: usize = 1000;
     for (name, model) in MODELS.iter() {
         let description = Description::of(model, RateSource::Backward, Precision::Double);
         let tangent = with_tangent(&description.program);
@@ -69,8 +69,8 @@ fn outputs_are_equal_and_finite_on_wild_paths() {
             x = match row % 50 {
                 10 | 11 => x,
                 20 => 0.0,
-                30 if row % 1000 == 30 => 1e90,
-                31 if row % 1000 == 31 => -1e100,
+                30 if row % 300 == 30 => 1e90,
+                31 if row % 300 == 31 => -1e100,
                 32 => 40.0,
                 _ => x + 10.0_f64.powf(3.0 * random(&mut bits) - 1.0) * random(&mut bits).signum(),
             };
