@@ -320,7 +320,8 @@ pub(super) fn read(text: &str) -> Result<Model> {
             "the model file was changed after it was written: its checksum does not match".into(),
         ));
     }
-    let file: File = serde_json::from_value(value).map_err(|error| {
+    // From the text, not from the value: the text tells the place of an error.
+    let file: File = serde_json::from_str(text).map_err(|error| {
         damaged(format!("the model file does not have the layout of version {version}: {error}"))
     })?;
     assemble(file).map_err(|error| damaged(format!("the model file contradicts itself: {error}")))
