@@ -14,7 +14,6 @@ mod elastomer;
 mod magnetorheological_damper;
 mod magnets;
 mod one_loop;
-mod path;
 mod peak_oriented;
 mod phase_transformation;
 mod plans;

@@ -18,7 +18,7 @@ pub mod generalized_play;
 pub mod magnetostrictive_actuator;
 mod multisine;
 mod noise;
-mod path;
+pub mod path;
 pub mod piezo_actuator;
 pub mod piezo_stage;
 pub mod rate_dependent_actuator;
@@ -29,7 +29,7 @@ pub mod shear_building;
 pub mod specimen;
 pub mod terfenol_actuator;
 pub mod terfenol_rod;
-mod tones;
+pub mod tones;
 pub mod two_wire_actuator;
 
 pub use bouc_wen_oscillator::BoucWenOscillator;

@@ -12,7 +12,7 @@ const GOLDEN: f64 = 1.618_033_988_749_895;
 const PLASTIC: f64 = 1.324_717_957_244_746;
 
 /// A path through the turning points, each swing in equal steps of at most `longest_step`.
-pub(super) fn through(turning: &[f64], longest_step: f64) -> Vec<f64> {
+pub fn through(turning: &[f64], longest_step: f64) -> Vec<f64> {
     let mut path = turning[..1].to_vec();
     for ends in turning.windows(2) {
         let swing = ends[1] - ends[0];
@@ -40,7 +40,7 @@ pub(super) fn wandering(count: usize, (low, high): (f64, f64)) -> Vec<f64> {
 }
 
 /// The way from the first turning point to the last.
-pub(super) fn travel(turning: &[f64]) -> f64 {
+pub fn travel(turning: &[f64]) -> f64 {
     turning.windows(2).map(|ends| (ends[1] - ends[0]).abs()).sum()
 }
 
@@ -53,13 +53,13 @@ pub(super) fn continued(training: &[f64], test: &[f64], longest_step: f64) -> (V
 
 /// Cuts a record without blanks before row `end`: the head ends there, the tail is the whole record
 /// with the head's outputs blanked.
-pub(super) fn cut(whole: &Record, end: usize) -> (Record, Record) {
+pub fn cut(whole: &Record, end: usize) -> (Record, Record) {
     let fraction = end as f64 / whole.len() as f64;
     whole.split_at_fraction(fraction).expect("a specimen's record has more than two rows")
 }
 
 /// Time stamps `0, step, 2 step, ...`
-pub(super) fn every(step: f64, rows: usize) -> Vec<f64> {
+pub fn every(step: f64, rows: usize) -> Vec<f64> {
     (0..rows).map(|row| row as f64 * step).collect()
 }
 

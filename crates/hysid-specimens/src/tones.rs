@@ -2,11 +2,14 @@
 
 use std::f64::consts::TAU;
 
-/// A sine `amplitude sin(2π frequency t + phase)`: unit of the input, Hz, rad.
+/// A sine `amplitude sin(2π frequency t + phase)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Tone {
+pub struct Tone {
+    /// Amplitude, in the unit of the input.
     pub amplitude: f64,
+    /// Frequency, in Hz.
     pub frequency: f64,
+    /// Phase at time 0, in rad.
     pub phase: f64,
 }
 
@@ -22,12 +25,12 @@ impl Tone {
 }
 
 /// The sum of the tones at a time in s.
-pub(super) fn value(tones: &[Tone], t: f64) -> f64 {
+pub fn value(tones: &[Tone], t: f64) -> f64 {
     tones.iter().map(|tone| tone.amplitude * tone.angle(t).sin()).sum()
 }
 
 /// Its rate per s.
-pub(super) fn rate(tones: &[Tone], t: f64) -> f64 {
+pub fn rate(tones: &[Tone], t: f64) -> f64 {
     tones.iter().map(|tone| TAU * tone.frequency * tone.amplitude * tone.angle(t).cos()).sum()
 }
 

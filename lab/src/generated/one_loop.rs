@@ -1,8 +1,9 @@
 //! Cases of one loop, as most magnetics laboratories measure it, without information on smaller loops.
 
-use super::path;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
+
+use hysid::specimens::path;
 
 use super::draw::Draw;
 use super::plans::{PLANS, Plan};

@@ -2,11 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use super::path;
 use hysid_core::data::record::Record;
 use hysid_core::error::Result;
 
 use super::Parts;
+use hysid::specimens::path;
+
 use super::draw::Draw;
 use super::subject::Subject;
 

@@ -1,13 +1,14 @@
 //! Designs of experiments where time may matter: frequencies, pairs of amplitude and frequency, random
 //! histories, a steady sine.
 
-use super::path;
 use super::tones::{self, Tone};
 use hysid_core::data::record::Record;
 use hysid_core::error::Result;
 use hysid_core::law::Sample;
 
 use super::Parts;
+use hysid::specimens::path;
+
 use super::draw::Draw;
 use super::subject::Subject;
 

@@ -1,35 +1,8 @@
-//! Sums of sines: inputs of rate-dependent specimens, with their exact rate.
+//! The rounded triangle, and the sums of sines that it is one of.
 
 use std::f64::consts::TAU;
 
-/// A sine `amplitude sin(2π frequency t + phase)`: unit of the input, Hz, rad.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Tone {
-    pub amplitude: f64,
-    pub frequency: f64,
-    pub phase: f64,
-}
-
-impl Tone {
-    /// A sine that rises through 0 at time 0.
-    pub fn sine(amplitude: f64, frequency: f64) -> Self {
-        Self { amplitude, frequency, phase: 0.0 }
-    }
-
-    fn angle(&self, t: f64) -> f64 {
-        TAU * self.frequency * t + self.phase
-    }
-}
-
-/// The sum of the tones at a time in s.
-pub(super) fn value(tones: &[Tone], t: f64) -> f64 {
-    tones.iter().map(|tone| tone.amplitude * tone.angle(t).sin()).sum()
-}
-
-/// Its rate per s.
-pub(super) fn rate(tones: &[Tone], t: f64) -> f64 {
-    tones.iter().map(|tone| TAU * tone.frequency * tone.amplitude * tone.angle(t).cos()).sum()
-}
+pub(super) use hysid::specimens::tones::{Tone, rate, value};
 
 /// A triangle whose corners are round: the first three terms of its series, scaled to the amplitude.
 pub(super) fn rounded_triangle(amplitude: f64, frequency: f64) -> Vec<Tone> {
@@ -41,16 +14,6 @@ pub(super) fn rounded_triangle(amplitude: f64, frequency: f64) -> Vec<Tone> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_rate_is_the_derivative() {
-        let tones = [Tone { amplitude: 2.0, frequency: 0.3, phase: 1.0 }, Tone::sine(0.7, 1.1)];
-        for k in 0..50 {
-            let t = 0.1 * f64::from(k);
-            let difference = (value(&tones, t + 1e-6) - value(&tones, t - 1e-6)) / 2e-6;
-            assert!((rate(&tones, t) - difference).abs() < 1e-7);
-        }
-    }
 
     #[test]
     fn a_triangle_reaches_its_amplitude_and_no_more() {
