@@ -483,3 +483,18 @@ pub fn escaped(text: &str, is_hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
     }
     shown.into()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_one_line_whatever_the_names() {
+        let error = "xp\n\x1b".parse::<crate::options::ModelName>().unwrap_err().to_string();
+        assert!(error.starts_with("model `xp\\n\\x1b` is unknown"), "{error}");
+        let problem = DataProblem::Empty;
+        let record = "a\u{9b}b".to_string();
+        let error = DataError { record, row: None, channel: None, problem }.to_string();
+        assert_eq!(error, "record \"a\\u{9b}b\": has no rows");
+    }
+}

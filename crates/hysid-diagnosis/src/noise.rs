@@ -187,6 +187,12 @@ mod tests {
     use approx::assert_relative_eq;
 
     #[test]
+    fn no_noise_is_not_minus_nought() {
+        let none = Noise { parts: Vec::new(), ..Noise::white(1.0) };
+        assert!(none.deviation() == 0.0 && none.deviation().is_sign_positive());
+    }
+
+    #[test]
     fn the_deviation_of_a_sum_is_that_of_its_covariances() {
         let weights = [0.3, -1.0, 0.2, 0.7, 0.05];
         for correlation in [Correlation::White, Correlation::Decaying(0.8), Correlation::Periodic(0.7)] {

@@ -23,3 +23,16 @@ pub fn json(value: &impl Serialize) -> serde_json::Result<String> {
     }
     Ok(shown + "\n")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_reads_back_as_the_same_and_hides_nothing() {
+        let value = vec!["a\n\u{9b}2J\u{7f}\u{202e}\"é".to_string()];
+        let text = json(&value).unwrap();
+        assert!(!text.chars().any(|letter| letter != '\n' && is_hidden(letter)), "{text:?}");
+        assert_eq!(serde_json::from_str::<Vec<String>>(&text).unwrap(), value);
+    }
+}

@@ -47,3 +47,29 @@ fn listed_as<N: AsRef<str>>(names: &[N], as_shown: impl Fn(&str) -> Cow<'_, str>
         more => format!("{} and {more} more", some.join(", ")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_seen_and_not_obeyed() {
+        assert_eq!(visible("force (kN), µm"), "force (kN), µm");
+        assert_eq!(visible("a\nb\r\t\x1b[2J\x7f\u{9b}31m"), r"a\nb\r\t\x1b[2J\x7f\u{9b}31m");
+        assert_eq!(visible("abc\u{202e}def\u{200b}"), r"abc\u{202e}def\u{200b}");
+    }
+
+    #[test]
+    fn long_names_are_cut_and_say_how_long_they_were() {
+        let text = "µ".repeat(61);
+        assert_eq!(clipped(&text[..120]), text[..120]);
+        assert_eq!(clipped(&text), format!("{}… (61 characters)", "µ".repeat(60)));
+    }
+
+    #[test]
+    fn many_names_are_counted() {
+        assert_eq!(listed(&["a", "b\n"]), r"a, b\n");
+        let many: Vec<String> = (0..100).map(|k| k.to_string()).collect();
+        assert_eq!(listed(&many), "0, 1, 2, 3, 4, 5 and 94 more");
+    }
+}

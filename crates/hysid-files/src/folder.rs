@@ -124,6 +124,22 @@ mod tests {
     }
 
     #[test]
+    fn a_folder_appears_whole_and_replaces_only_its_own() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("new/export");
+        folder(&path, false).write(&FILES).unwrap();
+        assert_eq!(fs::read(path.join("b/c.txt")).unwrap(), b"two");
+        folder(&path, false).write(&FILES[..2]).unwrap();
+        assert_eq!(files_in(&path).unwrap(), [Path::new("a.txt"), Path::new("list")]);
+        fs::write(path.join("mine.txt"), "mine").unwrap();
+        assert!(matches!(folder(&path, false).write(&FILES), Err(Failure::NotOurs { .. })));
+        assert_eq!(fs::read(path.join("mine.txt")).unwrap(), b"mine");
+        folder(&path, true).write(&FILES).unwrap();
+        assert_eq!(files_in(&path).unwrap().len(), 3);
+        assert_eq!(fs::read_dir(place.path().join("new")).unwrap().count(), 1, "nothing is left beside it");
+    }
+
+    #[test]
     fn files_are_not_replaced() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("export");

@@ -124,6 +124,25 @@ mod tests {
     use super::*;
 
     #[test]
+    fn models_are_known_by_their_first_field_however_they_are_laid_out() {
+        for text in ["{\n  \"format\": \"hysid-model\",", " {\"format\":\"hysid-model\"}"] {
+            assert!(Kind::Model.is_begun_by(text.as_bytes()), "{text}");
+        }
+        for text in
+            ["{}", "{\"a\": \"hysid-model\"}", "{\"format\": \"other\"}", "\"format\": \"hysid-model\""]
+        {
+            assert!(!Kind::Model.is_begun_by(text.as_bytes()), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_page_that_quotes_the_mark_is_not_ours() {
+        let ours = format!("{PAGE_MARK}0.1.0\">");
+        assert!(Kind::Page.is_begun_by(ours.as_bytes()));
+        assert!(!Kind::Page.is_begun_by(format!("<html><pre>{ours}").as_bytes()));
+    }
+
+    #[test]
     fn content_is_compared_to_the_last_byte() {
         let content = vec![7; 200_000];
         let same = |other: &[u8]| has_content(&mut &other[..], &content).unwrap();

@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -70,6 +70,27 @@ fn links_are_followed_to_files_and_to_places_where_there_is_none_yet() {
     symlink("round", at("round")).unwrap();
     let error = model(&at("round")).check().unwrap_err().to_string();
     assert!(error.ends_with("round: cannot be written: too many links"), "{error}");
+}
+
+#[test]
+fn pipes_and_devices_are_written_through() {
+    let folder = folder();
+    let path = folder.path().join("pipe");
+    pipe(&path);
+    let reader = {
+        let path = path.clone();
+        std::thread::spawn(move || {
+            let mut content = Vec::new();
+            File::open(path).unwrap().read_to_end(&mut content).unwrap();
+            content
+        })
+    };
+    model(&path).check().unwrap();
+    model(&path).write(MODEL).unwrap();
+    assert_eq!(reader.join().unwrap(), MODEL);
+    assert!(!fs::symlink_metadata(&path).unwrap().is_file());
+    model(Path::new("/dev/null")).write(MODEL).unwrap();
+    assert_eq!(names(folder.path()), ["pipe"]);
 }
 
 #[cfg(target_os = "linux")]
@@ -143,6 +164,23 @@ fn a_file_put_there_during_the_work_is_not_replaced() {
     assert!(matches!(file.commit(), Err(Failure::NotOurs { .. })));
     assert_eq!(fs::read_to_string(&path).unwrap(), "measured\n");
     assert_eq!(names(folder.path()), ["out.csv"]);
+}
+
+#[test]
+fn a_replaced_model_is_kept_unless_it_is_the_same() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    assert_eq!(model(&at("m.json")).write(MODEL).unwrap(), None);
+    assert_eq!(model(&at("m.json")).write(MODEL).unwrap(), None, "the same again");
+    assert_eq!(names(folder.path()), ["m.json"]);
+    assert_eq!(model(&at("m.json")).write(OTHER_MODEL).unwrap(), Some(at("m.json.bak")));
+    assert_eq!(fs::read(at("m.json.bak")).unwrap(), MODEL);
+    assert_eq!(fs::read(at("m.json")).unwrap(), OTHER_MODEL);
+    // The place of the copy is not to be taken by force either.
+    fs::write(at("m.json.bak"), "notes").unwrap();
+    let error = model(&at("m.json")).check().unwrap_err().to_string();
+    assert!(error.ends_with("m.json.bak: a file is there already and is no model of Hysid"), "{error}");
+    assert_eq!(fs::read_to_string(at("m.json.bak")).unwrap(), "notes");
 }
 
 #[test]

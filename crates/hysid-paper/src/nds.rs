@@ -287,4 +287,14 @@ mod tests {
     fn all_demonstrations_are_as_the_paper_claims() {
         assert_eq!((target().one.as_str(), target().verdict), ("6 of 6", Verdict::Met));
     }
+
+    #[test]
+    fn demonstrations_show_what_is_said_of_them() {
+        let k = |index: usize| DEMONSTRATIONS[index].0.width(0.0).unwrap();
+        let p = |index: usize, rate: f64| DEMONSTRATIONS[index].0.width(rate).unwrap() - k(index);
+        assert!(p(0, 0.5).abs() < 1e-9);
+        assert!(p(1, 0.1) < 0.0 && k(1) + p(1, 0.5) < 0.0);
+        assert!(k(4).abs() < 1e-9 && k(5).abs() < 1e-9);
+        assert!(RATES.iter().all(|&rate| p(5, rate) > 1.0));
+    }
 }

@@ -239,6 +239,22 @@ mod tests {
     }
 
     #[test]
+    fn tables_without_names_have_numbered_columns() {
+        assert_eq!(names("0 1.5 2\n1 2.5 3\n"), ["c1", "c2", "c3"]);
+        assert_eq!(names("# measured on Monday\n0,1.5\n1,2.5\n"), ["c1", "c2"]);
+        assert_eq!(names("0,1\n"), ["c1", "c2"]);
+    }
+
+    #[test]
+    fn names_may_stand_in_a_comment_or_lack_that_of_an_index() {
+        assert_eq!(names("# t x y\n0 1.5 2\n1 2.5 3\n"), ["t", "x", "y"]);
+        assert_eq!(names("\"x\" \"y\"\n\"1\" 0.5 2\n\"2\" 0.7 3\n"), ["c1", "x", "y"]);
+        assert_eq!(names(",x,y\n0,1.5,2\n1,2.5,3\n"), ["c1", "x", "y"]);
+        assert_eq!(names("X_Value\tForce\tComment\n0\t1.5\t\n1\t2.5\n2\t3.5\n"), ["X_Value", "Force"]);
+        assert_eq!(names("t,x,\n0,1.5,\n1,2.5,\n"), ["t", "x"]);
+    }
+
+    #[test]
     fn units_stand_in_their_own_line_or_in_the_cells() {
         assert_eq!(names("x,y\n1.5 mm,2 kN\n2.5 mm,3 kN\n"), ["x [mm]", "y [kN]"]);
         assert_eq!(names("x\ty\n[mm]\t[kN]\n1\t2\n3\t4\n"), ["x [mm]", "y [kN]"]);
@@ -246,6 +262,18 @@ mod tests {
         assert_eq!(names("clock,y\n12:00:00.5,2\n12:00:01,4\n"), ["clock [s]", "y"]);
         // Names that are units too, over numbers.
         assert_eq!(names("s,N\n1,2\n3,4\n"), ["s", "N"]);
+    }
+
+    #[test]
+    fn equal_names_are_numbered_or_told_by_the_line_above() {
+        assert_eq!(names("t,x,x\n0,1,2\n1,2,3\n"), ["t", "x", "x (2)"]);
+        assert_eq!(names("Left,Left,Right\nx,F,x\n0,1,2\n1,2,3\n"), ["Left x", "Left F", "Right x"]);
+    }
+
+    #[test]
+    fn a_line_of_text_among_rows_does_not_end_the_search() {
+        let found = layout("t,x,state\n0,1.5,ok\n1,2.5,ok\n2,n/a,fault\n3,4,ok\n");
+        assert_eq!((found.names.len(), found.line), (3, 2));
     }
 
     #[test]

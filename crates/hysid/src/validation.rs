@@ -371,6 +371,25 @@ mod tests {
         assert!(held.iter().all(|&count| count == 1));
     }
 
+    #[test]
+    fn copies_are_held_out_together() {
+        let (a, b) = (record("a", 200, 1.0), record("b", 200, 1.3));
+        let copy = Record::new("copy", a.inputs().iter().map(|x| x.to_vec()).collect(), a.output().to_vec())
+            .unwrap();
+        let part =
+            Record::new("part", vec![a.inputs()[0][50..150].to_vec()], a.output()[50..150].to_vec()).unwrap();
+        let several = folds(&data(vec![a.clone(), part.clone(), b, copy.clone()]), 5);
+        let names: Vec<&str> = several.iter().map(|fold| fold.name.as_str()).collect();
+        assert_eq!(names, ["a, part, copy", "b"]);
+        // One measurement, however often it is given, is cut in time.
+        let one = folds(&data(vec![part, copy]), 5);
+        assert_eq!(one.len(), 5);
+        let is_of_copy = |set: &Dataset| set.records().len() == 1 && set.records()[0].name() == "copy";
+        assert!(one.iter().all(|fold| is_of_copy(&fold.train) && is_of_copy(&fold.held_out)));
+        let (kept, held) = data(vec![a.clone(), a.clone()]).split_for_validation(0.3).unwrap();
+        assert_eq!((kept.scored(), held.scored()), (140, 60));
+    }
+
     /// What is held out of a single record is not among what is fitted to, and the way there is driven.
     #[test]
     fn a_single_record_is_cut_in_time() {

@@ -42,3 +42,36 @@ impl FromStr for Mass {
         Ok(Self { number, unit: Some(unit.into()), factor })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masses_have_units() {
+        for (text, kilograms) in [
+            ("2", 2.0),
+            ("2 t", 2000.0),
+            ("2e3 kg", 2000.0),
+            ("250g", 0.25),
+            ("10 lb", 4.5359237),
+            ("1.5 kN s2/m", 1500.0),
+        ] {
+            let mass: Mass = text.parse().unwrap();
+            assert!((mass.number * mass.factor / kilograms - 1.0).abs() < 1e-12, "{text}: {mass:?}");
+        }
+        for (text, expected) in [
+            ("", "a number is needed"),
+            ("heavy", "a number is needed"),
+            ("0", "above 0"),
+            ("-3 kg", "above 0"),
+            ("inf", "a number is needed"),
+            ("1e999", "above 0"),
+            ("2 mm", "the unit of the mass is unknown"),
+            ("2 stone", "the unit of the mass is unknown"),
+        ] {
+            let error = text.parse::<Mass>().unwrap_err();
+            assert!(error.contains(expected), "{text}: {error}");
+        }
+    }
+}

@@ -402,11 +402,29 @@ mod tests {
     }
 
     #[test]
+    fn equal_weights_give_the_ordinary_median() {
+        assert_eq!(quantile(&[(3.0, 1.0), (1.0, 1.0), (2.0, 1.0)], 0.5), 2.0);
+        assert_eq!(quantile(&[(4.0, 0.5), (1.0, 0.5), (2.0, 0.5), (8.0, 0.5)], 0.5), 3.0);
+        assert_eq!(quantile(&[(5.0, 0.3)], 0.5), 5.0);
+    }
+
+    #[test]
     fn a_value_without_weight_counts_nothing_and_one_with_most_decides() {
         assert_eq!(quantile(&[(-9.0, 0.0), (1.0, 1.0), (9.0, 0.0)], 0.5), 1.0);
         let near = quantile(&[(0.0, 1.0), (1.0, 1e-9), (-1.0, 1e-9)], 0.5);
         assert!(near.abs() < 1e-8, "{near}");
         assert_eq!(quantile(&[(1.0, 1.0), (1e300, 1.0), (2.0, 1.0)], 0.5), 2.0);
+    }
+
+    #[test]
+    fn quantiles_rise_with_their_level_and_stay_among_the_values() {
+        let predictions = [(3.0, 0.2), (-1.0, 1.0), (0.5, 0.7), (2.0, 0.1)];
+        let mut last = f64::NEG_INFINITY;
+        for percent in 0..=100 {
+            let value = quantile(&predictions, f64::from(percent) / 100.0);
+            assert!(value >= last && (-1.0..=3.0).contains(&value), "{percent}: {value} after {last}");
+            last = value;
+        }
     }
 
     fn group(weights: &[(f64, f64)]) -> Group {

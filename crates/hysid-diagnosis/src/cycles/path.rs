@@ -154,6 +154,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_area_of_a_polygon_is_exact_and_knows_the_direction() {
+        let (x, y) = ([0.0, 2.0, 2.0, 0.0], [1.0, 1.0, -2.0, -2.0]);
+        assert_eq!(area(&x, &y), 6.0, "clockwise: up above, back below");
+        let backwards = |values: [f64; 4]| values.into_iter().rev().collect::<Vec<f64>>();
+        assert_eq!(area(&backwards(x), &backwards(y)), -6.0);
+        assert_eq!(area(&x, &y.map(|y| y + 7.0)), 6.0, "wherever the output has its zero");
+    }
+
+    #[test]
     fn a_path_that_does_not_close_is_cut_where_it_does() {
         let path = |x: &[f64], turns| {
             let y = x.iter().map(|x| 2.0 * x).collect();

@@ -100,3 +100,28 @@ fn frequency(time: &str) -> String {
 fn named(name: &str, unit: Option<String>) -> String {
     unit.map_or_else(|| name.to_string(), |unit| format!("{name} [{unit}]"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn quantities(time: Option<&str>, input: &str, output: &str) -> Quantities {
+        let time = time.map(String::from);
+        Quantities::of(&ColumnNames { time, inputs: vec![input.into()], rate: None, output: output.into() })
+    }
+
+    #[test]
+    fn units_are_made_of_units() {
+        let joint = quantities(Some("t_s"), "disp_mm", "force_kN");
+        assert_eq!(joint.as_energy("energy"), "energy [J]");
+        assert_eq!(joint.as_power("loss"), "loss [W]");
+        assert_eq!(joint.as_stiffness("stiffness"), "stiffness [kN/mm]");
+        assert_eq!(joint.as_speed("speed"), "speed [mm/s]");
+        let magnet = quantities(None, "H_A_per_m", "B_T");
+        assert_eq!(magnet.as_stiffness("slope"), "slope [T/(A/m)]");
+        assert_eq!(magnet.as_density("density"), "density [T/(A/m)2]");
+        assert_eq!(magnet.as_energy("energy"), "energy [J/m3]");
+        assert_eq!(magnet.as_speed("speed"), "speed");
+        assert_eq!(quantities(None, "strain", "stress_MPa").as_energy("energy"), "energy");
+    }
+}

@@ -39,6 +39,29 @@ fn stop(turning: &[f64]) -> Dataset {
     data(x, y)
 }
 
+/// Stiffness and strength 1. In the first cycle the first quarter begins without force: `∮ y dx` has the energy that is stored
+/// at its end, 1/2.
+#[test]
+fn an_elastic_plastic_stop_has_its_exact_figures() {
+    let table = table_of(&stop(&[0.0, 3.0, -3.0, 3.0, -3.0, 0.0]), Field::Structure);
+    assert_eq!((table.division, table.cycles.len()), (Division::Zero, 2));
+    for (row, energy) in table.cycles.iter().zip([7.5, 8.0]) {
+        assert!(row.complete);
+        assert_relative_eq!(row.energy.unwrap(), energy, epsilon = 1e-9);
+        assert_relative_eq!(row.secant_stiffness.unwrap(), 1.0 / 3.0, epsilon = 1e-9);
+        let damping = 2.0 * energy / (PI / 3.0 * 36.0);
+        assert_relative_eq!(row.damping_percent.unwrap(), 100.0 * damping, epsilon = 1e-9);
+        assert_relative_eq!(row.residual_after_peak.unwrap(), 2.0, epsilon = 1e-9);
+        assert_relative_eq!(row.residual_after_valley.unwrap(), -2.0, epsilon = 1e-9);
+        assert_eq!((row.peak_input, row.valley_input), (Some(3.0), Some(-3.0)));
+        assert_eq!((row.amplitude, row.mean_input), (Some(3.0), Some(0.0)));
+        assert_eq!((row.period, row.creep), (None, None));
+    }
+    assert_relative_eq!(table.cycles[1].cumulative_energy.unwrap(), 15.5, epsilon = 1e-9);
+    assert!(table.cycles[0].backbone_peak && table.cycles[0].backbone_valley);
+    assert!(!table.cycles[1].backbone_peak && !table.cycles[1].backbone_valley);
+}
+
 #[test]
 fn a_growing_protocol_gives_one_backbone_point_for_each_amplitude_and_direction() {
     let turning = [0.0, 0.5, -0.5, 0.5, -0.5, 2.0, -2.0, 2.0, -2.0, 4.0, -4.0, 4.0, -4.0, 0.0];

@@ -76,6 +76,14 @@ mod tests {
     }
 
     #[test]
+    fn periods_are_found_to_a_row() {
+        for (period_rows, rows) in [(97, 194), (1000, 5300), (256, 4096)] {
+            assert_eq!(period(&repeated(period_rows, rows)), Some(period_rows));
+        }
+        assert_eq!(period(&repeated(1000, 1999)), None, "less than two periods");
+    }
+
+    #[test]
     fn what_changes_or_does_not_move_has_no_period() {
         let sweep: Vec<f64> = (0..4000).map(|k| (1e-5 * f64::from(k) * f64::from(k)).sin()).collect();
         assert_eq!(period(&sweep), None);

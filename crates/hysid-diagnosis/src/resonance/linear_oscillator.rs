@@ -137,4 +137,16 @@ mod tests {
             assert!((value - (lag * cosine + over * sine - lag)).abs() < 1e-13, "{t}: {value}");
         }
     }
+
+    #[test]
+    fn a_sine_at_resonance_is_amplified_by_half_the_inverse_damping() {
+        let step = 1.0 / (F * 200.0);
+        let input: Vec<f64> = (0..8000).map(|row| (TAU * F * f64::from(row) * step).sin()).collect();
+        let mut response = Vec::new();
+        Step::new(F, ZETA, step).response(&input, &mut response);
+        let largest =
+            response[7000..].iter().zip(&input[7000..]).map(|(z, u)| (z + u).abs()).fold(0.0, f64::max);
+        // Straight lines between rows make the input smaller by 8e-5.
+        assert!((largest * 2.0 * ZETA - 1.0).abs() < 2e-4, "{largest}");
+    }
 }

@@ -62,3 +62,59 @@ fn guessed(first: &[u8]) -> &'static Standard {
     detector.feed(first, true);
     detector.guess(None, Utf8Detection::Deny)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+
+    fn read(bytes: Vec<u8>, chosen: Option<&str>) -> (String, &'static str) {
+        let first = bytes.clone();
+        let chosen = chosen.map(|name| name.parse().unwrap());
+        let (mut reader, name) = decoded(Box::new(Cursor::new(bytes)), &first, chosen);
+        let mut text = String::new();
+        reader.read_to_string(&mut text).unwrap();
+        (text, name)
+    }
+
+    #[test]
+    fn encodings_are_guessed_from_a_header() {
+        let rows = "0,1;2,5;3,5\n".repeat(20);
+        for (label, header) in [
+            ("windows-1252", "Zeit [s];Längung [µm];Kraft [kN]\n"),
+            ("windows-1252", "Temps (s);Déplacement (mm);Effort (kN)\n"),
+            ("windows-1251", "Время, с;Перемещение, мм;Сила, кН\n"),
+            ("gbk", "时间(s);位移(mm);力(kN)\n"),
+            ("shift_jis", "時間(s);変位(mm);荷重(kN)\n"),
+        ] {
+            let text = format!("{header}{rows}");
+            let encoding = Standard::for_label(label.as_bytes()).unwrap();
+            let (bytes, _, is_lossy) = encoding.encode(&text);
+            assert!(!is_lossy);
+            assert_eq!(read(bytes.to_vec(), None).0, text, "{label}");
+            assert_eq!(read(bytes.into_owned(), Some(label)).0, text, "{label}");
+        }
+    }
+
+    #[test]
+    fn utf_16_is_known_with_a_mark_and_without() {
+        let text = "t\tx\n0\t1.5\n";
+        let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        for (bytes, name) in [
+            (little.clone(), "UTF-16LE"),
+            ([vec![0xff, 0xfe], little].concat(), "UTF-16LE"),
+            (big.clone(), "UTF-16BE"),
+            ([vec![0xfe, 0xff], big].concat(), "UTF-16BE"),
+        ] {
+            assert_eq!(read(bytes, None), (text.to_string(), name));
+        }
+    }
+
+    #[test]
+    fn text_in_utf_8_stays_as_it_is() {
+        assert_eq!(read(b"\xef\xbb\xbfx\n".to_vec(), None), ("x\n".into(), "UTF-8"));
+        assert_eq!(read("µ\n".into(), None), ("µ\n".into(), "UTF-8"));
+    }
+}

@@ -283,6 +283,26 @@ mod tests {
     }
 
     #[test]
+    fn the_largest_network_is_refused_with_numbers_and_advice() {
+        let rows = data(200_000, 1);
+        let sizes = serde_json::json!({ "model": "xpnn+", "stops": 300, "hidden": 300, "training": "levenberg-marquardt" });
+        let need = need(&rows, sizes);
+        assert!(need.bytes > 60e9, "{need:?}");
+        let error = need.check(16e9).unwrap_err().to_string();
+        for words in ["GB", "16.0 GB are available", "searched parameters", "fewer hidden"] {
+            assert!(error.contains(words), "{error}");
+        }
+        assert!(need.check(1e13).is_ok());
+    }
+
+    #[test]
+    fn few_rows_of_many_inputs_need_little() {
+        let wide = data(50, 99);
+        let need = need(&wide, serde_json::json!({ "model": "xpnn+" }));
+        assert!(need.bytes < 300e6, "{need:?}");
+    }
+
+    #[test]
     fn every_model_has_an_estimate() {
         let rows = data(1000, 1);
         for model in ModelName::all().chain([ModelName::AUTO]) {

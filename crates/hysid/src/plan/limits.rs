@@ -163,6 +163,15 @@ mod tests {
     }
 
     #[test]
+    fn limits_are_those_of_the_data() {
+        let limits = Limits::of(&data(0.1), &Wanted::default()).unwrap();
+        assert_eq!((limits.start, limits.rows), (0.0, 400));
+        assert!((limits.step.unwrap() - 0.1).abs() < 1e-12);
+        // The rate of 3 sin(0.5 t) is at most 1.5.
+        assert!(limits.max_rate < 1.5 && limits.max_rate > 1.49, "{}", limits.max_rate);
+    }
+
+    #[test]
     fn a_jump_of_the_input_is_no_rate_of_the_machine() {
         let mut x: Vec<f64> = (0..1000).map(|k| (0.02 * f64::from(k)).sin()).collect();
         x.iter_mut().skip(500).for_each(|x| *x += 1.0);

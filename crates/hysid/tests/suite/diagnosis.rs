@@ -185,6 +185,24 @@ fn without_a_delay_none_is_found_and_the_rate_does_not_matter() {
 }
 
 #[test]
+fn numbers_of_a_loop_are_those_of_a_stop() {
+    // A stop with threshold r driven to ±X: area 4 r (X - r), height 2 r, coercive input X - r ... theory.md (1.8).
+    let (r, amplitude) = (0.5, 2.0);
+    let x: Vec<f64> = (0..4001).map(|k| amplitude * (TAU * k as f64 / 1000.0).sin()).collect();
+    let y = hysid::operator::Stop::new(r).unwrap().run(&x);
+    let data = Dataset::new(ColumnNames::plain(1), vec![Record::new("stop", vec![x], y).unwrap()]).unwrap();
+    let diagnosis = Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap();
+    let cycle = diagnosis.cycles.last().unwrap();
+    assert!((cycle.energy - 4.0 * r * (amplitude - r)).abs() < 0.01, "{cycle:?}");
+    assert!((cycle.area - cycle.energy).abs() < 0.02, "{cycle:?}");
+    assert!((cycle.height() - 2.0 * r).abs() < 1e-9);
+    assert!((cycle.coercive_input.unwrap() - (amplitude - r)).abs() < 0.01, "{cycle:?}");
+    assert!((cycle.remanent_output.unwrap() - r).abs() < 1e-9);
+    assert!((cycle.secant_stiffness - r / amplitude).abs() < 1e-6);
+    assert!((cycle.width - 2.0 * (amplitude - r)).abs() < 0.02);
+}
+
+#[test]
 fn jitter_of_the_input_makes_no_cycles() {
     let mut generator = Generator::seed_from_u64(3);
     let clean: Vec<f64> = (0..6000).map(|k| (TAU * k as f64 / 1500.0).sin()).collect();

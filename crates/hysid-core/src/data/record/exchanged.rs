@@ -55,3 +55,26 @@ impl Dataset {
         Dataset::new(names, self.records().iter().map(Record::exchanged).collect::<Result<_>>()?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_without_output_at_the_ends_are_left_out() {
+        let record =
+            Record::new("r", vec![vec![1.0, 2.0, 3.0], vec![7.0, 8.0, 9.0]], vec![f64::NAN, 5.0, f64::NAN]);
+        let record = record.unwrap().with_time(vec![0.0, 0.1, 0.2]).unwrap().exchanged().unwrap();
+        assert_eq!((&record.inputs()[0][..], &record.inputs()[1][..]), (&[5.0][..], &[8.0][..]));
+        assert_eq!((record.output(), record.time()), (&[2.0][..], Some(&[0.1][..])));
+    }
+
+    #[test]
+    fn rows_without_output_between_others_are_refused() {
+        let record = Record::new("r", vec![vec![1.0, 2.0, 3.0]], vec![4.0, f64::NAN, 5.0]).unwrap();
+        let error = record.exchanged().unwrap_err().to_string();
+        assert!(error.contains("row 2, output") && error.contains("blank"), "{error}");
+        let record = Record::new("r", vec![vec![1.0]], vec![f64::NAN]).unwrap();
+        record.exchanged().unwrap_err();
+    }
+}

@@ -140,3 +140,30 @@ const SYMBOLS: &[(&str, f64, Dimension)] = &[
     ("rad", 1.0, ANGLE), ("mrad", 1e-3, ANGLE), ("deg °", std::f64::consts::PI / 180.0, ANGLE),
     ("percent pct %", 1e-2, NONE), ("‰", 1e-3, NONE), ("microstrain µε", 1e-6, NONE),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn compound_units_are_multiples_of_base_units() {
+        for (unit, factor, dimension) in [
+            ("kN", 1e3, FORCE),
+            ("A/m", 1.0, FIELD),
+            ("V us", 1e-6, FLUX),
+            ("N/mm2", 1e6, PRESSURE),
+            ("N/mm²", 1e6, PRESSURE),
+            ("mm/s^2", 1e-3, [1, 0, -2, 0, 0, 0]),
+            ("uC/cm2", 1e-2, [-2, 0, 1, 1, 0, 0]),
+            ("kN m", 1e3, MOMENT),
+            ("um/m", 1e-6, NONE),
+        ] {
+            let found = Quantity::of(unit).unwrap_or_else(|| panic!("{unit}"));
+            assert_eq!(found.dimension, dimension, "{unit}");
+            approx::assert_relative_eq!(found.factor, factor, max_relative = 1e-12);
+        }
+        for unit in ["", "/", "ticks", "degC", "mm/", "2"] {
+            assert_eq!(Quantity::of(unit), None, "{unit}");
+        }
+    }
+}

@@ -283,6 +283,18 @@ mod tests {
     }
 
     #[test]
+    fn previews_do_not_depend_on_the_time_step() {
+        let previews = |rows: usize| -> Vec<f64> {
+            let time: Vec<f64> = (0..rows).map(|row| row as f64 / (rows - 1) as f64).collect();
+            let wanted = vec![0.0; rows];
+            Reference { wanted: &wanted, others: &[], time: Some(&time) }.previews().collect()
+        };
+        assert_eq!(previews(65), [0.015_625, 0.031_25, 0.0625, 0.125]);
+        assert!(previews(1000).ends_with(&previews(65)));
+        assert!(previews(1).is_empty());
+    }
+
+    #[test]
     fn an_input_that_runs_to_and_fro_costs_more() {
         let wanted: Vec<f64> = (0..100).map(|row| (0.1 * f64::from(row)).sin()).collect();
         let cost = |input: Vec<f64>| {
@@ -293,5 +305,14 @@ mod tests {
         assert_eq!(cost(wanted.clone()), 0.0);
         let alternating = (0..100).map(|row| if row % 2 == 0 { 0.0 } else { 1.0 }).collect();
         assert!((0.2..0.25).contains(&cost(alternating)));
+    }
+
+    #[test]
+    fn errors_tell_the_row() {
+        let error = at_row(4, SampleError::NotFinite(f64::NAN).into());
+        assert!(error.to_string().starts_with("row 5: "), "{error}");
+        let reference = Reference { wanted: &[0.0, f64::NAN], others: &[], time: None };
+        let error = reference.check().unwrap_err();
+        assert_eq!(error.to_string(), "row 2: the wanted output is NaN, not a finite number");
     }
 }

@@ -268,6 +268,37 @@ mod tests {
     }
 
     #[test]
+    fn a_line_takes_three_values() {
+        let (found, count) = search(1.0, 0.0, |x| 2.0 * x + 0.5);
+        assert_eq!(found.ending, Ending::Reached);
+        assert!((found.point.argument - 0.25).abs() < 1e-13 && count <= 3, "{count}");
+    }
+
+    #[test]
+    fn kinks_are_no_hindrance() {
+        let kinked = |x: f64| if x < 0.7 { 0.01 * x } else { 0.007 + 30.0 * (x - 0.7) };
+        for value in [-0.015, 0.001, 0.0069, 0.0071, 5.0, 60.0] {
+            let (found, count) = search(value, 0.0, kinked);
+            assert_eq!(found.ending, Ending::Reached, "{value}");
+            assert!((kinked(found.point.argument) - value).abs() <= 1e-13 && count < 30, "{value}: {count}");
+        }
+    }
+
+    #[test]
+    fn decreasing_functions_are_found_by_the_scan() {
+        let (found, _) = search(0.3, 0.0, |x| -x.tanh());
+        assert_eq!(found.ending, Ending::Reached);
+        assert!((found.point.argument + 0.3_f64.atanh()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_ends_of_the_window_are_named() {
+        assert_eq!(search(9.0, 0.0, |x| x).0.ending, Ending::High);
+        assert_eq!(search(9.0, 0.0, |x| x).0.point.argument, 3.0);
+        assert_eq!(search(-9.0, 0.0, |x| x).0.ending, Ending::Low);
+    }
+
+    #[test]
     fn an_extremum_is_found() {
         let (found, _) = search(2.0, 0.0, |x| 1.0 - (x - 0.61) * (x - 0.61));
         assert_eq!(found.ending, Ending::Extremum);

@@ -280,6 +280,49 @@ fn what_is_left(mut products: [[f64; COLUMNS]; COLUMNS]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::DiagnosisOptions;
+    use hysid_core::data::record::{ColumnNames, Dataset, Record};
+
+    /// A sine at first, and what cubics on both sides of its top answer to it `lag` later, with `beside` added.
+    fn around_a_top(lag: f64, beside: impl Fn(f64) -> f64) -> Dataset {
+        let time: Vec<f64> = (0..400).map(|k| 0.01 * f64::from(k)).collect();
+        let top = 0.5 * std::f64::consts::PI;
+        let law = |t: f64| {
+            let q = t.sin() - 1.0;
+            let (slope, bend) = if t < top { (1.0, 0.3) } else { (2.0, -0.4) };
+            slope * q + bend * q * q + 0.1 * q.powi(3)
+        };
+        let x = time.iter().map(|t| t.sin()).collect();
+        let y = time.iter().map(|t| law(t - lag) + beside(*t)).collect();
+        let record = Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
+        Dataset::new(ColumnNames::plain(1), vec![record]).unwrap()
+    }
+
+    /// Root mean square of what is left around the top.
+    fn left(data: &Dataset, beside: Beside) -> f64 {
+        let survey = BranchSet::new(data, &DiagnosisOptions::default());
+        let turn = Turn::between(&survey, &survey.branches[0], &survey.branches[1]).unwrap();
+        let window = turn.window(0.3, (0.0, 0.03)).unwrap();
+        (turn.remainder(&window, beside) / window.len() as f64).sqrt()
+    }
+
+    #[test]
+    fn a_law_with_its_own_lag_leaves_nothing() {
+        let data = around_a_top(0.023, |_| 0.0);
+        assert!(left(&data, Beside::Lag(0.023)) < 1e-6);
+        for wrong in [Beside::Lag(0.0), Beside::Lag(0.04), Beside::Step, Beside::Rate] {
+            assert!(left(&data, wrong) > 1e-4, "{wrong:?}: {}", left(&data, wrong));
+        }
+    }
+
+    #[test]
+    fn a_viscous_part_is_no_lag() {
+        let data = around_a_top(0.0, |t| 0.05 * t.cos());
+        assert!(left(&data, Beside::Rate) < 1e-5);
+        for lag in [-0.05, -0.03, -0.01, 0.0] {
+            assert!(left(&data, Beside::Lag(lag)) > 1e-4);
+        }
+    }
 
     #[test]
     fn the_remainder_is_that_of_least_squares() {

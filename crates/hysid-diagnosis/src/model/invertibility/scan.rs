@@ -208,7 +208,21 @@ mod tests {
     }
 
     #[test]
+    fn a_jump_is_found_with_its_size() {
+        let scan = scan(|x| if x < 0.123 { 0.1 * x } else { 1.0 + 0.1 * x });
+        assert_eq!(scan.jumps.len(), 1);
+        let Jump { input, outputs } = scan.jumps[0];
+        assert!((input - 0.123).abs() < 1e-9 && (outputs.1 - outputs.0 - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
     fn a_staircase_jumps_although_all_cells_are_equal() {
         assert!(!scan(|x| (64.0 * x).floor()).jumps.is_empty());
+    }
+
+    #[test]
+    fn flat_parts_are_wider_than_a_cell() {
+        let scan = scan(|x| f64::max(x, 0.5));
+        assert_eq!(scan.flats(1e-6), [(-1.0, 0.5)]);
     }
 }
