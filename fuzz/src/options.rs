@@ -2,8 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use hysid::data::rate::RateMethod;
 use hysid::fit::{identify, memory_need};
-use hysid::options::chosen::{NamedOptions, RateChoice};
+use hysid::options::chosen::NamedOptions;
 use hysid::options::table::OPTIONS;
 use serde_json::{Map, Value, json};
 
@@ -29,7 +30,7 @@ pub fn run(data: &[u8]) {
         Ok(chosen) => chosen,
         Err(error) => return assert_is_one_line(&error.to_string()),
     };
-    let rate = [RateChoice::Auto, RateChoice::None][data.len() % 2].method(chosen.model(), true);
+    let rate = Some(RateMethod::Backward).filter(|_| data.len() % 2 == 0 && chosen.model().uses_rate());
     let request = chosen.request(rate, false);
     let data = fixtures::data();
     match memory_need(data, &request, 1).and_then(|need| need.check(MEMORY)) {

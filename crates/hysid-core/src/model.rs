@@ -602,6 +602,26 @@ impl Model {
         Ok(Self::new(body, preprocessing, rate, data, provenance.into())?.with_band(band))
     }
 
+    /// The same model with this band, at least as wide as its errors on these data ask for, or without one.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`].
+    pub fn with_band_over(self, band: Option<Band>, data: &Dataset) -> Result<Self> {
+        let Some(band) = band else { return Ok(self.with_band(None)) };
+        let mut errors = Predictions::default();
+        for record in data.records() {
+            let mut output = vec![0.0; record.len()];
+            let mut spreads = vec![Spread::default(); record.len()];
+            Runner::of_model(&self).rows(&record.excitation(), 0, &mut output, Some(&mut spreads))?;
+            for ((y, simulated), spread) in record.output().iter().zip(output).zip(spreads) {
+                if !y.is_nan() {
+                    errors.push((y - simulated).abs() / band.scale(spread.disagreement), 1.0);
+                }
+            }
+        }
+        Ok(self.with_band(Some(band.at_least(&mut errors))))
+    }
+
     /// The same model with this band, or without one.
     pub fn with_band(mut self, band: Option<Band>) -> Self {
         self.band = band;

@@ -1,6 +1,6 @@
 //! The folds of a cross-validation as ranges of rows.
 
-use hysid::validation::{CrossValidator, Cut};
+use hysid::validation::{CrossValidator, Cut, RowsOf};
 use pyo3::prelude::*;
 
 use crate::data::Dataset;
@@ -21,9 +21,12 @@ pub fn folds(data: &Dataset, most: usize) -> PyResult<Vec<(Vec<Rows>, Vec<Rows>)
             let trained = (0..records.len()).filter(|record| !held.contains(record));
             Some((trained.map(whole).collect(), held.iter().copied().map(whole).collect()))
         }
-        Cut::Forecast { record, begin, end, .. } => {
-            Some((vec![(record, 0, begin)], vec![(record, begin, end)]))
-        }
+        Cut::Forecast { ref judged, .. } => Some(
+            judged
+                .iter()
+                .map(|&RowsOf { record, begin, end }| ((record, 0, begin), (record, begin, end)))
+                .unzip(),
+        ),
         Cut::Block { .. } => None,
     };
     let divided = CrossValidator::new(&data.set, most).map_err(refused)?;

@@ -38,7 +38,7 @@ impl FitSpec {
         let chosen = NamedOptions::of(serde_json::from_str(options).map_err(refused)?).map_err(refused)?;
         let rate: RateChoice = rate.parse().map_err(refused)?;
         let is_decided = matches!(rate, RateChoice::Method(_));
-        let rate = rate.method(chosen.model(), data.set.has_time());
+        let rate = rate.method(chosen.model(), &data.set);
         let request = chosen.request(rate, is_decided);
         chosen.model().check_data(&data.set, rate).map_err(refused)?;
         Ok(Self { chosen, request })

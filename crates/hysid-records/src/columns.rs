@@ -8,7 +8,7 @@ use std::path::Path;
 
 use anyhow::{Result, bail, ensure};
 use hysid_core::data::rate::RateMethod;
-use hysid_core::data::record::ColumnNames;
+use hysid_core::data::record::{ColumnNames, Dataset};
 use hysid_core::model::Model;
 use hysid_core::options::chosen::{NamedOptions, RateChoice};
 use hysid_core::options::{FitSpec, ModelName};
@@ -66,30 +66,30 @@ impl Default for RateOption {
 }
 
 impl RateOption {
-    /// The method that it means for a model and data with these columns; `None` for no rate.
+    /// The method that it means for a model and data; `None` for no rate.
     ///
     /// # Errors
     /// A method that needs a time column, without one.
-    pub fn method(&self, roles: &Roles, model: ModelName) -> Result<Option<RateMethod>> {
+    pub fn method(&self, data: &Dataset, model: ModelName) -> Result<Option<RateMethod>> {
         Ok(match self {
             Self::Column(_) => Some(RateMethod::Given),
-            Self::Choice(RateChoice::Method(_)) if roles.time.is_none() => {
+            Self::Choice(RateChoice::Method(_)) if !data.has_time() => {
                 bail!(
                     "there is no time column to compute the rate from (name it with --time, or use --rate \
                      none)"
                 )
             }
-            Self::Choice(choice) => choice.method(model, roles.time.is_some()),
+            Self::Choice(choice) => choice.method(model, data),
         })
     }
 
-    /// What options of a fit ask for, with these columns.
+    /// What options of a fit ask for, with these data.
     ///
     /// # Errors
     /// As [`RateOption::method`].
-    pub fn request(&self, chosen: &NamedOptions, roles: &Roles) -> Result<FitSpec> {
+    pub fn request(&self, chosen: &NamedOptions, data: &Dataset) -> Result<FitSpec> {
         let is_decided = !matches!(self, Self::Choice(RateChoice::Auto | RateChoice::None));
-        Ok(chosen.request(self.method(roles, chosen.model())?, is_decided))
+        Ok(chosen.request(self.method(data, chosen.model())?, is_decided))
     }
 }
 

@@ -1,6 +1,7 @@
 //! What the program understood of the data, said before the work begins.
 
 use hysid_core::data::rate::RateMethod;
+use hysid_core::data::record::{Protocol, Speeds, protocols};
 use hysid_core::data::summary::Summary;
 use hysid_core::network::Architecture;
 use hysid_core::options::FitSpec;
@@ -16,6 +17,9 @@ use hysid_tables::Origin;
 /// Room for a label and the blank behind it.
 const LABEL: usize = 9;
 
+/// Repeated tests that are said one by one.
+const MOST_REPEATS: usize = 5;
+
 /// Inputs that are said one by one.
 const MOST_INPUTS: usize = 20;
 
@@ -27,7 +31,14 @@ pub fn understanding(
     model: &str,
 ) -> Vec<(String, String)> {
     let used = request.rate().filter(|_| request.model().uses_rate());
-    let rate = rate(&data.roles.inputs[0], data.roles.rate.as_deref(), used);
+    let rate = match used {
+        None if request.model().uses_rate() && data.set.has_time() && data.set.speeds() == Speeds::One => {
+            "none: the data pass each place at one speed, which shows no dependence on it (to use the rate: \
+             --rate backward)"
+                .into()
+        }
+        used => rate(&data.roles.inputs[0], data.roles.rate.as_deref(), used),
+    };
     let model = format!("{}{model}", request.model().name());
     let mut lines = of_data(data, summary);
     lines.extend([("rate".to_string(), rate), ("model".to_string(), model)]);
@@ -52,6 +63,9 @@ pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
         }
     }
     say("samples", samples(summary));
+    for text in repeats(data) {
+        say("repeats", text);
+    }
     if let Some(time) = &data.roles.time {
         say(
             "time",
@@ -150,6 +164,25 @@ fn samples(summary: &Summary) -> String {
         }
     };
     format!("{}, {scored}, in {records}", summary.rows)
+}
+
+/// What repeats what, and the noise that this shows; of many protocols the first few.
+fn repeats(data: &Data) -> Vec<String> {
+    let records = data.set.records();
+    let (low, high) = data.set.output_range();
+    let repeated = protocols(records).into_iter().filter(|protocol| protocol.runs.len() > 1);
+    let words = |protocol: Protocol| {
+        let names: Vec<&str> = protocol.runs.iter().map(|&run| records[run].name()).collect();
+        let noise = match protocol.noise(records) {
+            Some(noise) if noise > 0.0 => format!(
+                "; their outputs differ by noise of {:.3} % of the range (standard deviation), the least error of any model",
+                Significant(100.0 * noise / (high - low))
+            ),
+            _ => String::new(),
+        };
+        format!("{} are runs of one test, held out together{noise}", listed(&names))
+    };
+    repeated.take(MOST_REPEATS).map(words).collect()
 }
 
 fn time_steps(summary: &Summary, unit: &str) -> String {

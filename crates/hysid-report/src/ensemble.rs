@@ -1,4 +1,4 @@
-//! What was chosen by validation, what each part of it adds and what it costs.
+//! What was chosen by validation, what each part of it predicts and costs.
 
 use std::time::Duration;
 
@@ -34,7 +34,7 @@ fn counts(candidate: &CandidateResult) -> bool {
     candidate.share.inside > 0.0 || candidate.share.outside > 0.0
 }
 
-/// Those that answer together, what each adds and what it costs.
+/// Those that answer together, what each predicts and costs.
 fn nodes(
     report: &Report,
     selection: &Selection,
@@ -52,8 +52,7 @@ fn nodes(
             one.kind.as_str().into(),
             members.len().into(),
             shares(one).into(),
-            errors(one.error_percent).into(),
-            without(one, selection),
+            Cell::number(one.held_out_percent, 3),
             Cell::number(cost, 2),
             parameters.into(),
         ]
@@ -63,43 +62,30 @@ fn nodes(
         "kind",
         "members",
         "share (%)",
-        "error alone (% of std)",
-        "ensemble error without it (change)",
+        "held-out error alone (% of std)",
         "ns per sample",
         "parameters",
     ];
-    let (adding, idle): (Vec<&CandidateResult>, Vec<&CandidateResult>) =
-        candidates.into_iter().partition(|one| !adds_nothing(one, selection));
     let (low, high) = ensemble.range();
     let words = format!(
         "The members of a candidate are fits from different random starts. A weighted median combines the \
-         candidates; the share is the weight of a candidate. Errors are those of free runs on held-out data, geometric means over the folds. In \
-         parentheses: the change of the error without the candidate. Of two numbers, the first is for rows \
-         before the first input leaves the trained range ({} to {}), the second for the rows after. The \
-         cost was measured on this machine, on one thread.",
+         candidates; the share is the weight of a candidate. Of two shares, the first is for rows before the first \
+         input leaves the trained range ({} to {}), the second for the rows after. Errors are those of free \
+         runs over all rows that were held out. The cost was measured on this machine, on one thread.",
         number(low, 4),
         number(high, 4)
     );
-    let mut table = Table::new(columns).with_rows(adding.iter().map(row));
+    let mut table = Table::new(columns).with_rows(candidates.iter().map(row));
     table.push([
         "whole ensemble".into(),
         "".into(),
         ensemble.members().len().into(),
         share(1.0).into(),
-        errors(selection.error_percent).into(),
-        "".into(),
+        Cell::number(selection.held_out_percent, 3),
         Cell::number(cost(report, report.model), 2),
         report.model.parameters().into(),
     ]);
-    let mut parts = vec![Part::Table(table), Part::note(words)];
-    if !idle.is_empty() {
-        let summary = format!("Candidates that do not lower the error of the ensemble: {}", idle.len());
-        parts.push(Part::Folded(
-            summary,
-            vec![Part::Table(Table::new(columns).with_rows(idle.iter().map(row)))],
-        ));
-    }
-    parts
+    vec![Part::Table(table), Part::note(words)]
 }
 
 /// What a single model was chosen among, or distilled from.
@@ -110,10 +96,10 @@ fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> Vec<P
             one.name.as_str().into(),
             one.kind.as_str().into(),
             shares(one).into(),
-            errors(one.error_percent).into(),
+            Cell::number(one.held_out_percent, 3),
         ]
     };
-    let table = Table::new(["candidate", "kind", "share (%)", "error alone (% of std)"])
+    let table = Table::new(["candidate", "kind", "share (%)", "held-out error (% of std)"])
         .with_rows(candidates.iter().map(row));
     let is_distilled = selection.single.as_ref().is_none_or(|single| single.distilled);
     let (first, words) = match is_distilled {
@@ -130,22 +116,22 @@ fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> Vec<P
             "The share is the weight of a candidate in the ensemble.",
         ),
     };
-    let errors = "Errors are those of free runs on held-out data, geometric means over the folds. Of two \
-                  numbers, the first is for rows before the first input leaves the trained range, the \
-                  second for the rows after.";
+    let errors = "Errors are those of free runs over all rows that were held out. Of two shares, the first is for rows \
+                  before the first input leaves the trained range, the second for the rows after.";
     vec![Part::paragraph(first), Part::Table(table), Part::note(format!("{words} {errors}"))]
 }
 
 /// The candidates that are not part of the model: those that were validated, and those that were dropped before.
 fn left_out(candidates: &[&CandidateResult], dropped: &[String]) -> Option<Part> {
     let mut candidates = candidates.to_vec();
-    candidates.sort_by(|a, b| a.error_percent.0.total_cmp(&b.error_percent.0));
+    let error = |one: &CandidateResult| one.held_out_percent.unwrap_or(f64::INFINITY);
+    candidates.sort_by(|a, b| error(a).total_cmp(&error(b)));
     let row = |one: &&CandidateResult| {
-        vec![one.name.as_str().into(), one.kind.as_str().into(), errors(one.error_percent).into()]
+        vec![one.name.as_str().into(), one.kind.as_str().into(), Cell::number(one.held_out_percent, 3)]
     };
     let mut parts = Vec::new();
     if !candidates.is_empty() {
-        let columns = ["candidate", "kind", "error alone (% of std)"];
+        let columns = ["candidate", "kind", "held-out error (% of std)"];
         parts.push(Part::Table(Table::new(columns).with_rows(candidates.iter().map(row))));
     }
     if !dropped.is_empty() {
@@ -189,33 +175,7 @@ fn shares(candidate: &CandidateResult) -> String {
     pair(share(candidate.share.inside), share(candidate.share.outside))
 }
 
-fn errors((inside, outside): (f64, f64)) -> String {
-    pair(number(inside, 3), number(outside, 3))
-}
-
 /// What holds inside the trained range and beyond it; once where both are the same.
 fn pair(inside: String, outside: String) -> String {
     if inside == outside { inside } else { format!("{inside} / {outside}") }
-}
-
-/// A change of the ensemble's error by less than this share of it is none.
-const NO_CHANGE: f64 = 1e-3;
-
-/// True if the ensemble's error would not be larger without this candidate, inside the trained range and beyond it.
-fn adds_nothing(candidate: &CandidateResult, selection: &Selection) -> bool {
-    candidate.without_percent.is_some_and(|(inside, outside)| {
-        let (with_inside, with_outside) = selection.error_percent;
-        inside <= (1.0 + NO_CHANGE) * with_inside && outside <= (1.0 + NO_CHANGE) * with_outside
-    })
-}
-
-fn without(candidate: &CandidateResult, selection: &Selection) -> Cell {
-    let Some(without) = candidate.without_percent else { return Cell::Missing };
-    let added = without.0 - selection.error_percent.0;
-    let added = match added {
-        nothing if nothing.abs() < NO_CHANGE * selection.error_percent.0 => "±0".into(),
-        less if less < 0.0 => number(less, 2),
-        more => format!("+{}", number(more, 2)),
-    };
-    format!("{} ({added})", errors(without)).into()
 }

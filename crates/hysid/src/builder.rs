@@ -67,7 +67,8 @@ impl<'a> Fit<'a> {
     }
 
     /// Sets the method of the rate of the first input; `None` for no rate. By default, a model that uses a
-    /// rate takes central differences if there are time stamps.
+    /// rate takes backward differences if there are time stamps and the input passes its range at several speeds
+    /// ([`Dataset::speeds`]): data with one speed at each place do not show a dependence on the rate.
     pub fn rate(mut self, method: Option<RateMethod>) -> Self {
         self.rate = method.map_or(RateChoice::None, RateChoice::Method);
         self
@@ -123,7 +124,7 @@ impl<'a> Fit<'a> {
     fn request(&self, data: &Dataset) -> Result<FitSpec> {
         let chosen = self.chosen()?;
         let model = chosen.model();
-        let rate = self.rate.method(model, data.has_time());
+        let rate = self.rate.method(model, data);
         model.check_data(data, rate)?;
         Ok(chosen.request(rate, matches!(self.rate, RateChoice::Method(_))))
     }
@@ -159,7 +160,7 @@ pub fn compare(train: &Dataset, test: &Dataset, models: &[&str], seed: u64) -> R
         [] => ModelName::all().collect(),
         names => names.iter().map(|name| name.parse()).collect::<Result<_>>()?,
     };
-    let rate = |model| RateChoice::Auto.method(model, train.has_time());
+    let rate = |model| RateChoice::Auto.method(model, train);
     let requests = models.into_iter().flat_map(|model| FitSpec::of(model, rate(model), seed).variants());
     let mut all: Vec<Compared> = requests.filter_map(|request| compared(train, test, &request)).collect();
     let error =

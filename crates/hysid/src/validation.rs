@@ -1,8 +1,8 @@
 //! Cross-validation: a model is fitted to a part of the data and evaluated on the rest, in free run.
 //!
-//! Several records are divided into folds, each held out in turn. Records that are copies or parts of one another
-//! stay in one fold, because a copy of training data does not measure the error on new data. A single record is
-//! divided in time: a model is fitted to its beginning and predicts the following rows, with its memory continued.
+//! Several records are divided into folds, each held out in turn. Records of one protocol stay in one fold, copies,
+//! parts and repeats of a test: a second run of training data does not measure the error on new data. A single record, and
+//! each run of a single protocol, is divided in time: a model is fitted to its beginning and predicts the following rows, with its memory continued.
 //! In addition, blocks from the beginning and the middle are held out, so that every row is held out at least once.
 //! `auto` uses three of these five folds.
 
@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::metrics::Errors;
-use crate::data::record::{Dataset, Record, measurements};
+use crate::data::record::{Dataset, Protocol, Record, protocols};
 use crate::error::{Error, Result};
 use crate::model::Model;
 pub(crate) use pooled::PooledErrors;
@@ -52,6 +52,9 @@ const FORECASTS: [(f64, f64); 3] = [(0.5, 0.25), (0.6, 0.3), (0.7, 0.3)];
 /// A forecast from at least so many percent of a record resembles one from all of it.
 const MOST_OF_A_RECORD: f64 = 60.0;
 
+/// Rows with an output of a record that is cut in time.
+const FEWEST_TO_CUT: usize = 4;
+
 /// Shares of a single record between which a block is held out from the rest.
 const BLOCKS: [(f64, f64); 2] = [(0.0, 0.35), (0.35, 0.65)];
 
@@ -81,6 +84,34 @@ pub fn folds_of_cycles(data: &Dataset, count: usize) -> Vec<Fold> {
     (0..count).map(fold).filter(has_enough).collect()
 }
 
+/// Blocks that the rows of a record are cut into, and folds that they are dealt to, for data of one loop.
+const BLOCKS_OF_LOOP: usize = 24;
+const FOLDS_OF_LOOP: usize = 4;
+
+/// Folds of data of one loop: short blocks of rows, dealt to the folds in turn. What follows a part of a loop does not tell
+/// whether a candidate fits the loop; what lies between its parts does.
+pub(crate) fn folds_of_loop(data: &Dataset) -> Vec<Fold> {
+    let of_fold = |fold: usize, is_held: bool| {
+        let part = |record: &Record| {
+            let (mut seen, scored) = (0, record.scored().max(1));
+            let is_in = record.output().iter().map(|y| {
+                let block = seen * BLOCKS_OF_LOOP / scored;
+                seen += usize::from(!y.is_nan());
+                (block % FOLDS_OF_LOOP == fold) == is_held
+            });
+            let is_in: Vec<bool> = is_in.collect();
+            record.clone().scored_where(|row| is_in[row])
+        };
+        data.of_records(data.records().iter().map(part).collect())
+    };
+    let fold = |fold: usize| Fold {
+        name: format!("parts {}, {}, ... of {BLOCKS_OF_LOOP}", fold + 1, fold + 1 + FOLDS_OF_LOOP),
+        train: of_fold(fold, false),
+        held_out: of_fold(fold, true),
+    };
+    (0..FOLDS_OF_LOOP).map(fold).filter(has_enough).collect()
+}
+
 /// The folds by which candidates are chosen: those of several records; of a single one the forecasts from most of it
 /// and the block from its middle. The others choose no better and cost as much (docs/accuracy.md).
 pub(crate) fn folds_to_choose_by(data: &Dataset, most: usize) -> Vec<Fold> {
@@ -101,28 +132,31 @@ pub(crate) fn folds_to_choose_by(data: &Dataset, most: usize) -> Vec<Fold> {
 pub enum Cut {
     /// These records are held out.
     Records(Vec<usize>),
-    /// What follows these rows of a single record is judged, up to an end; shares of the rows, in percent.
+    /// What follows some rows of each run of a single protocol is judged, up to an end.
     Forecast {
-        /// The record.
-        record: usize,
-        /// The first row that is judged.
-        begin: usize,
-        /// The row after the last one.
-        end: usize,
-        /// Where the judged rows lie.
+        /// The rows of each run that are judged.
+        judged: Vec<RowsOf>,
+        /// Where the judged rows lie; shares of the rows, in percent.
         percent: (f64, f64),
     },
-    /// A block of rows of a single record is held out from the rest.
+    /// A block of rows of each run of a single protocol is held out from the rest.
     Block {
-        /// The record.
-        record: usize,
-        /// The first row of the block.
-        begin: usize,
-        /// The row after the last one.
-        end: usize,
-        /// Where the block lies.
+        /// The rows of the block in each run.
+        judged: Vec<RowsOf>,
+        /// Where the block lies; shares of the rows, in percent.
         percent: (f64, f64),
     },
+}
+
+/// Rows of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RowsOf {
+    /// The record.
+    pub record: usize,
+    /// The first row.
+    pub begin: usize,
+    /// The row after the last one.
+    pub end: usize,
 }
 
 impl Cut {
@@ -133,30 +167,50 @@ impl Cut {
                 let names: Vec<&str> = held_out.records().iter().map(Record::name).collect();
                 Fold { name: names.join(", "), train, held_out }
             }
-            &Self::Forecast { record, begin, end, percent: (from, to) } => Fold {
-                name: format!("{from} to {to} %, from what came before"),
-                train: data.of_record(data.records()[record].rows_up_to(begin)),
-                held_out: data
-                    .of_record(data.records()[record].rows_up_to(end).scored_where(|row| row >= begin)),
-            },
-            &Self::Block { record, begin, end, percent: (from, to) } => Fold {
-                name: format!("{from} to {to} %, from the rest"),
-                train: data
-                    .of_record(data.records()[record].clone().scored_where(|row| row < begin || row >= end)),
-                held_out: data
-                    .of_record(data.records()[record].rows_up_to(end).scored_where(|row| row >= begin)),
-            },
+            Self::Forecast { judged, percent: (from, to) } => {
+                let cut = |part: &dyn Fn(&Record, RowsOf) -> Record| of_runs(data, judged, part);
+                Fold {
+                    name: format!("{from} to {to} %, from what came before"),
+                    train: cut(&|record, rows| record.rows_up_to(rows.begin)),
+                    held_out: cut(&held_out),
+                }
+            }
+            Self::Block { judged, percent: (from, to) } => {
+                let cut = |part: &dyn Fn(&Record, RowsOf) -> Record| of_runs(data, judged, part);
+                Fold {
+                    name: format!("{from} to {to} %, from the rest"),
+                    train: cut(&|record, rows| {
+                        record.clone().scored_where(|row| row < rows.begin || row >= rows.end)
+                    }),
+                    held_out: cut(&held_out),
+                }
+            }
         }
     }
 }
 
-/// The cuts whose folds have enough to fit to and to judge on.
+/// A part of each run.
+fn of_runs(data: &Dataset, judged: &[RowsOf], part: &dyn Fn(&Record, RowsOf) -> Record) -> Dataset {
+    data.of_records(judged.iter().map(|&rows| part(&data.records()[rows.record], rows)).collect())
+}
+
+/// A record up to the last judged row, without the outputs before the first.
+fn held_out(record: &Record, rows: RowsOf) -> Record {
+    record.rows_up_to(rows.end).scored_where(|row| row >= rows.begin)
+}
+
+/// The cuts whose folds have enough to fit to and to judge on. Where there is one protocol with an output, or the
+/// protocols are too small to be held out, time decides.
 fn cuts(data: &Dataset, most: usize) -> Vec<Cut> {
-    let cuts = match measurements(data.records()).as_slice() {
-        [alone] => of_record(alone[0], &data.records()[alone[0]]),
-        several => of_records(data, several, most),
-    };
-    cuts.into_iter().filter(|cut| has_enough(&cut.fold(data))).collect()
+    let enough =
+        |cuts: Vec<Cut>| -> Vec<Cut> { cuts.into_iter().filter(|cut| has_enough(&cut.fold(data))).collect() };
+    let is_scored = |protocol: &Protocol| data.records()[protocol.runs[0]].scored() > 0;
+    let protocols: Vec<Protocol> = protocols(data.records()).into_iter().filter(is_scored).collect();
+    let several = if protocols.len() > 1 { enough(of_protocols(&protocols, most)) } else { Vec::new() };
+    if several.len() > 1 {
+        return several;
+    }
+    enough(in_time(data, &protocols.into_iter().flat_map(|protocol| protocol.runs).collect::<Vec<usize>>()))
 }
 
 /// Enough to fit to and to judge on.
@@ -164,20 +218,17 @@ fn has_enough(fold: &Fold) -> bool {
     fold.train.check_identifiable(FEWEST_ROWS).is_ok() && fold.held_out.scored() > 0
 }
 
-/// Folds of several measurements.
-fn of_records(data: &Dataset, measurements: &[Vec<usize>], most: usize) -> Vec<Cut> {
-    let folds = deal(data, measurements, most);
-    if folds.len() < 2 { Vec::new() } else { folds.into_iter().map(Cut::Records).collect() }
+/// Folds of several protocols.
+fn of_protocols(protocols: &[Protocol], most: usize) -> Vec<Cut> {
+    deal(protocols, most).into_iter().map(Cut::Records).collect()
 }
 
-/// The records of each of at most `most` folds: measurements with an output are dealt out in their order; copies stay
-/// together.
-fn deal(data: &Dataset, measurements: &[Vec<usize>], most: usize) -> Vec<Vec<usize>> {
-    let is_scored = |records: &&Vec<usize>| data.records()[records[0]].scored() > 0;
-    let scored: Vec<&Vec<usize>> = measurements.iter().filter(is_scored).collect();
-    let count = scored.len().min(most);
+/// The records of each of at most `most` folds: protocols are dealt out in their order; copies and repeats stay together.
+fn deal(protocols: &[Protocol], most: usize) -> Vec<Vec<usize>> {
+    let count = protocols.len().min(most);
     let fold = |fold: usize| {
-        let records = scored.iter().skip(fold).step_by(count).flat_map(|records| (*records).clone());
+        let records =
+            protocols.iter().skip(fold).step_by(count).flat_map(|protocol| protocol.records.clone());
         let mut held: Vec<usize> = records.collect();
         held.sort_unstable();
         held
@@ -185,34 +236,35 @@ fn deal(data: &Dataset, measurements: &[Vec<usize>], most: usize) -> Vec<Vec<usi
     (0..count).map(fold).collect()
 }
 
-/// The records of a data set as they are dealt out.
-fn dealt(data: &Dataset, most: usize) -> Vec<Vec<usize>> {
-    deal(data, &measurements(data.records()), most)
-}
-
-/// A single measurement is cut in time: the record at this place.
-fn of_record(place: usize, record: &Record) -> Vec<Cut> {
-    let scored: Vec<usize> = (0..record.len()).filter(|&row| !record.output()[row].is_nan()).collect();
-    if scored.len() < 4 * FEWEST_ROWS {
+/// Some records are all cut in time at the same shares of their rows. The others are in no fold.
+fn in_time(data: &Dataset, runs: &[usize]) -> Vec<Cut> {
+    let is_scored = |row: usize, record: &Record| !record.output()[row].is_nan();
+    let scored = |&run: &usize| -> (usize, Vec<usize>) {
+        let record = &data.records()[run];
+        (run, (0..record.len()).filter(|&row| is_scored(row, record)).collect())
+    };
+    let runs: Vec<(usize, Vec<usize>)> =
+        runs.iter().map(scored).filter(|(_, scored)| scored.len() >= FEWEST_TO_CUT).collect();
+    if runs.iter().map(|(_, scored)| scored.len()).sum::<usize>() < 4 * FEWEST_ROWS {
         return Vec::new();
     }
-    let row = |share: f64| {
-        let from = (share * scored.len() as f64).round() as usize;
-        scored.get(from).copied().unwrap_or(record.len())
+    let judged = |from: f64, to: f64| -> Vec<RowsOf> {
+        let of_run = |(record, scored): &(usize, Vec<usize>)| {
+            let row = |share: f64| {
+                let place = (share * scored.len() as f64).round() as usize;
+                scored.get(place).copied().unwrap_or(data.records()[*record].len())
+            };
+            RowsOf { record: *record, begin: row(from), end: row(to) }
+        };
+        runs.iter().map(of_run).collect()
     };
     let percent = |from: f64, to: f64| ((100.0 * from).round(), (100.0 * to).round());
-    let forecast = |&(fitted, judged): &(f64, f64)| Cut::Forecast {
-        record: place,
-        begin: row(fitted),
-        end: row(fitted + judged),
-        percent: percent(fitted, fitted + judged),
+    let forecast = |&(fitted, share): &(f64, f64)| Cut::Forecast {
+        judged: judged(fitted, fitted + share),
+        percent: percent(fitted, fitted + share),
     };
-    let block = |&(from, to): &(f64, f64)| Cut::Block {
-        record: place,
-        begin: row(from),
-        end: row(to),
-        percent: percent(from, to),
-    };
+    let block =
+        |&(from, to): &(f64, f64)| Cut::Block { judged: judged(from, to), percent: percent(from, to) };
     FORECASTS.iter().map(forecast).chain(BLOCKS.iter().map(block)).collect()
 }
 
@@ -388,6 +440,31 @@ mod tests {
         assert!(one.iter().all(|fold| is_of_copy(&fold.train) && is_of_copy(&fold.held_out)));
         let (kept, held) = data(vec![a.clone(), a.clone()]).split_for_validation(0.3).unwrap();
         assert_eq!((kept.scored(), held.scored()), (140, 60));
+    }
+
+    /// Two runs of one test, with other noise, are cut in time together: neither shows what is held out of the other.
+    #[test]
+    fn repeats_are_held_out_together() {
+        let run = |name: &str, size: f64, seed: usize| {
+            let record = record(name, 200, size);
+            let noise = |k: usize| 0.01 * (1e4 * ((seed + k) as f64).sin()).fract();
+            let output = record.output().iter().enumerate().map(|(k, y)| y + noise(k)).collect();
+            record.with_output(output).unwrap()
+        };
+        let several = folds(&data(vec![run("a", 1.0, 1), run("b", 1.5, 2), run("again", 1.0, 3)]), 5);
+        let names: Vec<&str> = several.iter().map(|fold| fold.name.as_str()).collect();
+        assert_eq!(names, ["a, again", "b"]);
+        for fold in folds(&data(vec![run("a", 1.0, 1), run("again", 1.0, 3)]), 5) {
+            let rows = |set: &Dataset, run: usize| -> Vec<usize> {
+                let output = set.records()[run].output();
+                (0..output.len()).filter(|&row| !output[row].is_nan()).collect()
+            };
+            assert_eq!(fold.held_out.records().len(), 2, "{}", fold.name);
+            assert_eq!(rows(&fold.held_out, 0), rows(&fold.held_out, 1));
+            assert!(rows(&fold.held_out, 0).iter().all(|row| !rows(&fold.train, 1).contains(row)));
+        }
+        let rows = RowFolds::of(&data(vec![run("a", 1.0, 1), run("again", 1.0, 3)]));
+        assert_eq!(rows.of_rows[0], rows.of_rows[1]);
     }
 
     /// What is held out of a single record is not among what is fitted to, and the way there is driven.

@@ -39,15 +39,15 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     check_outputs(&page.iter().collect::<Vec<_>>(), &inputs)?;
     let models: Vec<ModelName> =
         if arguments.models.is_empty() { every_model() } else { arguments.models.clone() };
+    let file = tables[0].file.clone();
+    let train = data_with(tables, roles, arguments.columns.reading.zero)?;
     let mut requests = Vec::new();
     for &model in &models {
         let chosen =
             NamedOptions { model: Some(model), seed: Some(arguments.seed), ..NamedOptions::default() };
-        let request =
-            arguments.columns.rate.request(&chosen, &roles).with_context(|| tables[0].file.clone())?;
+        let request = arguments.columns.rate.request(&chosen, &train.set).with_context(|| file.clone())?;
         requests.extend(request.variants());
     }
-    let train = data_with(tables, roles, arguments.columns.reading.zero)?;
 
     data_warnings(&train, &Summary::of(&train.set)).iter().for_each(warning);
     if let Some(test) = &test {

@@ -43,17 +43,18 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     check_outputs(&outputs, &inputs)?;
     let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let chosen = &arguments.model.0;
+    let file = tables[0].file.clone();
+    let data = data_with(tables, roles, arguments.columns.reading.zero)?;
+    let data = if arguments.inverse { data.exchanged()? } else { data };
     let request = match &begun {
         Some(begun) => FitSpec::Network(options_of(begun, &arguments.columns.rate)?),
-        None => arguments.columns.rate.request(chosen, &roles).with_context(|| tables[0].file.clone())?,
+        None => arguments.columns.rate.request(chosen, &data.set).with_context(|| file)?,
     };
     if arguments.checkpoint.is_some() {
         check_checkpoints(&request)?;
     }
     let keeper = checkpoint.map(Keeper::new).transpose()?;
     let resumable = keeper.as_ref().map(|keeper| keeper.path().to_path_buf());
-    let data = data_with(tables, roles, arguments.columns.reading.zero)?;
-    let data = if arguments.inverse { data.exchanged()? } else { data };
     warn_of_ignored(chosen);
     let work = Work {
         request: &request,

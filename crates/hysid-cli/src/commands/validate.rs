@@ -39,8 +39,8 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     let file = tables[0].file.clone();
     let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let chosen = &arguments.model.0;
-    let request = arguments.columns.rate.request(chosen, &roles).with_context(|| file.clone())?;
     let data = data_with(tables, roles, arguments.columns.reading.zero)?;
+    let request = arguments.columns.rate.request(chosen, &data.set).with_context(|| file.clone())?;
     warn_of_ignored(chosen);
     let mut validator =
         CrossValidator::new(&data.set, arguments.folds).map_err(|error| anyhow!("{file}: {error}"))?;

@@ -7,15 +7,19 @@ mod copies;
 mod exchanged;
 mod excitation;
 mod fingerprint;
+mod protocols;
+mod speeds;
 mod thinning;
 mod values;
 
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, Result};
 pub use copies::Likeness;
-pub use copies::{Copy, copies, likeness, measurements};
+pub use copies::{Copy, copies, likeness};
 pub use excitation::Excitation;
 pub use fingerprint::Fingerprint;
+pub use protocols::{Protocol, protocols};
+pub use speeds::Speeds;
 pub use thinning::Thinning;
 pub use values::Values;
 
@@ -445,23 +449,31 @@ impl Dataset {
         (pick(true), pick(false))
     }
 
+    /// A data set of these records, which have the same columns.
+    pub fn of_records(&self, records: Vec<Record>) -> Dataset {
+        Dataset { names: self.names.clone(), records }
+    }
+
     /// A data set of this record alone, which has the same columns.
     pub fn of_record(&self, record: Record) -> Dataset {
         Dataset { names: self.names.clone(), records: vec![record] }
     }
 
-    /// Divides the data into training and validation data. Of several measurements some are held out; a
-    /// single one is divided in time at the fraction `1 - held_out`, and its second part keeps the memory of
+    /// Divides the data into training and validation data. Of several protocols some are held out; the runs of a
+    /// single one are divided in time at the fraction `1 - held_out`, and their second parts keep the memory of
     /// the first.
     ///
     /// The records held out are those in the middle of the order by the range of the first input, so that
     /// validation data lie between training data. `None` if there are too few data.
     pub fn split_for_validation(&self, held_out: f64) -> Option<(Dataset, Dataset)> {
-        let mut order = measurements(&self.records);
-        if let [alone] = order.as_slice() {
-            let (head, tail) = self.records[alone[0]].split_at_fraction(1.0 - held_out)?;
-            return Some((self.of_record(head), self.of_record(tail)));
+        let protocols = protocols(&self.records);
+        if let [alone] = protocols.as_slice() {
+            let parts =
+                alone.runs.iter().filter_map(|&run| self.records[run].split_at_fraction(1.0 - held_out));
+            let (heads, tails): (Vec<Record>, Vec<Record>) = parts.unzip();
+            return (!heads.is_empty()).then(|| (self.of_records(heads), self.of_records(tails)));
         }
+        let mut order: Vec<Vec<usize>> = protocols.into_iter().map(|protocol| protocol.records).collect();
         order.retain(|records| self.records[records[0]].scored() > 0);
         if order.len() < 2 {
             return None;

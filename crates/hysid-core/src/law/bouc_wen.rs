@@ -23,7 +23,7 @@ mod degradation;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Rate};
+use crate::law::facts::{ErrorsInside, Facts, Rate};
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -283,7 +283,7 @@ impl Law for BoucWen {
             "bouc-wen",
             "spring and yielding element; option degradation: pinching and degradation",
             &["degradation", "starts", "epochs", "rate_companding"],
-            0.15,
+            ErrorsInside { softening: 0.05, sigmoid: 0.3, other: 0.3 },
         )
     };
 

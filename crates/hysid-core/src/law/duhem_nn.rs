@@ -28,7 +28,7 @@ use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, Facts, Rate};
+use crate::law::facts::{Defaults, ErrorsInside, Facts, Rate};
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 use crate::simd;
@@ -107,7 +107,7 @@ impl Law for DuhemNn {
             "duhem-nn",
             "recurrent network whose states move with the input and with time",
             &["operators", "hidden", "states", "starts", "epochs", "rate_companding"],
-            1.5,
+            ErrorsInside { softening: 0.4, sigmoid: 0.4, other: 0.6 },
         )
         .with_defaults(Defaults {
             operators: 6,

@@ -25,9 +25,20 @@ pub struct Facts {
     pub defaults_with_degradation: Defaults,
     /// The options that select a variant of the law, each by itself: a further term, or another form.
     pub variants: &'static [&'static str],
-    /// Natural logarithm of a ratio of errors, for data of one loop: the error inside the loop divided by the
-    /// cross-validation error, geometric mean over generated cases (docs/accuracy.md).
-    pub log_error_inside: f64,
+    /// For data of one loop: the error to be expected on smaller loops inside it, however well the law fits the loop.
+    pub errors_inside: ErrorsInside,
+}
+
+/// Errors on smaller loops of laws that were fitted to one loop, as shares of the standard deviation of the output, by the
+/// shape of the loop's branches. Designed, from the errors on ten simulated loops (docs/accuracy.md).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorsInside {
+    /// Branches that only become flatter, as of a structure that yields.
+    pub softening: f64,
+    /// Branches that are flat at both ends and steep between, as of a magnet that saturates.
+    pub sigmoid: f64,
+    /// Other branches, as of a pinched loop.
+    pub other: f64,
 }
 
 /// Default values of options that count something, for one law. 0 for what the law does not have.
@@ -83,7 +94,7 @@ impl Facts {
         name: &'static str,
         summary: &'static str,
         options: &'static [&'static str],
-        log_error_inside: f64,
+        errors_inside: ErrorsInside,
     ) -> Self {
         Self {
             name,
@@ -97,7 +108,7 @@ impl Facts {
             defaults: Defaults::LINEAR,
             defaults_with_degradation: Defaults::LINEAR,
             variants: &[],
-            log_error_inside,
+            errors_inside,
         }
     }
 
@@ -106,13 +117,10 @@ impl Facts {
         name: &'static str,
         summary: &'static str,
         options: &'static [&'static str],
-        log_error_inside: f64,
+        errors_inside: ErrorsInside,
     ) -> Self {
-        Self {
-            identification: Identification::Search,
-            ..Self::linear(name, summary, options, log_error_inside)
-        }
-        .with_defaults(Defaults::SEARCHED)
+        Self { identification: Identification::Search, ..Self::linear(name, summary, options, errors_inside) }
+            .with_defaults(Defaults::SEARCHED)
     }
 }
 

@@ -17,7 +17,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, Facts};
+use crate::law::facts::{Defaults, ErrorsInside, Facts};
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -118,7 +118,7 @@ impl Law for GeneralizedPrandtlIshlinskii {
         "generalized-prandtl-ishlinskii",
         "plays between two tanh envelopes",
         &["operators", "free_weights", "starts", "epochs"],
-        0.15,
+        ErrorsInside { softening: 0.15, sigmoid: 0.06, other: 0.6 },
     )
     .with_defaults(Defaults { operators: 10, starts: 32, epochs: 60, ..Defaults::SEARCHED });
 

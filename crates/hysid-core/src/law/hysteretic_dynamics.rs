@@ -315,7 +315,7 @@ macro_rules! law_of_dynamics {
                     $name,
                     $summary,
                     $crate::law::hysteretic_dynamics::FIT_OPTIONS,
-                    1.5,
+                    $crate::law::facts::ErrorsInside { softening: 0.6, sigmoid: 0.6, other: 0.6 },
                 )
             };
 

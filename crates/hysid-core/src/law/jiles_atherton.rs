@@ -20,7 +20,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Origin};
+use crate::law::facts::{ErrorsInside, Facts, Origin};
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -171,7 +171,7 @@ impl Law for JilesAtherton {
             "jiles-atherton",
             "differential equation of the magnetisation",
             &["differential_form", "starts", "epochs"],
-            0.15,
+            ErrorsInside { softening: 0.06, sigmoid: 0.08, other: 0.1 },
         )
     };
 

@@ -18,7 +18,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Rate};
+use crate::law::facts::{ErrorsInside, Facts, Rate};
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
@@ -123,7 +123,7 @@ impl Law for Lugre {
             "lugre",
             "friction of bristles, with the Stribeck effect",
             &["starts", "epochs", "rate_companding"],
-            0.15,
+            ErrorsInside { softening: 0.06, sigmoid: 0.3, other: 0.3 },
         )
     };
 

@@ -30,7 +30,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, Facts};
+use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::ODD;
 use crate::law::yield_curve::yielding;
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -306,7 +306,7 @@ impl Law for MenegottoPinto {
             "menegotto-pinto",
             "steel: curves between two straight lines, with hardening",
             &["asymmetric", "starts", "epochs"],
-            0.15,
+            ErrorsInside { softening: 0.06, sigmoid: 0.3, other: 0.3 },
         )
         .with_defaults(Defaults { starts: 16, ..Defaults::SEARCHED })
     };

@@ -16,7 +16,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{Defaults, Facts};
+use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::properties::WIPES_OUT;
 use crate::law::thresholds::check_weights;
@@ -183,7 +183,7 @@ impl Law for ModifiedPrandtlIshlinskii {
         "modified-prandtl-ishlinskii",
         "plays, then one-sided dead zones (Kuhnen)",
         &["operators", "thresholds", "sign", "dead_zones"],
-        1.05,
+        ErrorsInside { softening: 0.08, sigmoid: 0.4, other: 0.3 },
     )
     .with_defaults(Defaults { operators: 20, dead_zones: 6, ..Defaults::LINEAR });
 

@@ -21,7 +21,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, Facts, Rate};
+use crate::law::facts::{Defaults, ErrorsInside, Facts, Rate};
 use crate::law::turning_point_stack::TurningPointStack;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -150,7 +150,7 @@ impl Law for NeuroMadelung {
             "neuro-madelung",
             "small network of the input and its last turning point",
             &["hidden", "starts", "epochs", "rate_companding"],
-            1.25,
+            ErrorsInside { softening: 0.6, sigmoid: 0.4, other: 0.6 },
         )
         .with_defaults(Defaults { hidden: 8, starts: 16, epochs: 60, ..Defaults::SEARCHED })
     };

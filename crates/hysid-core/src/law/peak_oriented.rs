@@ -36,7 +36,7 @@ mod reloading;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, Facts};
+use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -328,7 +328,7 @@ impl Law for PeakOriented {
             "peak-oriented",
             "members and joints: reloading leads to the largest displacement so far",
             &["degradation", "asymmetric", "starts", "epochs"],
-            0.15,
+            ErrorsInside { softening: 0.15, sigmoid: 0.25, other: 0.2 },
         )
         .with_defaults(Defaults { starts: 16, ..Defaults::SEARCHED })
     };

@@ -14,7 +14,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{Defaults, Facts};
+use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -106,7 +106,7 @@ impl Law for PrandtlIshlinskii {
         "prandtl-ishlinskii",
         "weighted plays on a grid of thresholds",
         &["operators", "thresholds", "sign"],
-        0.85,
+        ErrorsInside { softening: 0.04, sigmoid: 0.7, other: 0.6 },
     )
     .with_defaults(Defaults { operators: 30, ..Defaults::LINEAR });
 

@@ -20,7 +20,7 @@ pub mod plane;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{Defaults, Facts};
+use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::thresholds::{check_weights, limited};
 use crate::law::turning_point_stack::{Branch, TurningPointStack};
@@ -171,8 +171,13 @@ impl Law for Preisach {
 
     const FACTS: Facts = Facts {
         limits: &[("operators", 1, MOST_INTERVALS)],
-        ..Facts::linear("preisach", "plane of relays with a smooth density", &["operators", "sign"], 0.85)
-            .with_defaults(Defaults { operators: 30, ..Defaults::LINEAR })
+        ..Facts::linear(
+            "preisach",
+            "plane of relays with a smooth density",
+            &["operators", "sign"],
+            ErrorsInside { softening: 0.6, sigmoid: 0.1, other: 0.2 },
+        )
+        .with_defaults(Defaults { operators: 30, ..Defaults::LINEAR })
     };
 
     fn virgin(&self) -> Self::State {

@@ -17,7 +17,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, Facts, Rate};
+use crate::law::facts::{Defaults, ErrorsInside, Facts, Rate};
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -115,7 +115,7 @@ impl Law for RateDependentPrandtlIshlinskii {
             "rate-dependent-prandtl-ishlinskii",
             "plays whose thresholds grow with the rate",
             &["operators", "free_weights", "logarithmic_thresholds", "starts", "epochs", "rate_companding"],
-            0.15,
+            ErrorsInside { softening: 0.04, sigmoid: 0.7, other: 0.6 },
         )
         .with_defaults(Defaults { operators: 10, starts: 16, ..Defaults::SEARCHED })
     };

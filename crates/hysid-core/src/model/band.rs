@@ -6,6 +6,8 @@
 //! g_k  = e^{σ z(k/10)},   k = 5 .. 9                                       theory.md (11.12)
 //! ```
 //!
+//! Each `q(p)` is at least the quantile of the same quotient over the training rows.
+//!
 //! `y` is the output of the model at a row and `p` the probability. `d` is the disagreement of the members of
 //! the ensemble at that row: half the distance between the 15.9 % and 84.1 % quantiles of their outputs. `f`
 //! is half the median held-out error, in the unit of the output.
@@ -194,6 +196,24 @@ impl Band {
         self
     }
 
+    /// The same band, at least as wide at each level as the errors in training ask for, each given over `√(f² + d²)`: rows
+    /// that a model was fitted to cannot be predicted worse than new ones.
+    pub(crate) fn at_least(mut self, errors: &mut Predictions) -> Self {
+        for (place, level) in LEVELS.into_iter().enumerate() {
+            let needed = errors.quantile(level);
+            if needed > self.inside[place] {
+                self.inside[place] = needed;
+                self.outside[place] = self.outside[place].max(needed);
+            }
+        }
+        self
+    }
+
+    /// The typical error of a row with such a disagreement, `√(f² + d²)`, in the output's unit.
+    pub(crate) fn scale(&self, disagreement: f64) -> f64 {
+        self.floor.hypot(disagreement)
+    }
+
     /// Numbers of held-out rows, inside and outside the trained range, of the calibration.
     pub fn rows(&self) -> (usize, usize) {
         self.rows
@@ -203,7 +223,7 @@ impl Band {
     pub(crate) fn half_width(&self, level: BandLevel, disagreement: f64, outside: f64) -> f64 {
         let (inside, far_outside) = self.factors(level);
         let factor = inside + outside * (far_outside - inside);
-        level.widening() * factor * self.floor.hypot(disagreement)
+        level.widening() * factor * self.scale(disagreement)
     }
 
     /// `q` inside and outside the trained range, without the widening for other data sets.
@@ -250,6 +270,25 @@ mod tests {
         let (output, low, high) = (vec![0.0; 5], vec![-1.0; 5], vec![1.0, 2.0, 3.0, 4.0, 5.0]);
         let predicted = Prediction { output, low, high };
         assert_eq!(predicted.covered(&[1.0, 2.1, f64::NAN, -1.0, -1.1]), (2, 4));
+    }
+
+    #[test]
+    fn a_band_holds_its_share_of_the_training_rows() {
+        let rows: Vec<HeldOutRow> = (1..=200)
+            .map(|k| HeldOutRow { error: f64::from(k), disagreement: 0.0, outside: 0.0, weight: 1.0 })
+            .collect();
+        let band = Band::calibrate(std::slice::from_ref(&rows)).unwrap();
+        let with_errors = |times: f64| {
+            let mut errors = Predictions::default();
+            rows.iter().for_each(|row| errors.push(times * row.error / band.scale(0.0), 1.0));
+            band.clone().at_least(&mut errors)
+        };
+        let half = |band: &Band| band.half_width(0.9.into(), 0.0, 0.0);
+        assert_eq!(with_errors(0.5), band, "smaller errors change nothing");
+        let wide = with_errors(3.0);
+        let held = rows.iter().filter(|row| 3.0 * row.error <= half(&wide)).count();
+        assert!((180..=182).contains(&held), "{held}");
+        assert!(wide.half_width(0.9.into(), 0.0, 1.0) >= half(&wide));
     }
 
     /// Errors of 1 to 200, all members agree: the floor is half the median, and a band of 90 % has half the

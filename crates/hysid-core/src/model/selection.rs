@@ -12,7 +12,11 @@ use crate::significant::Significant;
 pub struct Selection {
     /// Name of the held-out data of each fold.
     pub folds: Vec<String>,
-    /// Error of the ensemble in percent of the standard deviation, inside and outside the trained range:
+    /// Held-out error of the ensemble: RMSE over all rows that were held out, in percent of their standard deviation, with
+    /// weights that were found on the other folds. It is the validation error of the model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held_out_percent: Option<f64>,
+    /// Error by which candidates are weighted, in percent of the standard deviation, inside and outside the trained range:
     /// geometric mean over the folds of `rmse_f / σ_f`, with the standard deviation `σ_f` of the output on
     /// fold `f` (theory.md (11.5)).
     pub error_percent: (f64, f64),
@@ -69,27 +73,56 @@ impl Selection {
         }
     }
 
+    /// Held-out errors of the ensemble and of the best of each kind, all over the same rows, and why something else than
+    /// the lowest error decided.
     fn why(&self, kinds: &[&str]) -> String {
-        let percent = |error: (f64, f64)| format!("{:.3} %", Significant(error.0));
-        let ensemble = format!("ensemble {}", percent(self.error_percent));
-        let errors = match &self.single {
-            Some(SingleModel { distilled_percent, plain_percent, .. }) => {
-                let distilled = distilled_percent.map(|error| format!("distilled model {}", percent(error)));
+        let percent = |error: Option<f64>| match error {
+            Some(error) => format!("{:.3} %", Significant(error)),
+            None => "unknown".into(),
+        };
+        let ensemble = format!("ensemble {}", percent(self.held_out_percent));
+        let (errors, reason) = match &self.single {
+            Some(SingleModel { distilled, distilled_percent, plain_percent, .. }) => {
+                let of_distilled =
+                    distilled_percent.map(|error| format!("distilled model {}", percent(Some(error))));
                 let plain = format!("best single fit {}", percent(*plain_percent));
-                distilled.into_iter().chain([plain, ensemble]).collect::<Vec<String>>().join(", ")
+                let errors: Vec<String> = of_distilled.into_iter().chain([plain]).collect();
+                let is_lower =
+                    distilled_percent.zip(*plain_percent).is_none_or(|(d, p)| (d <= p) == *distilled);
+                let reason = match (is_lower, distilled) {
+                    (true, _) => "",
+                    (false, true) => {
+                        "; the distilled model agrees better with the ensemble on inputs that were not measured"
+                    }
+                    (false, false) => {
+                        "; the single fit agrees better with the ensemble on inputs that were not measured"
+                    }
+                };
+                (errors.join(", "), reason)
             }
             None => {
+                let error = |one: &CandidateResult| one.held_out_percent.unwrap_or(f64::INFINITY);
                 let best_of = |kind: &&str| {
                     let of_kind = self.candidates.iter().filter(|one| one.kind == **kind);
-                    let best = of_kind.min_by(|a, b| a.error_percent.0.total_cmp(&b.error_percent.0))?;
-                    Some(format!("{} {}", best.name, percent(best.error_percent)))
+                    of_kind.min_by(|a, b| error(a).total_cmp(&error(b)))
                 };
-                let bests: Vec<String> = kinds.iter().filter_map(best_of).collect();
-                format!("{ensemble}; best of each kind alone: {}", bests.join(", "))
+                let bests: Vec<&CandidateResult> = kinds.iter().filter_map(best_of).collect();
+                let alone =
+                    |one: &&CandidateResult| format!("{} {}", one.name, percent(one.held_out_percent));
+                let lowest = bests.iter().map(|one| error(one)).fold(f64::INFINITY, f64::min);
+                let is_lowest = self.held_out_percent.is_none_or(|ensemble| ensemble <= lowest);
+                let reason = match (is_lowest, self.one_loop) {
+                    (true, _) => "",
+                    (false, true) => "; one loop does not tell how well smaller loops are predicted",
+                    (false, false) => {
+                        "; a candidate is preferred to the ensemble only if it is clearly better on each fold"
+                    }
+                };
+                let bests: Vec<String> = bests.iter().map(alone).collect();
+                (format!("{ensemble}; best of each kind alone: {}", bests.join(", ")), reason)
             }
         };
-        let folds = self.folds.len();
-        format!("cross-validation error (geometric mean over {folds} folds, in % of std): {errors}")
+        format!("error on the rows held out (RMSE in % of std): {errors}{reason}")
     }
 }
 
@@ -118,14 +151,15 @@ pub struct CandidateResult {
     pub name: String,
     /// Its kind.
     pub kind: String,
-    /// Its error, in percent, as that of the ensemble.
+    /// Its held-out error, in percent of the standard deviation, as that of the ensemble.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held_out_percent: Option<f64>,
+    /// The error by which it is weighted, in percent, as that of the ensemble.
     pub error_percent: (f64, f64),
     /// Its share of all weights in the ensemble, inside and outside.
     pub share: Weights,
     /// Number of its fits in the ensemble.
     pub members: usize,
-    /// Error of the ensemble without it, in percent; `None` if it has no weight.
-    pub without_percent: Option<(f64, f64)>,
 }
 
 /// How a requested single model was chosen.
@@ -137,12 +171,11 @@ pub struct SingleModel {
     /// True if it was distilled from the ensemble, false if it was fitted to the data alone. The smaller error decides;
     /// the distance from the ensemble on paths that were not measured is part of it (theory.md (11.13)).
     pub distilled: bool,
-    /// Error of the distilled model on held-out data, in percent, as that of the ensemble; `None` if none was
-    /// made.
-    pub distilled_percent: Option<(f64, f64)>,
-    /// Error of the best candidate fitted to the data alone, from one start, in percent, as that of the
+    /// Held-out error of the distilled model, in percent, as that of the ensemble; `None` if none was made.
+    pub distilled_percent: Option<f64>,
+    /// Held-out error of the best candidate fitted to the data alone, from one start, in percent, as that of the
     /// ensemble.
-    pub plain_percent: (f64, f64),
+    pub plain_percent: Option<f64>,
 }
 
 /// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training, and

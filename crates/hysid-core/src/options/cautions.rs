@@ -1,6 +1,7 @@
 //! Cautions before a fit: data that do not suit the model.
 
-use crate::data::record::Dataset;
+use crate::data::rate::RateMethod;
+use crate::data::record::{Dataset, Speeds};
 use crate::data::warning::Warning;
 use crate::options::classical::ClassicalModel;
 use crate::options::{FitSpec, ModelName};
@@ -17,6 +18,7 @@ impl FitSpec {
         if self.rate().is_some() && !model.uses_rate() {
             cautions.push(format!("{} ignores the rate (xpnn and xpnn+ use it)", model.name()));
         }
+        cautions.extend(self.rate_not_shown(data));
         cautions.extend(far_from_zero(model, data));
         cautions.extend(self.larger_than(data).map(|warning| warning.to_string()));
         cautions
@@ -24,6 +26,20 @@ impl FitSpec {
 }
 
 impl FitSpec {
+    /// A rate that is used although the data pass each place at one speed; `auto` tries models without it too.
+    fn rate_not_shown(&self, data: &Dataset) -> Option<String> {
+        let model = self.model();
+        let is_used = matches!(self.rate(), Some(method) if method != RateMethod::Given) && model.uses_rate();
+        (is_used && data.speeds() == Speeds::One).then(|| {
+            format!(
+                "{} uses the rate, but the data pass each place of {} at one speed: at other speeds the model is \
+                 arbitrary (--rate none leaves the rate out)",
+                model.name(),
+                data.names().inputs[0]
+            )
+        })
+    }
+
     /// A network with more parameters than rows with an output; of other models there is a note after the fit.
     fn larger_than(&self, data: &Dataset) -> Option<Warning> {
         let Self::Network(options) = self else { return None };

@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 
 use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
+use crate::data::record::{Dataset, Speeds};
 use crate::error::{Error, OptionError, Result};
 use crate::network::{Family, Sizes};
 use crate::options::auto::AutoOptions;
@@ -269,7 +270,8 @@ pub struct Ignored {
 /// Choice of the rate of the first input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RateChoice {
-    /// Central differences, if there are time stamps and the model uses a rate.
+    /// Backward differences, if the model uses a rate and the data can show a dependence on it ([`Dataset::speeds`]), or
+    /// the model always needs one.
     #[default]
     Auto,
     /// No rate.
@@ -279,10 +281,11 @@ pub enum RateChoice {
 }
 
 impl RateChoice {
-    /// The rate of this model on data with or without time stamps.
-    pub fn method(self, model: ModelName, has_time: bool) -> Option<RateMethod> {
+    /// The rate of this model on these data.
+    pub fn method(self, model: ModelName, data: &Dataset) -> Option<RateMethod> {
+        let is_shown = || model.uses_rate() && (model.needs_rate() || data.speeds() != Speeds::One);
         match self {
-            Self::Auto => (has_time && model.uses_rate()).then_some(RateMethod::Central),
+            Self::Auto => (data.has_time() && is_shown()).then_some(RateMethod::Backward),
             Self::None => None,
             Self::Method(method) => Some(method),
         }
@@ -316,6 +319,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::data::record::{ColumnNames, Record};
 
     fn chosen(value: Value) -> Result<NamedOptions> {
         let Value::Object(map) = value else { panic!("{value} is no map") };
@@ -460,11 +464,20 @@ mod tests {
     }
 
     #[test]
-    fn an_automatic_rate_needs_time_and_a_use() {
-        let xpnn = "xpnn".parse().unwrap();
-        assert_eq!(RateChoice::Auto.method(xpnn, true), Some(RateMethod::Central));
-        assert_eq!(RateChoice::Auto.method(xpnn, false), None);
-        assert_eq!(RateChoice::Auto.method("pnn".parse().unwrap(), true), None);
+    fn an_automatic_rate_needs_a_use_and_several_speeds() {
+        // A sine whose frequency rises, run so many times faster.
+        let sweep = |rise: f64| {
+            let time: Vec<f64> = (0..1000).map(|row| 0.01 * f64::from(row)).collect();
+            let x: Vec<f64> = time.iter().map(|t| (5.0 * t + rise * t * t).sin()).collect();
+            let record = Record::new("r", vec![x.clone()], x).unwrap().with_time(time).unwrap();
+            Dataset::new(ColumnNames { time: Some("t".into()), ..ColumnNames::plain(1) }, vec![record])
+                .unwrap()
+        };
+        let rate = |model: &str, rise: f64| RateChoice::Auto.method(model.parse().unwrap(), &sweep(rise));
+        assert_eq!(rate("xpnn", 2.0), Some(RateMethod::Backward));
+        assert_eq!(rate("xpnn", 0.0), None);
+        assert_eq!(rate("lugre", 0.0), Some(RateMethod::Backward), "a model that is nothing without it");
+        assert_eq!(rate("pnn", 2.0), None);
         assert_eq!("backward".parse(), Ok(RateChoice::Method(RateMethod::Backward)));
     }
 }

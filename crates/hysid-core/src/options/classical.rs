@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::rate::RateMethod;
 use crate::for_each_law;
 use crate::law::Law;
-use crate::law::facts::{Defaults, Facts, Identification, Rate};
+use crate::law::facts::{Defaults, ErrorsInside, Facts, Identification, Rate};
 use crate::options::input_options::InputOptions;
 use crate::options::network::SEED;
 
@@ -16,7 +16,7 @@ const RANDOM_STOPS: Facts = Facts {
         "random-stops",
         "random deteriorating stops with a ridge penalty",
         &["operators", "hidden", "no_deterioration", "history", "rate_companding"],
-        1.25,
+        ErrorsInside { softening: 0.05, sigmoid: 0.7, other: 0.6 },
     )
     .with_defaults(Defaults { operators: 300, ..Defaults::LINEAR })
 };
@@ -186,6 +186,12 @@ impl ClassicalOptions {
             "logarithmic_thresholds" => Some(&mut self.logarithmic_thresholds),
             _ => None,
         }
+    }
+
+    /// True for random stops that deteriorate, or are followed by tanh neurons: as flexible as a network.
+    pub fn has_random_layer(&self) -> bool {
+        self.model == ClassicalModel::RandomStops
+            && (self.deterioration == Some(true) || self.hidden.is_some_and(|h| h > 0))
     }
 
     /// True for a model with inertia whose elements have neither memory states nor stops.

@@ -51,6 +51,11 @@ impl ModelName {
         }
     }
 
+    /// True if the model always needs the rate.
+    pub fn needs_rate(self) -> bool {
+        matches!(self, Self::Classical(law) if law.needs_rate())
+    }
+
     /// True if it takes more than one input.
     pub fn takes_further_inputs(self) -> bool {
         match self {

@@ -67,7 +67,7 @@ impl Studio {
     /// What a request asks for.
     fn spec(&self, request: &FitRequest, data: &Data) -> Result<FitSpec> {
         let chosen = NamedOptions::of(request.options.clone()).map_err(|error| Usage(error.to_string()))?;
-        request.rate(&self.project().understanding)?.request(&chosen, &data.roles)
+        request.rate(&self.project().understanding)?.request(&chosen, &data.set)
     }
 
     /// Ends the fit with its best model so far.

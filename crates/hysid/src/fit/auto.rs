@@ -28,6 +28,7 @@
 mod beginning;
 mod candidates;
 mod combination;
+mod misfits;
 mod prior;
 mod score;
 mod selection;
@@ -42,7 +43,7 @@ use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::metrics::Errors;
-use crate::data::record::{Dataset, Record};
+use crate::data::record::{Dataset, Record, Speeds};
 use crate::error::{Error, Result};
 use crate::fit::HeldOutRows;
 use crate::fit::network::{Fitted, Observer};
@@ -55,7 +56,7 @@ use crate::options::FitSpec;
 use crate::options::auto::AutoOptions;
 use crate::options::table::check;
 use crate::termination::Termination;
-use crate::validation::{PooledErrors, folds_to_choose_by};
+use crate::validation::{PooledErrors, folds_of_loop, folds_to_choose_by};
 use beginning::{Beginning, as_chosen};
 use candidates::{Candidate, candidates, quick};
 use combination::{Combination, Leaf};
@@ -107,7 +108,9 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     let data = &*as_chosen(data, options)?;
     let has_inertia = candidates.iter().any(Candidate::is_dynamic);
     let few = if has_inertia { data.beginnings(ROWS_WITH_INERTIA)? } else { data.thinned(MOST_ROWS) };
-    let folds = folds_to_choose_by(&few, MOST_FOLDS);
+    let evidence = Evidence::of(data);
+    let folds =
+        if evidence.is_one_loop() { folds_of_loop(&few) } else { folds_to_choose_by(&few, MOST_FOLDS) };
     let work = Work::new(observer, FITS_EXPECTED);
 
     // Should the observer stop everything soon, this is what there is.
@@ -126,12 +129,16 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     if held_out.is_empty() {
         return without_folds(data, fitted_to, options, &candidates[0], alone, &work);
     }
-    let (work, evidence) = (&work, Evidence::of(data));
+    let work = &work;
     let bench = Bench { data: fitted_to, folds: &held_out, work };
     let mut stages = Stages { bench, options, evidence, trials: Vec::new(), dropped: Vec::new() };
     stages.run(candidates, first_member);
+    if !options.always_rate && options.only.is_none() && data.speeds() == Speeds::OfAmplitude {
+        stages.drop_unearned_rates();
+    }
     let Stages { trials, dropped, .. } = stages;
-    Chosen { data, options, bench, evidence, trials, dropped, warm_up, found }.fit(alone)
+    Chosen { data, options, bench, evidence, trials, dropped, left_out: Vec::new(), warm_up, found }
+        .fit(alone)
 }
 
 /// Data too few to hold any out: the first candidate, unjudged.
@@ -169,6 +176,8 @@ struct Chosen<'w, 'o, 'a> {
     evidence: Evidence,
     trials: Vec<Trial>,
     dropped: Vec<Candidate>,
+    /// Candidates that were tried and made the ensemble worse.
+    left_out: Vec<Trial>,
     warm_up: WarmUp,
     found: Option<FoundStates>,
 }
@@ -176,8 +185,9 @@ struct Chosen<'w, 'o, 'a> {
 impl Chosen<'_, '_, '_> {
     /// The ensemble, or the single model that was requested; `alone` where nothing was tried in time.
     fn fit(mut self, alone: Model) -> Result<Fitted> {
-        let Bench { folds, work, .. } = self.bench;
+        let Bench { work, .. } = self.bench;
         let fit = |model| Ok(Fitted::of(model, work.done()));
+        self.drop_misfits()?;
         let Some(all) = self.combination(|_| true) else {
             let model = self.without_validation(alone);
             let provenance = provenance_of(&model, None, None, work);
@@ -190,8 +200,10 @@ impl Chosen<'_, '_, '_> {
         let Some(combination) = all.only(is_fitted).or_else(|| self.of_fitted()) else {
             return fit(self.without_validation(alone));
         };
-        let selection = self.selection(&combination);
-        let validation = combination.validation(&self.trials, folds, &self.data.names().output);
+        let rows = self.rows_held_out(&combination);
+        let predicted = self.predicted(&rows);
+        let validation = self.errors_held_out(&predicted);
+        let selection = self.selection(&combination, validation.as_ref());
         let members = |place: usize, start: usize| self.trials[place].members.get(&start).cloned();
         let body = Predictor::Ensemble(combination.ensemble(members, self.data.input_range(0))?);
         let ensemble = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
@@ -200,10 +212,9 @@ impl Chosen<'_, '_, '_> {
         {
             return Ok(fit(model)?.with_held_out(self.held_out(&predicted)?));
         }
-        let rows = self.rows_held_out(&combination);
         let band = self.band(&rows);
-        let held_out = self.held_out(&self.predicted(&rows))?;
-        Ok(fit(ensemble.with_band(band))?.with_held_out(held_out))
+        let held_out = self.held_out(&predicted)?;
+        Ok(fit(ensemble.with_band_over(band, self.data)?)?.with_held_out(held_out))
     }
 
     /// The outputs that were predicted for the scored rows of each fold.
@@ -219,6 +230,11 @@ impl Chosen<'_, '_, '_> {
     fn held_out(&self, predicted: &[Vec<f64>]) -> Result<Option<HeldOutRows>> {
         let folds = self.bench.folds.iter().map(|fold| &fold.fold);
         HeldOutRows::of(self.data.names(), folds.zip(predicted.iter().map(Vec::as_slice)))
+    }
+
+    /// The errors of what was predicted for the scored rows of each fold.
+    fn errors_held_out(&self, predicted: &[Vec<f64>]) -> Option<Errors> {
+        errors_held_out(predicted, self.bench.folds, &self.data.names().output)
     }
 
     /// The candidates' starts with their weights by the folds that are `counted`, no more than are needed.
@@ -249,11 +265,13 @@ impl Chosen<'_, '_, '_> {
         lowest.cloned().unwrap_or(alone)
     }
 
-    fn selection(&self, combination: &Combination) -> Selection {
-        let mut selection = selection(&self.trials, self.bench.folds, combination);
+    fn selection(&self, combination: &Combination, validation: Option<&Errors>) -> Selection {
+        let output = &self.data.names().output;
+        let mut selection = selection(&self.trials, &self.left_out, self.bench.folds, combination, output);
+        selection.held_out_percent = validation.and_then(|errors| errors.nrmse_std_percent);
         selection.warm_up = (self.warm_up.rows > 0).then_some(self.warm_up);
         selection.found_states = self.found;
-        selection.one_loop = self.evidence == Evidence::OneLoop;
+        selection.one_loop = self.evidence.is_one_loop();
         selection.dropped = self.dropped.iter().map(Candidate::name).collect();
         selection
     }
@@ -263,7 +281,7 @@ impl Chosen<'_, '_, '_> {
         let band = Band::calibrate(folds)?;
         Some(match self.evidence {
             Evidence::SeveralLoops => band,
-            Evidence::OneLoop => band.wider(prior::WIDER_BAND),
+            Evidence::OneLoop(_) => band.wider(prior::WIDER_BAND),
         })
     }
 
@@ -288,19 +306,25 @@ impl Chosen<'_, '_, '_> {
         let Self { options, bench, evidence, .. } = *self;
         let makers = single::Makers { trials: &mut self.trials, bench, combination, evidence, options };
         let Some(found) = makers.single(ensemble)? else { return Ok(None) };
-        let mut pooled = PooledErrors::default();
-        for (fold, predicted) in bench.folds.iter().zip(&found.predicted) {
-            pooled.add(&fold.fold.held_out, predicted);
-        }
-        let validation = pooled.errors(&self.data.names().output);
+        let validation = self.errors_held_out(&found.predicted);
         selection.candidates.iter_mut().for_each(|candidate| candidate.members = 0);
         selection.single = Some(found.how);
         let provenance = provenance_of(&found.model, Some(selection), validation, bench.work);
         let band = self.band(&single::rows_held_out(&found.predicted, bench.folds));
         // A distilled model was taught more than the data.
-        let model = found.model.with_provenance(provenance).with_band(band).trained_on(self.data)?;
+        let model =
+            found.model.with_provenance(provenance).trained_on(self.data)?.with_band_over(band, self.data)?;
         Ok(Some((model, found.predicted)))
     }
+}
+
+/// The errors of what was predicted for the scored rows of each fold, over all of them together.
+fn errors_held_out(predicted: &[Vec<f64>], folds: &[HeldOut], output: &str) -> Option<Errors> {
+    let mut pooled = PooledErrors::default();
+    for (fold, predicted) in folds.iter().zip(predicted) {
+        pooled.add(&fold.fold.held_out, predicted);
+    }
+    pooled.errors(output)
 }
 
 /// An ensemble with what is known of it.

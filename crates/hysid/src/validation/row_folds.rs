@@ -1,16 +1,16 @@
 //! Folds of rows whose sums are kept apart: what is trained on is the sum of all less the one held out, so each row is in
-//! one fold. Measurements are dealt out as for the folds of data.
+//! one fold. Protocols are dealt out as for the folds of data.
 
-use crate::data::record::{Dataset, Record};
-use crate::validation::dealt;
+use crate::data::record::{Dataset, Protocol, Record, protocols};
+use crate::validation::deal;
 
-/// Blocks that the rows are cut into where there are few measurements.
+/// Blocks that the rows are cut into where there are few protocols.
 const BLOCKS: usize = 5;
 
-/// Measurements from which on each is a fold by itself.
-const MEASUREMENTS_AS_FOLDS: usize = 3;
+/// Protocols from which on each is a fold by itself.
+const PROTOCOLS_AS_FOLDS: usize = 3;
 
-/// Most folds of measurements.
+/// Most folds of protocols.
 const MOST: usize = 10;
 
 /// Share of the range of the other records by which one may exceed it and still lie within.
@@ -28,16 +28,19 @@ pub(crate) struct RowFolds {
 }
 
 impl RowFolds {
-    /// From three measurements on, each is a fold, and those are held out whose input stays within the range of the
+    /// From three protocols on, each is a fold, and those are held out whose input stays within the range of the
     /// others, so that what is judged lies between what is trained on; else blocks of rows that have an output are
     /// held out in turn.
     pub fn of(data: &Dataset) -> Self {
         let used: Vec<usize> =
             (0..data.records().len()).filter(|&index| data.records()[index].scored() > 0).collect();
-        let measurements = if used.len() < MEASUREMENTS_AS_FOLDS { Vec::new() } else { dealt(data, MOST) };
-        if measurements.len() < MEASUREMENTS_AS_FOLDS {
-            return Self::blocks(data, &used);
+        let is_scored = |protocol: &Protocol| data.records()[protocol.runs[0]].scored() > 0;
+        let protocols: Vec<Protocol> = protocols(data.records()).into_iter().filter(is_scored).collect();
+        if protocols.len() < PROTOCOLS_AS_FOLDS {
+            let are_single = protocols.iter().all(|protocol| protocol.records.len() == 1);
+            return Self::blocks(data, &used, are_single);
         }
+        let measurements = deal(&protocols, MOST);
         let count = measurements.len();
         let fold_of = |record: &usize| {
             let has_it = |held: &Vec<usize>| held.contains(record);
@@ -63,16 +66,18 @@ impl RowFolds {
         Self { of_rows, count, judged }
     }
 
-    fn blocks(data: &Dataset, used: &[usize]) -> Self {
-        let scored = data.scored();
+    /// Blocks of all rows together, or, where records repeat each other, of each record.
+    fn blocks(data: &Dataset, used: &[usize], of_all: bool) -> Self {
         let mut seen = 0;
-        let mut fold_of = |y: &f64| {
-            let fold = (seen * BLOCKS / scored.max(1)).min(BLOCKS - 1);
-            seen += usize::from(!y.is_nan());
-            fold
-        };
         let of_rows = used.iter().map(|&record| {
             let record = &data.records()[record];
+            let scored = if of_all { data.scored() } else { record.scored() };
+            seen = if of_all { seen } else { 0 };
+            let mut fold_of = |y: &f64| {
+                let fold = (seen * BLOCKS / scored.max(1)).min(BLOCKS - 1);
+                seen += usize::from(!y.is_nan());
+                fold
+            };
             let lead_in = vec![f64::NAN; record.lead_in_rows().len()];
             lead_in.iter().chain(record.output()).map(&mut fold_of).collect()
         });

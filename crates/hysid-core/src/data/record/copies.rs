@@ -222,7 +222,7 @@ impl Compared<'_> {
 }
 
 /// The records grouped by measurement: the indices of the records of each measurement, the longest first.
-pub fn measurements(records: &[Record]) -> Vec<Vec<usize>> {
+pub(super) fn measurements(records: &[Record]) -> Vec<Vec<usize>> {
     let mut group: Vec<usize> = (0..records.len()).collect();
     for Copy { copy, of, .. } in copies(records) {
         let (from, to) = (group[copy], group[of]);

@@ -2,7 +2,6 @@
 //! weights predicts held-out data from the fits to folds and, with the fits of the same starts to everything, is
 //! the ensemble.
 
-use crate::data::metrics::Errors;
 use crate::error::Result;
 use crate::fit::auto::prior::{self, Evidence};
 use crate::fit::auto::score::{Score, weights};
@@ -10,7 +9,6 @@ use crate::fit::auto::trial::{HeldOut, Rows, Trial};
 use crate::model::{
     Ensemble, Group, HeldOutRow, MedianBuffers, Model, Node, NodeKind, Provenance, Weights, disagreement,
 };
-use crate::validation::PooledErrors;
 
 /// Power `p` of the weights `(e^S / e^{S_best})^{-p}` among candidates (theory.md (11.6)), and the number of
 /// candidates with a weight.
@@ -54,12 +52,13 @@ impl Combination {
     ) -> Option<Self> {
         let places: Vec<usize> = (0..trials.len()).filter(|&place| trials[place].is_complete()).collect();
         let score = |&place: &usize| {
-            Score::of(&trials[place].predicted, folds, counted).with_prior(trials[place].prior(evidence))
+            Score::of(&trials[place].predicted, folds, counted)
+                .with_unseen(trials[place].unseen_error(evidence))
         };
         let scores: Vec<Score> = places.iter().map(score).collect();
         let power = match evidence {
             Evidence::SeveralLoops => POWER,
-            Evidence::OneLoop => prior::POWER,
+            Evidence::OneLoop(_) => prior::POWER,
         };
         let weights = weights(&scores, power, MOST_CANDIDATES);
         let sum = |weight: fn(&Weights) -> f64| weights.iter().map(weight).sum::<f64>();
@@ -123,10 +122,16 @@ impl Combination {
         Some(Self { group, leaves })
     }
 
-    /// What is known beforehand of its candidates, in the mean.
-    pub fn prior(&self, trials: &[Trial], evidence: Evidence) -> f64 {
-        let of_candidate = |(place, share): (usize, Weights)| share.inside * trials[place].prior(evidence);
-        self.shares().into_iter().map(of_candidate).sum()
+    /// The error to be expected on loops that the data do not show: the geometric mean of those of its candidates.
+    pub fn unseen_error(&self, trials: &[Trial], evidence: Evidence) -> f64 {
+        let of_candidate = |(place, share): (usize, Weights)| {
+            share.inside * trials[place].unseen_error(evidence).max(f64::MIN_POSITIVE).ln()
+        };
+        if evidence.is_one_loop() {
+            self.shares().into_iter().map(of_candidate).sum::<f64>().exp()
+        } else {
+            0.0
+        }
     }
 
     /// What it predicts of the rows of each fold.
@@ -158,21 +163,12 @@ impl Combination {
     ) -> Option<Self> {
         let error = |combination: &Self| {
             let score = Score::of(&combination.predictions(trials, folds), folds, counted);
-            score.with_prior(combination.prior(trials, evidence)).sum() / 2.0
+            score.with_unseen(combination.unseen_error(trials, evidence)).sum() / 2.0
         };
         let enough = error(self) + WORTH.ln();
         let of_fewer = (FEWEST.min(most)..most).filter_map(|count| self.first(count));
         let mut of_fewer = of_fewer.filter(|fewer| error(fewer) <= enough);
         of_fewer.next().or_else(|| self.first(most))
-    }
-
-    /// Its errors on everything that was held out.
-    pub fn validation(&self, trials: &[Trial], folds: &[HeldOut], output: &str) -> Option<Errors> {
-        let mut pooled = PooledErrors::default();
-        for (fold, predicted) in folds.iter().zip(self.predictions(trials, folds)) {
-            pooled.add(&fold.fold.held_out, &predicted);
-        }
-        pooled.errors(output)
     }
 
     /// The first `most` leaves at most: the first of each candidate before the second of any, and those that

@@ -1,15 +1,21 @@
-//! Prior weights of candidates that the data cannot distinguish.
+//! What is known of candidates that the data cannot distinguish.
 //!
-//! Data of one loop between two ends contain no information about smaller loops inside it. Candidates with
-//! equal errors on the loop then differ by factors on smaller loops. The ratios of both errors were measured
-//! on generated cases: training data of one loop, test data of smaller loops and reversal curves
-//! (docs/accuracy.md). Records of one loop at several speeds do distinguish candidates, by their rate
-//! dependence; only the folds count then.
+//! Data of one loop between two ends contain no information about smaller loops inside it: candidates with equal errors on
+//! the loop differ by factors of a hundred there. The error to be expected inside the loop follows from the family of
+//! the candidate and the shape of the branches; it was measured on simulated loops (docs/accuracy.md), and is part of the
+//! score:
+//!
+//! ```text
+//! S' = ½ ln(e^{2S} + f²)                                                    theory.md (11.14)
+//! ```
+//!
+//! `S` is the score on the folds, `f` the expected error. Records of one loop at several speeds do distinguish
+//! candidates, by their rate dependence; only the folds count then.
 
 use crate::data::record::{Dataset, Record};
 use crate::data::turning_points::turning_points;
+use crate::law::facts::ErrorsInside;
 use crate::options::FitSpec;
-use crate::options::classical::{ClassicalModel, ClassicalOptions};
 
 /// Reversals below this share of the range are noise.
 const SMALLEST_REVERSAL: f64 = 0.02;
@@ -29,6 +35,15 @@ pub(super) const WIDER_BAND: f64 = 1.6;
 /// Power `p` of the weights `(e^S / e^{S_best})^{-p}` for data of one loop (theory.md (11.6)).
 pub(super) const POWER: f64 = 8.0;
 
+/// Errors of networks inside a loop, as of a law ([`ErrorsInside`]).
+const OF_NETWORKS: ErrorsInside = ErrorsInside { softening: 0.25, sigmoid: 0.25, other: 0.6 };
+
+/// Parts of a branch whose slopes are compared. Designed.
+const PARTS: usize = 10;
+
+/// A part of a branch is steeper than another if its slope is so many times as large. Designed.
+const STEEPER: f64 = 2.0;
+
 /// Whether the data tell candidates apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Evidence {
@@ -36,7 +51,17 @@ pub(super) enum Evidence {
     SeveralLoops,
     /// All reversals of the first input lie at the ends of its range, and all records are run at one speed, as far
     /// as the data tell.
-    OneLoop,
+    OneLoop(Shape),
+}
+
+/// Shape of the branches of a loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// Steepest after the reversal, and never much steeper again.
+    Softening,
+    /// Flat at both ends, and steep between.
+    Sigmoid,
+    Other,
 }
 
 impl Evidence {
@@ -50,17 +75,89 @@ impl Evidence {
             turning.into_iter().filter(|&row| is_inside(x[row])).count()
         };
         let all: usize = data.records().iter().map(|record| inside(&record.inputs()[0])).sum();
-        if all < SMALLER_LOOP && !differ_in_speed(data) { Self::OneLoop } else { Self::SeveralLoops }
-    }
-
-    /// What is added to the score of a candidate: mean logarithm of its error inside the loop over its error
-    /// on the folds.
-    pub fn prior(self, candidate: &FitSpec) -> f64 {
-        match self {
-            Self::SeveralLoops => 0.0,
-            Self::OneLoop => inside_over_folds(candidate),
+        if all < SMALLER_LOOP && !differ_in_speed(data) {
+            Self::OneLoop(shape(data))
+        } else {
+            Self::SeveralLoops
         }
     }
+
+    pub fn is_one_loop(self) -> bool {
+        matches!(self, Self::OneLoop(_))
+    }
+
+    /// The error of a candidate to be expected on loops that the data do not show, as a share of the standard deviation.
+    pub fn unseen_error(self, candidate: &FitSpec) -> f64 {
+        match self {
+            Self::SeveralLoops => 0.0,
+            Self::OneLoop(shape) => {
+                let errors = errors_inside(candidate);
+                match shape {
+                    Shape::Softening => errors.softening,
+                    Shape::Sigmoid => errors.sigmoid,
+                    Shape::Other => errors.other,
+                }
+            }
+        }
+    }
+}
+
+/// The shape of the longest branches of the data, by a majority of them.
+fn shape(data: &Dataset) -> Shape {
+    let (low, high) = data.input_range(0);
+    let mut counts = [0; 3];
+    for record in data.records() {
+        let x = &record.inputs()[0];
+        let turning = turning_points(x, SMALLEST_REVERSAL * (high - low));
+        let ends: Vec<usize> = std::iter::once(0).chain(turning).chain([record.len() - 1]).collect();
+        for pair in ends.windows(2) {
+            if let Some(slopes) = slopes(x, record.output(), pair[0], pair[1], high - low) {
+                counts[shape_of(&slopes) as usize] += 1;
+            }
+        }
+    }
+    let most = counts.iter().copied().max().unwrap_or(0);
+    match counts {
+        [softening, ..] if softening == most && most > 0 => Shape::Softening,
+        [_, sigmoid, _] if sigmoid == most && most > 0 => Shape::Sigmoid,
+        _ => Shape::Other,
+    }
+}
+
+/// Slopes of equal parts of a branch from the row `first` to `last`; `None` for a branch over less than half the range, or
+/// with too few outputs.
+fn slopes(x: &[f64], y: &[f64], first: usize, last: usize, range: f64) -> Option<Vec<f64>> {
+    let (from, to) = (x[first], x[last]);
+    if (to - from).abs() < 0.5 * range {
+        return None;
+    }
+    // Means of the outputs in each part: noise has little effect on their differences.
+    let (mut sums, mut counts) = ([0.0; PARTS], [0.0; PARTS]);
+    for row in (first..=last).filter(|&row| !y[row].is_nan()) {
+        let part = ((x[row] - from) / (to - from) * PARTS as f64).clamp(0.0, PARTS as f64 - 1.0) as usize;
+        sums[part] += y[row];
+        counts[part] += 1.0;
+    }
+    let means: Option<Vec<f64>> =
+        sums.iter().zip(counts).map(|(sum, count)| (count > 0.0).then_some(sum / count)).collect();
+    let step = (to - from) / PARTS as f64;
+    Some(means?.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect())
+}
+
+fn shape_of(slopes: &[f64]) -> Shape {
+    let steepest = slopes.iter().copied().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let (first, last) = (slopes[0].abs(), slopes[slopes.len() - 1].abs());
+    if STEEPER * first < steepest && STEEPER * last < steepest {
+        return Shape::Sigmoid;
+    }
+    // Slopes below a share of the steepest differ by noise.
+    let least = 0.02 * steepest;
+    let mut flattest = f64::INFINITY;
+    let steepens = slopes.iter().any(|slope| {
+        flattest = flattest.min(slope.abs().max(least));
+        slope.abs() > STEEPER * flattest
+    });
+    if steepens || last > first { Shape::Other } else { Shape::Softening }
 }
 
 fn differ_in_speed(data: &Dataset) -> bool {
@@ -78,21 +175,12 @@ fn speed(record: &Record) -> Option<f64> {
     (speed > 0.0 && speed.is_finite()).then_some(speed)
 }
 
-fn inside_over_folds(candidate: &FitSpec) -> f64 {
-    let companded = |shares: Option<f64>| if shares.is_some() { 0.2 } else { 0.0 };
+fn errors_inside(candidate: &FitSpec) -> ErrorsInside {
     match candidate {
-        FitSpec::Network(options) => {
-            companded(options.shaping.companding) + if options.deteriorates() { 0.85 } else { 1.25 }
-        }
-        FitSpec::Classical(options) => companded(options.shaping.companding) + of_law(options),
-        FitSpec::Auto(_) => 0.0,
-    }
-}
-
-fn of_law(options: &ClassicalOptions) -> f64 {
-    match options.model {
-        ClassicalModel::RandomStops if options.deterioration == Some(true) => 0.6,
-        model => model.facts().log_error_inside,
+        FitSpec::Network(_) => OF_NETWORKS,
+        FitSpec::Classical(options) if options.has_random_layer() => OF_NETWORKS,
+        FitSpec::Classical(options) => options.model.facts().errors_inside,
+        FitSpec::Auto(_) => ErrorsInside { softening: 0.0, sigmoid: 0.0, other: 0.0 },
     }
 }
 
@@ -116,10 +204,36 @@ mod tests {
 
     #[test]
     fn cycles_of_one_size_are_one_loop() {
-        assert_eq!(evidence(&[0.0, 1.0, -1.0, 1.0, -1.0, 1.0]), Evidence::OneLoop);
-        assert_eq!(evidence(&[-1.0, 0.97, -0.98, 1.0, -1.0]), Evidence::OneLoop);
-        assert_eq!(evidence(&[0.0, 1.0]), Evidence::OneLoop);
-        assert_eq!(evidence(&[198.0, 202.0, 198.0, 202.0, 198.0]), Evidence::OneLoop);
+        assert!(evidence(&[0.0, 1.0, -1.0, 1.0, -1.0, 1.0]).is_one_loop());
+        assert!(evidence(&[-1.0, 0.97, -0.98, 1.0, -1.0]).is_one_loop());
+        assert!(evidence(&[0.0, 1.0]).is_one_loop());
+        assert!(evidence(&[198.0, 202.0, 198.0, 202.0, 198.0]).is_one_loop());
+    }
+
+    #[test]
+    fn the_shape_of_the_branches_is_seen_through_noise() {
+        let shape_of = |y: &dyn Fn(f64, f64) -> f64| {
+            let data = data(&[1.0, -1.0, 1.0]);
+            let record = &data.records()[0];
+            let noise = |row: usize| 0.01 * (1e4 * (row as f64).sin()).fract();
+            let mut falls = true;
+            let output = record.inputs()[0].iter().enumerate().map(|(row, &x)| {
+                falls &= row < 20;
+                y(x, if falls { 1.0 } else { -1.0 }) + noise(row)
+            });
+            let output = output.collect();
+            shape(&data.of_record(record.clone().with_output(output).unwrap()))
+        };
+        // Coercive field 0.3; a stop that yields after a tenth, and one beside a spring that stiffens.
+        assert_eq!(shape_of(&|x, side| (8.0 * (x + 0.3 * side)).tanh()), Shape::Sigmoid);
+        let yields = |x: f64, side: f64| side * (1.0 - 2.0 * (1.0 - (-(1.0 - side * x) / 0.3).exp()));
+        assert_eq!(shape_of(&yields), Shape::Softening);
+        // A play, which is free after a reversal.
+        assert_eq!(
+            shape_of(&|x, side| x + 0.3 * side * (1.0 - (-(1.0 - side * x) / 0.3).exp())),
+            Shape::Other
+        );
+        assert_eq!(shape_of(&|x, side| 0.3 * yields(x, side) + x.powi(3)), Shape::Other);
     }
 
     #[test]
@@ -134,7 +248,7 @@ mod tests {
             let names = ColumnNames { time: Some("t".into()), ..ColumnNames::plain(1) };
             Evidence::of(&Dataset::new(names, records).unwrap())
         };
-        assert_eq!(evidence(&[1.0, 1.2]), Evidence::OneLoop);
+        assert!(evidence(&[1.0, 1.2]).is_one_loop());
         assert_eq!(evidence(&[1.0, 1.2, 0.1]), Evidence::SeveralLoops);
     }
 

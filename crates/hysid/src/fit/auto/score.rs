@@ -65,9 +65,14 @@ impl Score {
         Self { inside, outside }
     }
 
-    /// With what is known beforehand.
-    pub fn with_prior(self, prior: f64) -> Self {
-        Self { inside: self.inside + prior, outside: self.outside + prior }
+    /// With the error to be expected on loops that the data do not show, as a share of the standard deviation
+    /// (theory.md (11.14)).
+    pub fn with_unseen(self, error: f64) -> Self {
+        if error == 0.0 {
+            return self;
+        }
+        let with = |score: f64| score.exp().hypot(error).ln();
+        Self { inside: with(self.inside), outside: with(self.outside) }
     }
 
     /// Both classes alike.

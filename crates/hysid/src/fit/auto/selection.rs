@@ -1,30 +1,35 @@
 //! Cross-validation results for the model file.
 
 use crate::fit::auto::combination::Combination;
+use crate::fit::auto::errors_held_out;
 use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::{HeldOut, Trial};
 use crate::model::Weights;
 use crate::model::selection::{CandidateResult, Selection};
 
 /// Of a combination.
-pub(super) fn selection(trials: &[Trial], folds: &[HeldOut], combination: &Combination) -> Selection {
+pub(super) fn selection(
+    trials: &[Trial],
+    left_out: &[Trial],
+    folds: &[HeldOut],
+    combination: &Combination,
+    output: &str,
+) -> Selection {
     let shares = combination.shares();
-    let without = |place: usize| {
-        let others = combination.only(|leaf| leaf.place != place)?;
-        Some(others.score(trials, folds).percent())
-    };
     let result = |(place, trial): (usize, &Trial)| {
         let share = shares.iter().find(|(other, _)| *other == place).map(|(_, share)| *share);
         CandidateResult {
             name: trial.candidate.name(),
             kind: trial.candidate.kind.name().into(),
+            held_out_percent: errors_held_out(&trial.predicted, folds, output)
+                .and_then(|errors| errors.nrmse_std_percent),
             error_percent: Score::of(&trial.predicted, folds, |_| true).percent(),
             share: share.unwrap_or(Weights { inside: 0.0, outside: 0.0 }),
             members: combination.members(place),
-            without_percent: share.and_then(|_| without(place)),
         }
     };
-    let tried = trials.iter().enumerate().filter(|(_, trial)| trial.is_complete());
+    // Those that were left out have places that no share belongs to.
+    let tried = trials.iter().chain(left_out).enumerate().filter(|(_, trial)| trial.is_complete());
     let mut candidates: Vec<CandidateResult> = tried.map(result).collect();
     let kinds: Vec<String> =
         shares.iter().map(|(place, _)| trials[*place].candidate.kind.name().into()).collect();
@@ -35,6 +40,7 @@ pub(super) fn selection(trials: &[Trial], folds: &[HeldOut], combination: &Combi
     });
     Selection {
         folds: folds.iter().map(|fold| fold.fold.name.clone()).collect(),
+        held_out_percent: None,
         error_percent: combination.score(trials, folds).percent(),
         candidates,
         single: None,

@@ -16,6 +16,7 @@ use crate::data::record::{Dataset, Record, Thinning};
 use crate::error::Result;
 use crate::fit::auto::candidates::{Candidate, Kind};
 use crate::fit::auto::combination::Combination;
+use crate::fit::auto::errors_held_out;
 use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::{Bench, HeldOut, OnFold, Rows, Trial, fit_members};
@@ -46,9 +47,8 @@ pub(super) struct Single {
 struct Plain {
     place: usize,
     predicted: Vec<Vec<f64>>,
-    score: Score,
-    /// What is known of the candidate beforehand.
-    prior: f64,
+    /// The error of the candidate to be expected on loops that the data do not show.
+    unseen: f64,
     /// Logarithm of its error, with its distance from the ensemble where nothing was measured.
     error: f64,
 }
@@ -142,9 +142,9 @@ impl Makers<'_, '_, '_> {
             let Some(model) = closest_to_training(trial) else { continue };
             let predicted = plain_predictions(trial);
             let score = Score::of(&predicted, self.bench.folds, |_| true);
-            let prior = trial.prior(self.evidence);
-            let error = error(score.with_prior(prior), model)?;
-            plain.push(Plain { place, predicted, score, prior, error });
+            let unseen = trial.unseen_error(self.evidence);
+            let error = error(score.with_unseen(unseen), model)?;
+            plain.push(Plain { place, predicted, unseen, error });
         }
         plain.sort_by(|a, b| a.error.total_cmp(&b.error));
         let Some(best) = plain.first() else { return Ok(None) };
@@ -159,11 +159,11 @@ impl Makers<'_, '_, '_> {
         let mut how = SingleModel {
             name: candidate.name(),
             distilled: true,
-            distilled_percent: of_distilled.map(Score::percent),
-            plain_percent: best.score.percent(),
+            distilled_percent: distilled.as_ref().and_then(|(_, predicted)| self.held_out_percent(predicted)),
+            plain_percent: self.held_out_percent(&best.predicted),
         };
         if let (Some((model, predicted)), Some(of_distilled)) = (distilled, of_distilled)
-            && error(of_distilled.with_prior(best.prior), &model)? <= best.error
+            && error(of_distilled.with_unseen(best.unseen), &model)? <= best.error
         {
             return Ok(Some(Single { model, predicted, how }));
         }
@@ -171,6 +171,11 @@ impl Makers<'_, '_, '_> {
         let (place, predicted) = (best.place, best.predicted.clone());
         let model = self.plain(place);
         Ok(model.map(|model| Single { model, predicted, how }))
+    }
+
+    /// Error on all held-out rows together, in percent of the standard deviation.
+    fn held_out_percent(&self, predicted: &[Vec<f64>]) -> Option<f64> {
+        errors_held_out(predicted, self.bench.folds, "")?.nrmse_std_percent
     }
 
     /// The fit to everything with the lowest training error.

@@ -40,6 +40,9 @@ const NEARLY_EXACT: f64 = 0.03;
 /// end.
 const PROMISING: [(usize, f64); 3] = [(3, f64::INFINITY), (6, 3.0), (10, 1.7)];
 
+/// The held-out error with the rate that makes up for not knowing it at other speeds, relative to that without. Designed.
+const EARNED: f64 = 0.8;
+
 /// Networks that are tried with other penalties too.
 const REFINED: usize = 2;
 
@@ -225,14 +228,14 @@ impl Stages<'_, '_, '_> {
     /// Of what a candidate predicts on some folds, with what is known of it beforehand.
     fn score(&self, trial: &Trial, predicted: &[Vec<f64>], folds: &[usize]) -> Score {
         let score = Score::of(predicted, self.bench.folds, |fold| folds.contains(&fold));
-        score.with_prior(trial.prior(self.evidence))
+        score.with_unseen(trial.unseen_error(self.evidence))
     }
 
     /// The best networks so far with other penalties, unless the user has decided. One loop does not tell which
     /// penalties serve inside it.
     fn refined(&self) -> Vec<Candidate> {
         let Self { options, .. } = self;
-        if self.evidence == Evidence::OneLoop
+        if self.evidence.is_one_loop()
             || options.only.is_some()
             || options.ridge.is_some()
             || options.decay.is_some()
@@ -256,7 +259,8 @@ impl Stages<'_, '_, '_> {
         let is_without_noise = best.inside < WITHOUT_NOISE.ln();
         let least = if is_without_noise { NEARLY_EXACT } else { 0.0 };
         let most_percent = |law: &Candidate| {
-            let worth = (best.inside + WORTH_A_TRIAL.ln() - self.evidence.prior(law.asked())).exp();
+            let (most, unseen) = (WORTH_A_TRIAL * best.inside.exp(), self.evidence.unseen_error(law.asked()));
+            let worth = (most * most - unseen * unseen).max(0.0).sqrt();
             100.0 * worth.max(least)
         };
         let fit = |law: Candidate| {
@@ -307,6 +311,25 @@ impl Stages<'_, '_, '_> {
         for start in 1..=further {
             self.bench.try_start(&mut self.trials, &places, start);
             self.tell(&places, Standing::Complete);
+        }
+    }
+
+    /// Drops the candidates with the rate unless they are clearly better than those without, for data in which a
+    /// dependence on the rate and one on the amplitude look alike: at other speeds a needless rate is harmful.
+    pub fn drop_unearned_rates(&mut self) {
+        let has_rate = |trial: &Trial| trial.candidate.asked().rate().is_some();
+        let best = |with: bool| {
+            let trials = self.trials.iter().filter(|trial| trial.is_complete() && has_rate(trial) == with);
+            let errors =
+                trials.map(|trial| Score::of(&trial.predicted, self.bench.folds, |_| true).mean_percent());
+            errors.min_by(f64::total_cmp)
+        };
+        if let Some((with, without)) = best(true).zip(best(false))
+            && with > EARNED * without
+        {
+            let (dropped, kept) = std::mem::take(&mut self.trials).into_iter().partition(has_rate);
+            self.trials = kept;
+            self.dropped.extend(dropped.into_iter().map(|trial: Trial| trial.candidate));
         }
     }
 

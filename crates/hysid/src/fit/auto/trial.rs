@@ -100,9 +100,9 @@ impl Trial {
         !self.starts.is_empty() && !self.members.is_empty()
     }
 
-    /// What is known of the candidate beforehand.
-    pub fn prior(&self, evidence: Evidence) -> f64 {
-        evidence.prior(self.candidate.asked())
+    /// The error of the candidate to be expected on loops that the data do not show.
+    pub fn unseen_error(&self, evidence: Evidence) -> f64 {
+        evidence.unseen_error(self.candidate.asked())
     }
 
     /// What the start that is under way predicts, fold by fold; nothing on folds that it has not been fitted
