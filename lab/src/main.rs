@@ -12,6 +12,7 @@ mod plan_battery;
 mod program;
 mod questions;
 mod rig;
+mod roles_battery;
 mod same_models;
 mod soak;
 mod statistics;
@@ -62,6 +63,10 @@ enum Measurement {
     PlanBattery(plan_battery::Request),
     /// Measure the tables of docs/questions.md
     Questions(questions::Request),
+    /// Count right, asked and wrong roles of columns under the headers of twelve fields
+    ///
+    /// Runs `hysid look` on tables with these headers; fails if a role is wrong.
+    RolesBattery(roles_battery::Request),
     /// Check that two programs fit the same models, byte by byte
     ///
     /// Fits every model with both; model files and simulations must be the same.
@@ -111,6 +116,7 @@ fn run(measurement: &Measurement) -> Result<()> {
         Measurement::Growth(request) => growth::run(request),
         Measurement::PlanBattery(request) => plan_battery::run(request),
         Measurement::Questions(request) => questions::run(request),
+        Measurement::RolesBattery(request) => roles_battery::run(request),
         Measurement::SameModels(request) => same_models::run(request),
         Measurement::Soak(request) => soak::run(request),
         Measurement::Steps => {

@@ -177,15 +177,15 @@ pub struct ColumnOptions {
     /// one record.
     #[arg(long, value_name = "COLUMN")]
     pub record: Option<String>,
-    /// Time stamps [default: `t` or `time`, also with a unit]
+    /// Time stamps, or none [default: `t` or `time`, also with a unit]
     ///
-    /// Examples with a unit: `t_ms`, `Time (s)`.
+    /// Examples with a unit: `t_ms`, `Time (s)`. `--time none` uses no column as time.
     #[arg(long, value_name = "COLUMN")]
     pub time: Option<String>,
-    /// Input; repeat for several [default: all other columns]
+    /// Input; repeat for several [default: the other columns that may be inputs]
     #[arg(long, value_name = "COLUMN")]
     pub input: Vec<String>,
-    /// Output [default: the last column]
+    /// Output [default: the last column that may be one]
     #[arg(long, value_name = "COLUMN")]
     pub output: Option<String>,
     /// Rate of the first input: auto, none, central, backward, savitzky-golay or a column with the rate

@@ -206,11 +206,11 @@ pub fn table(rows: &[Row], tested: bool) -> String {
     const NAME: usize = 33;
     let line = |cells: [&str; 6]| {
         let [model, test, train, parameters, fit, simulate] = cells;
-        let test = if tested { format!("{test:>9}") } else { String::new() };
+        let test = if tested { format!(" {test:>8}") } else { String::new() };
         // A long name has a line of its own.
         let is_long = model.chars().count() >= NAME;
         let name = if is_long { format!("{model}\n{:NAME$}", "") } else { format!("{model:<NAME$}") };
-        format!("{name}{test}{train:>8}{parameters:>11}{fit:>7}{simulate:>10}\n")
+        format!("{name}{test} {train:>7} {parameters:>10} {fit:>6} {simulate:>9}\n")
     };
     let mut text = line(HEADINGS);
     for row in rows {

@@ -100,7 +100,15 @@ fn refuse(error: clap::Error) -> ExitCode {
             ExitCode::from(error.exit_code() as u8)
         }
         _ => {
-            let hint = is_extra_value(&error).then(help::hint_of_force).flatten();
+            let mut error = error;
+            let hint = match is_version(&error) {
+                // Commands have no version of their own, and no option that is like it.
+                true => {
+                    error.remove(ContextKind::SuggestedArg);
+                    Some("for the version: `hysid --version`".to_string())
+                }
+                false => is_extra_value(&error).then(help::hint_of_force).flatten(),
+            };
             let text = cleaned(error).render().to_string();
             let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
             let said: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:")).collect();
@@ -111,6 +119,15 @@ fn refuse(error: clap::Error) -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// True if the error is about an option for the version.
+fn is_version(error: &clap::Error) -> bool {
+    let is_it = |value: &ContextValue| match value {
+        ContextValue::String(text) => text == "--version" || text == "-V",
+        _ => false,
+    };
+    error.kind() == ErrorKind::UnknownArgument && error.get(ContextKind::InvalidArg).is_some_and(is_it)
 }
 
 /// True if the error is about a value where none is expected.

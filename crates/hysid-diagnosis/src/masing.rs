@@ -66,10 +66,11 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
         None => (0, Vec::new()),
     };
     if comparisons.len() < 2 {
-        let statement = format!(
-            "{} branches shorter than the longest, within known loops; 2 are needed",
-            comparisons.len()
-        );
+        let branches = match comparisons.len() {
+            0 => "no branch is",
+            _ => "only one branch is",
+        };
+        let statement = format!("{branches} shorter than the longest, within known loops; 2 are needed");
         return Finding::not_testable(Property::Masing, statement, EXPERIMENT);
     }
     let mut judgement = judge(&comparisons, EFFECT).expect("there are comparisons");

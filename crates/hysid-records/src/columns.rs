@@ -1,6 +1,8 @@
 //! Which column is what: found from the names, from options, or from a model.
 
 mod guess;
+mod kind;
+pub mod values;
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -14,18 +16,22 @@ use hysid_core::options::chosen::{NamedOptions, RateChoice};
 use hysid_core::options::{FitSpec, ModelName};
 
 use self::guess::Guess;
+use self::values::{Running, Seen, numbers};
 use crate::usage::Usage;
 use hysid_core::data::unit::{self, Conversion};
 use hysid_document::shell::shown;
 use hysid_document::visible::{clipped, listed};
 use hysid_tables::{Head, Table, is_record};
 
+/// Name by which a choice of the time column says that there is none.
+pub const NO_TIME: &str = "none";
+
 /// What is said of the columns; what is not said is guessed.
 #[derive(Debug, Clone, Default)]
 pub struct ColumnChoice {
     /// Tells the records apart.
     pub record: Option<String>,
-    /// Time stamps.
+    /// Time stamps; [`NO_TIME`] if no column has them.
     pub time: Option<String>,
     /// Inputs.
     pub input: Vec<String>,
@@ -36,6 +42,11 @@ pub struct ColumnChoice {
 }
 
 impl ColumnChoice {
+    /// True if the choice says that a table has no time stamps.
+    fn has_no_time(&self, table: &Head) -> bool {
+        self.time.as_deref() == Some(NO_TIME) && table.column(NO_TIME).is_none()
+    }
+
     /// The options by which a command is told the same columns, for a shell.
     pub fn options(&self) -> Vec<String> {
         let rate = match &self.rate {
@@ -109,7 +120,11 @@ pub struct Roles {
     /// What no option decided, in words; `None` if nothing.
     pub guessed: Option<&'static str>,
     /// Columns that have no role although no option says so, each with the reason.
-    pub set_aside: Vec<(String, &'static str)>,
+    pub set_aside: Vec<(String, String)>,
+    /// A condition of the test with few values, which divide the rows of each table into records.
+    pub condition: Option<String>,
+    /// What was taken against the names of the columns, in a sentence.
+    pub note: Option<String>,
 }
 
 impl Roles {
@@ -117,6 +132,8 @@ impl Roles {
     pub fn detect(table: &Table, options: &ColumnChoice) -> Result<Self> {
         table.require_columns()?;
         let options = &with_full_names(options, table);
+        let no_time = options.has_no_time(table);
+        let time = options.time.clone().filter(|_| !no_time);
         let rate = match &options.rate {
             RateOption::Column(name) => Some(name.clone()),
             _ => None,
@@ -124,7 +141,7 @@ impl Roles {
         let mut taken: HashMap<&str, &str> = HashMap::new();
         let named = [
             ("--record", &options.record),
-            ("--time", &options.time),
+            ("--time", &time),
             ("--rate", &rate),
             ("--output", &options.output),
         ];
@@ -141,25 +158,33 @@ impl Roles {
         }
         let mut free: Vec<&String> =
             table.header.iter().filter(|name| !taken.contains_key(name.as_str())).collect();
-        let mut claim = |given: &Option<String>, suits: &dyn Fn(&str) -> bool| {
-            given.clone().or_else(|| {
-                let place = free.iter().position(|name| suits(name))?;
-                Some(free.remove(place).clone())
-            })
+        let claim = |free: &mut Vec<&String>, suits: &dyn Fn(&str) -> bool| {
+            let place = free.iter().position(|name| suits(name))?;
+            Some(free.remove(place).clone())
         };
-        let record = claim(&options.record, &is_record);
-        let time = claim(&options.time, &unit::is_time);
+        let record = options.record.clone().or_else(|| claim(&mut free, &is_record));
+        let records = rows_of_records(table, record.as_deref());
+        let named_time = match (no_time, time) {
+            (true, _) | (false, Some(_)) => None,
+            (false, None) => time_by_name(table, &free, &records)?,
+        };
+        free.retain(|name| named_time.as_ref() != Some(name));
+        let time = options.time.clone().filter(|_| !no_time).or(named_time);
         let mut guess = Guess {
             table,
-            records: rows_of_records(table, record.as_deref()),
+            record: record.clone(),
+            records,
             free,
             time,
+            no_time,
             output: options.output.clone(),
-            has_inputs: !options.input.is_empty(),
+            inputs: options.input.clone(),
             set_aside: Vec::new(),
+            condition: None,
+            note: None,
         };
         guess.complete()?;
-        let Guess { free, time, output, set_aside, .. } = guess;
+        let Guess { free, time, output, set_aside, condition, note, .. } = guess;
         let inputs: Vec<String> = if options.input.is_empty() {
             free.into_iter().cloned().collect()
         } else {
@@ -168,12 +193,12 @@ impl Roles {
         let guessed = match (options.input.is_empty(), options.output.is_none()) {
             (true, true) => Some("input and output, from names and values (change: --input, --output)"),
             (true, false) => Some("input, from names and values (change: --input)"),
-            (false, true) => Some("output, the last column (change: --output)"),
+            (false, true) => Some("output, from names and values (change: --output)"),
             (false, false) => None,
         };
         match output {
             Some(output) if !inputs.is_empty() => {
-                Ok(Self { record, time, inputs, rate, output, guessed, set_aside })
+                Ok(Self { record, time, inputs, rate, output, guessed, set_aside, condition, note })
             }
             output => bail!(
                 "{}: no column is left for the input besides output \"{}\" (columns: {})",
@@ -194,6 +219,7 @@ impl Roles {
     pub fn with_time(self, table: &Head, options: &ColumnChoice) -> Result<Self> {
         let time = match (&self.time, &options.time) {
             (Some(_), _) => return Ok(self),
+            (None, Some(_)) if options.has_no_time(table) => None,
             (None, Some(name)) => require(table, name, "--time").map(|()| Some(full_name(table, name)))?,
             (None, None) => table.header.iter().find(|name| unit::is_time(name)).cloned(),
         };
@@ -286,7 +312,17 @@ impl Roles {
             Some(name) => require(table, name, "--record").map(|()| Some(full_name(table, name)))?,
             None => table.header.iter().find(|name| is_record(name) && !used(name)).cloned(),
         };
-        Ok(Self { record, time, inputs, rate, output, guessed: None, set_aside: Vec::new() })
+        Ok(Self {
+            record,
+            time,
+            inputs,
+            rate,
+            output,
+            guessed: None,
+            set_aside: Vec::new(),
+            condition: None,
+            note: None,
+        })
     }
 
     /// The names as the library keeps them.
@@ -314,6 +350,30 @@ impl Roles {
         }
         Ok(())
     }
+}
+
+/// The column that is named like time. Of one that falls as a field or a temperature does, only the user can say it.
+///
+/// # Errors
+/// A column named like time that falls.
+fn time_by_name(table: &Table, free: &[&String], records: &[Range<usize>]) -> Result<Option<String>> {
+    for name in free.iter().filter(|name| unit::is_time(name)) {
+        let running = numbers(table, name).map(|values| Seen::of(&values, records).running);
+        // A single T is a temperature as often.
+        let is_temperature =
+            name.trim() == "T" && !matches!(running, Some(Running::Strictly | Running::WithEqualStamps));
+        if is_temperature {
+            continue;
+        }
+        ensure!(
+            running != Some(Running::Falls),
+            "{}: column \"{}\" falls, as no time does: name another with --time, or use --time none",
+            table.file,
+            clipped(name)
+        );
+        return Ok(Some((*name).clone()));
+    }
+    Ok(None)
 }
 
 /// Rows of each record of a table, where its name changes.

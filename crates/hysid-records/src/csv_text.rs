@@ -3,6 +3,7 @@
 use anyhow::Result;
 use csv::QuoteStyle;
 use hysid_core::data::record::{Dataset, Record};
+use hysid_core::data::unit;
 
 use hysid_tables::{Delimiter, shortest};
 
@@ -60,6 +61,17 @@ fn numbers(record: &Record, row: usize) -> impl Iterator<Item = String> {
     columns.map(move |column| shortest(column[row])).chain([output])
 }
 
+/// The name of a column made of another, in the same unit: `Force_model [kN]` of `Force [kN]`.
+pub fn named_after(name: &str, ending: &str) -> String {
+    let name = name.trim();
+    match unit::split(name) {
+        (quantity, Some(_)) if !name[quantity.len()..].starts_with('_') => {
+            format!("{quantity}_{ending}{}", &name[quantity.len()..])
+        }
+        _ => format!("{name}_{ending}"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -106,6 +118,20 @@ mod tests {
     }
 
     #[test]
+    fn names_of_simulated_columns_keep_their_unit_at_the_end() {
+        for (name, simulated) in [
+            ("Force [kN]", "Force_model [kN]"),
+            ("Load (N)", "Load_model (N)"),
+            ("Force, kN", "Force_model, kN"),
+            ("x / mm", "x_model / mm"),
+            ("y", "y_model"),
+            ("displacement_um", "displacement_um_model"),
+        ] {
+            assert_eq!(named_after(name, "model"), simulated);
+        }
+    }
+
+    #[test]
     fn every_header_line_reads_back() {
         for names in [["# t", "x", "y"], [" #t", "x\n", "\"y\""], ["a;b", "c\td", "e,f"], ["t", "x", "y"]] {
             for delimiter in ['\t', ';', ',', '|'] {
@@ -124,7 +150,7 @@ mod tests {
     fn awkward_names_and_numbers_read_back_too() {
         let names = ColumnNames {
             time: Some("Time, since start (s)".into()),
-            inputs: vec!["x; \"left\"".into(), "temperature".into()],
+            inputs: vec!["x; \"left\"".into(), "other".into()],
             rate: Some("v_mm_s".into()),
             output: "F_N".into(),
         };

@@ -12,6 +12,7 @@ use hysid_core::model::Model;
 
 use hysid_tables::{CellReader, ColumnReader, Head, Origin, Reading, Table, spread_equal, starts_again};
 
+use crate::columns::values::{changes, numbers};
 use crate::columns::{ColumnChoice, Roles};
 use crate::record_names::RecordNames;
 use crate::units::Factors;
@@ -90,7 +91,7 @@ impl Data {
             of_tables.push((columns, first..source.places.len()));
             source.tables.push(table.into_origin());
         }
-        let (mut records, mut warnings) = (Vec::new(), Vec::new());
+        let (mut records, mut warnings) = (Vec::new(), Vec::from_iter(roles.note.clone()));
         for (mut columns, places) in of_tables {
             let places = &source.places[places];
             warnings.extend(columns.spread_equal_stamps(places, &source));
@@ -307,10 +308,13 @@ struct Naming<'n> {
 }
 
 /// The records of a table: runs of rows with the same name in the record column; without such a column, a record begins
-/// where time starts again.
+/// where time starts again or a condition of the test changes.
 fn places(table: &Table, roles: &Roles, naming: &Naming<'_>, time: Option<&[f64]>) -> Result<Vec<Place>> {
     let Some(column) = &roles.record else {
-        let ends = ends_by_time(time.unwrap_or_default(), table.rows());
+        let mut ends = ends_by_time(time.unwrap_or_default(), table.rows());
+        ends.extend(ends_by_condition(table, roles));
+        ends.sort_unstable();
+        ends.dedup();
         let name = |number: usize| match ends.len() {
             1 => naming.stem.to_string(),
             _ => format!("{} ({})", naming.stem, number + 1),
@@ -335,6 +339,12 @@ fn places(table: &Table, roles: &Roles, naming: &Naming<'_>, time: Option<&[f64]
         places.push(Place { record, table: naming.table, rows: row..row + 1 });
     }
     Ok(places)
+}
+
+/// Where records end because a condition of the test takes another value.
+fn ends_by_condition(table: &Table, roles: &Roles) -> Vec<usize> {
+    let values = roles.condition.as_ref().and_then(|name| numbers(table, name));
+    values.map_or_else(Vec::new, |values| changes(&values).split_off(1))
 }
 
 /// Where records end that time tells apart.

@@ -12,8 +12,8 @@ mod units;
 mod usage;
 mod warnings;
 
-pub use columns::{ColumnChoice, RateOption, Roles};
-pub use csv_text::{csv_text, header_line};
+pub use columns::{ColumnChoice, NO_TIME, RateOption, Roles};
+pub use csv_text::{csv_text, header_line, named_after};
 pub use data::{
     Data, Kind, Place, Source, checked, column_of, data_of_text, equal_stamps, explained, offset_of,
     place_of, places_of,

@@ -172,5 +172,5 @@ fn role(roles: &Roles, name: &String) -> &'static str {
 /// Why a column has no role.
 fn reason(roles: &Roles, name: &String) -> Option<String> {
     let (_, reason) = roles.set_aside.iter().find(|(other, _)| other == name)?;
-    Some((*reason).to_string())
+    Some(reason.clone())
 }

@@ -48,7 +48,7 @@ impl ColumnReader {
             return match Stamp::of(cell) {
                 Some(stamp) => Ok(stamps.seconds(stamp)),
                 None if is_missing(cell) => Ok(f64::NAN),
-                None => Err(format!("\"{}\" is no date with a clock and no clock", clipped(cell))),
+                None => Err(format!("\"{}\" is no date and no clock with seconds", clipped(cell))),
             };
         }
         let digits = head.bare(self.place, cell)?;

@@ -5,6 +5,25 @@ use jiff::civil;
 /// Seconds of a day.
 const DAY: f64 = 86_400.0;
 
+/// Fewest characters of a time stamp.
+const SHORTEST: usize = 7;
+
+/// Beginnings of the names of months in English, German, French, Spanish, Italian and Portuguese, lower case.
+const MONTHS: [&str; 12] = [
+    "jan janv ene gen",
+    "feb fév fev",
+    "mar mär mrz mars",
+    "apr avr abr",
+    "may mai mag",
+    "jun juin giu",
+    "jul juil lug",
+    "aug août aou ago",
+    "sep set",
+    "oct okt ott out",
+    "nov",
+    "dec dez déc dic",
+];
+
 /// A time stamp in a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamp {
@@ -24,25 +43,32 @@ enum Date {
 }
 
 impl Stamp {
-    /// The time stamp in a cell: `12:30:05.25`, `2024-03-01T12:30:05Z`, `1.3.2024 12:30:05,25`, `3/1/2024 0:30:05 PM`;
-    /// `None` for anything else.
+    /// The time stamp in a cell: `12:30:05.25`, `2024-03-01T12:30:05Z`, `1.3.2024 12:30:05,25`, `3/1/2024 0:30 PM`,
+    /// `01-Mar-2024 12:30`, `Mar 1, 2024`; `None` for anything else. A clock alone needs its seconds: `12:30` may be hours
+    /// and minutes or minutes and seconds.
     pub fn of(cell: &str) -> Option<Self> {
         let cell = cell.trim();
         // Most cells are numbers.
-        if !cell.contains(':') || !cell.starts_with(|c: char| c.is_ascii_digit()) {
+        if cell.len() < SHORTEST {
             return None;
         }
-        match cell.split_once(['T', ' ']) {
-            Some((date, clock)) if !date.contains(':') => {
-                Some(Self { date: Some(date_of(date)?), seconds: clock_of(clock.trim())? })
-            }
-            _ => Some(Self { date: None, seconds: clock_of(cell)? }),
+        let Some(colon) = cell.find(':') else {
+            // A date without a clock needs a year of four digits: 1.2.3 is a version or an address.
+            let has_year = cell.split(|c: char| !c.is_ascii_digit()).any(|part| part.len() == 4);
+            return Some(Self { date: Some(date_of(cell).filter(|_| has_year)?), seconds: 0.0 });
+        };
+        let hours = cell[..colon].trim_end_matches(|c: char| c.is_ascii_digit());
+        let clock = &cell[hours.len()..];
+        match hours.strip_suffix(['T', ' ']).map(str::trim_end) {
+            None if hours.is_empty() => Some(Self { date: None, seconds: clock_of(clock, true)? }),
+            Some(date) => Some(Self { date: Some(date_of(date)?), seconds: clock_of(clock, false)? }),
+            None => None,
         }
     }
 }
 
-/// The seconds of a clock, with an offset from universal time subtracted.
-fn clock_of(text: &str) -> Option<f64> {
+/// The seconds of a clock, with an offset from universal time subtracted. Behind a date, the seconds may be missing.
+fn clock_of(text: &str, needs_seconds: bool) -> Option<f64> {
     let (text, half_day) = match text.char_indices().rev().find(|(_, c)| c.is_ascii_digit()) {
         Some((last, _)) => match text[last + 1..].trim().to_ascii_uppercase().as_str() {
             "" | "Z" => (&text[..=last], None),
@@ -57,7 +83,8 @@ fn clock_of(text: &str) -> Option<f64> {
         None => (text, 0.0),
     };
     let mut parts = clock.split(':');
-    let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next()?);
+    let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next());
+    let seconds = seconds.or((!needs_seconds).then_some("0"))?;
     if parts.next().is_some() || [hours, minutes].iter().any(|part| part.is_empty() || part.len() > 2) {
         return None;
     }
@@ -90,6 +117,9 @@ fn offset_of(text: &str) -> Option<f64> {
 }
 
 fn date_of(text: &str) -> Option<Date> {
+    if text.contains(char::is_alphabetic) {
+        return date_with_name(text).map(Date::Day);
+    }
     let separator = text.chars().find(|c| !c.is_ascii_digit())?;
     let parts: Vec<i16> =
         text.split(separator).map(|part| part.parse().ok()).collect::<Option<Vec<i16>>>()?;
@@ -108,6 +138,29 @@ fn date_of(text: &str) -> Option<Date> {
         }
         _ => None,
     }
+}
+
+/// Days since 1970 of a date with the name of its month: `01-Mar-2024`, `1. März 2024`, `Fri, Mar 1, 2024`, `2024-Mar-01`.
+fn date_with_name(text: &str) -> Option<i64> {
+    let is_word = |part: &&str| part.starts_with(char::is_alphabetic);
+    let parts = text.split([' ', '-', '/', '.', ',']).filter(|part| !part.is_empty());
+    let (words, numbers): (Vec<&str>, Vec<&str>) = parts.partition(is_word);
+    let month = match words[..] {
+        [month] => month,
+        // The day of the week stands first.
+        [_, month] if text.starts_with(char::is_alphabetic) => month,
+        _ => return None,
+    };
+    let lower = month.to_lowercase();
+    let is_named = |names: &&str| names.split(' ').any(|name| lower.starts_with(name));
+    let month = MONTHS
+        .iter()
+        .rposition(|names| is_named(&names))
+        .filter(|_| lower.chars().all(char::is_alphabetic))?;
+    let [first, second] = numbers[..] else { return None };
+    let (day, year) = if first.len() == 4 { (second, first) } else { (first, second) };
+    let year: i16 = year.parse().ok().filter(|_| matches!(year.len(), 2 | 4))?;
+    day_of(if year < 100 { year + 2000 } else { year }, month as i16 + 1, day.parse().ok()?)
 }
 
 /// Days since 1970.
@@ -223,10 +276,60 @@ mod tests {
     }
 
     #[test]
-    fn other_text_is_no_time_stamp() {
-        for cell in
-            ["1.5", "12:30", "25", "2024-03-01", "a:b:c", "1:75:00", "2024-13-01 00:00:00", "::", "1:2:3:4"]
+    fn dates_may_lack_seconds_or_a_clock_and_may_name_their_month() {
+        for (first, second, expected) in [
+            ("2023-03-01 00:00", "2023-03-01 00:15", 900.0),
+            ("2023-03-01T23:45Z", "2023-03-02T00:00Z", 900.0),
+            ("28.02.2023 23:45", "01.03.2023 0:15", 1800.0),
+            ("3/1/2023 11:45 AM", "3/1/2023 12:15 PM", 1800.0),
+            ("28-Feb-2024 23:59:59.5", "29-Feb-2024 00:00:00.5", 1.0),
+            ("1 Mar 2023 00:00", "1 March 2023 00:15", 900.0),
+            ("1. März 2023 00:00:00", "2. Mai 2023 00:00:00", 62.0 * DAY),
+            ("Mar 1, 2023 12:00 AM", "Mar 1, 2023 1:00 PM", 46_800.0),
+            ("Wed, 01 Mar 2023 00:00:00", "Thu, 02 Mar 2023 00:00:01", DAY + 1.0),
+            ("31 déc. 2022 23:00", "1 janv. 2023 00:00", 3600.0),
+            ("30 juin 2023 12:00", "1 juil. 2023 12:00", DAY),
+            ("2024-02-28", "2024-03-01", 2.0 * DAY),
+            ("28.02.2024", "01.03.2024", 2.0 * DAY),
+            ("2023-Dec-31 23:00:00", "2024-Jan-01 00:00:00", 3600.0),
+        ] {
+            assert_eq!(seconds(&[first, second])[1], expected, "{first} {second}");
+        }
+        for month in ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"]
+            .iter()
+            .enumerate()
         {
+            let named = Stamp::of(&format!("7-{}-2023 01:02", month.1)).unwrap();
+            assert_eq!(Some(named), Stamp::of(&format!("2023-{}-07 01:02", month.0 + 1)), "{}", month.1);
+        }
+    }
+
+    #[test]
+    fn other_text_is_no_time_stamp() {
+        for cell in [
+            "1.5",
+            "12:30",
+            "25",
+            "a:b:c",
+            "1:75:00",
+            "2024-13-01 00:00:00",
+            "::",
+            "1:2:3:4",
+            "1.2.3",
+            "127.0.0.1",
+            "2023-02-30",
+            "Mar 2023",
+            "May 1 at 12:30",
+            "Sample 1 2023",
+            "run 3: 12:30",
+            "1.234.567",
+            "12345678",
+            "1.0e-05",
+            "1.5 mm 2023",
+            "2024-03",
+            "-2024-03-01",
+            "12-34-5678",
+        ] {
             assert_eq!(Stamp::of(cell), None, "{cell}");
         }
     }

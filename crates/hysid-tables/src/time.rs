@@ -27,9 +27,9 @@ pub fn spread_equal(time: &mut [f64], next: Option<f64>, step: &mut Option<f64>)
 }
 
 /// True for a time stamp with which another record begins: it falls back to where the record began. `first` and
-/// `previous` are the first and the last stamp of the record.
+/// `previous` are the first and the last stamp of the record, which has grown: what falls at once is no time.
 pub fn starts_again(first: f64, previous: f64, stamp: f64) -> bool {
-    stamp < previous && stamp <= first + BEGINNING * (previous - first)
+    previous > first && stamp < previous && stamp <= first + BEGINNING * (previous - first)
 }
 
 #[cfg(test)]
@@ -63,5 +63,6 @@ mod tests {
         assert!(!starts_again(0.0, 10.0, 9.9));
         assert!(!starts_again(0.0, 10.0, 10.1));
         assert!(!starts_again(0.0, 0.0, 0.0));
+        assert!(!starts_again(0.8, 0.8, 0.78), "a field that falls from its first value");
     }
 }

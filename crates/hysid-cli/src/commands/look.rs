@@ -95,7 +95,7 @@ fn text(looked: &[Looked], understood: &[(String, String)]) -> String {
     text
 }
 
-/// Writes the data as a table that is read without options.
+/// Writes the columns that have a role as a plain table.
 fn write(out: &Path, data: &Data, arguments: &Look) -> Result<()> {
     let text = csv_text(&data.set)?;
     let header = text.lines().next().unwrap_or_default().as_bytes().to_vec();

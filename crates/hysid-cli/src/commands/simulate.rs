@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::{Result, ensure};
 use hysid_files::{Destination, Kind, NewFile};
 use hysid_records::Roles;
-use hysid_records::header_line;
+use hysid_records::{header_line, named_after};
 use hysid_tables::{CellReader, ColumnReader, DecimalSign, Reading, Rows, push_shortest};
 
 use crate::arguments::Simulate;
@@ -27,10 +27,10 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     let reading = arguments.columns.reading.reading();
     let mut rows = Rows::open(&arguments.data, &reading)?;
-    let mut names = vec![format!("{}_model", model.names().output)];
+    let mut names = vec![named_after(&model.names().output, "model")];
     if arguments.band.is_some() {
         check_band(&model, &arguments.model)?;
-        names.extend(["low", "high"].map(|edge| format!("{}_{edge}", model.names().output)));
+        names.extend(["low", "high"].map(|edge| named_after(&model.names().output, edge)));
     }
     for name in &names {
         ensure!(

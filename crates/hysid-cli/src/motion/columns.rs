@@ -154,6 +154,8 @@ impl MotionColumns {
             output: self.displacement.clone(),
             guessed: None,
             set_aside: Vec::new(),
+            condition: None,
+            note: None,
         }
     }
 }

@@ -74,18 +74,17 @@ fn columns_that_only_grow_are_refused_where_others_are_left() {
     refused(
         growing("position,x,y"),
         "",
-        "error: data.csv: column \"position\" grows from row to row: name it with --time, or name input and output with \
-         --input and --output",
+        "error: data.csv: column \"position\" grows from row to row: name it with --time position, or name input and \
+         output with --input and --output, for instance --input position (columns: position, x, y)",
     );
     told(growing("position,x,y"), "--time position", &["time     position"]);
     told(growing("position,x,y"), "--input position --input x", &["input    position: "]);
     told(growing("position,x,y"), "--input x --output y", &["input    x: "]);
     let data = table("cycle,x,y", |k, [_, x, y]| texts(&[&(k / 20), &x, &y]));
-    refused(
+    told(
         data,
         "",
-        "error: data.csv: column \"cycle\" counts up in steps: name it with --record, or name input and output with \
-         --input and --output",
+        &["input    x: ", "ignored  cycle: counts up in steps (to divide the rows into records: --record"],
     );
 }
 
@@ -98,11 +97,12 @@ fn command_and_measurement_are_not_both_inputs() {
         data.clone(),
         "",
         "error: data.csv: columns \"command\" and \"measured\" are nearly the same signal (correlation 0.9999), such as a \
-         command and its measurement: name the input with --input",
+         command and its measurement: name the input with --input command or --input measured",
     );
     told(data, "--input measured", &["input    measured: "]);
     let data = table("t,x,temperature,y", |_, [t, x, y]| texts(&[&t, &x, &(1.3 * t).sin(), &y]));
-    told(data, "", &["input    x: ", "input    temperature: "]);
+    told(data.clone(), "", &["input    x: ", "ignored  temperature: a condition of the test"]);
+    told(data, "--input x --input temperature", &["input    temperature: "]);
 }
 
 #[test]
@@ -122,15 +122,92 @@ fn many_columns_are_not_all_inputs() {
 }
 
 #[test]
-fn a_force_is_not_taken_for_the_input_silently() {
+fn the_last_column_is_the_output_whatever_its_name_and_it_is_said() {
     let data = |header: &str| table(header, |_, [_, x, y]| texts(&[&y, &x]));
-    refused(
-        data("force_kN,disp_mm"),
-        "",
-        "error: data.csv: \"disp_mm\" is in the last column, but \"force_kN\" looks more like the output: choose with \
-         --output force_kN or --output disp_mm",
-    );
+    let note = "warning: data.csv: output \"disp_mm\", because it is the last column, although \"force_kN\" looks more like \
+                an output (to change it: --output force_kN)";
+    told(data("force_kN,disp_mm"), "", &[note, "input    force_kN: ", "output   disp_mm: "]);
+    told(data("B_T,H_A_per_m"), "", &["input    B_T: ", "(to change it: --output B_T)"]);
+    let timed = table("t_s,force_N,displacement_m", |_, [t, x, y]| texts(&[&t, &y, &x]));
+    told(timed, "", &["output   displacement_m: ", "(to change it: --output force_N)"]);
     told(data("force_kN,disp_mm"), "--output force_kN", &["input    disp_mm: ", "output   force_kN: "]);
     told(data("force_kN,disp_mm"), "--output disp_mm", &["input    force_kN: ", "output   disp_mm: "]);
     told(data("force_kN,disp_mm"), "--input force_kN", &["output   disp_mm: "]);
+    // With further columns the order is not the documented one.
+    let counted = table("Load (kN),Stroke (mm),Cycle", |k, [_, x, y]| texts(&[&y, &x, &(k / 20)]));
+    refused(
+        counted,
+        "",
+        "error: data.csv: \"Stroke (mm)\" is the last column, but \"Load (kN)\" looks more like the output: choose with \
+         --output 'Load (kN)' or --output 'Stroke (mm)'",
+    );
+}
+
+#[test]
+fn counters_sums_and_conditions_have_no_role() {
+    let counted =
+        table("Strain,Stress,Cycle count", |k, [_, x, y]| texts(&[&x, &y, &(0.5 * (k / 25) as f64)]));
+    told(counted, "", &["input    Strain: ", "output   Stress: ", "ignored  Cycle count: a counter"]);
+    let battery = table("time,step,current,voltage,chgAh,disAh", |k, [t, x, y]| {
+        texts(&[&t, &(1 + k / 40 % 2), &x, &y, &(0.01 * (k as f64).sqrt()), &(0.02 * (k as f64).sqrt())])
+    });
+    let lines = [
+        "input    current: ",
+        "output   voltage: ",
+        "ignored  step: ",
+        "ignored  chgAh: ",
+        "ignored  disAh: ",
+    ];
+    told(battery, "", &lines);
+    // One record for each temperature, whose noise is no change of it.
+    let warm = table("Temperature (K),Field (T),Moment (emu)", |k, [_, x, y]| {
+        texts(&[&([5.0, 50.0, 300.0][(k / 20).min(2)] + 0.1 * (k as f64).sin()), &x, &y])
+    });
+    told(
+        warm,
+        "",
+        &["input    Field (T): ", "output   Moment (emu): ", "in 3 records: ", "few values, which divide"],
+    );
+}
+
+#[test]
+fn a_column_that_falls_is_no_time() {
+    // A field that falls from its maximum and rises again, at one temperature.
+    let field = |header: &str| {
+        table(header, |k, [_, _, y]| {
+            let field = (k as f64 - 30.0).abs() / 30.0;
+            texts(&[&field, &(300.0 + 0.1 * (9.0 * k as f64).sin()), &y])
+        })
+    };
+    let bench = Workbench::new();
+    for (header, input) in [("", "c1"), ("T,a,M", "T")] {
+        let text = field(header);
+        bench.put("data.csv", text.trim_start());
+        let looked = bench.run("look data.csv").stdout;
+        assert!(looked.contains("in 1 record"), "{looked}");
+        assert!(!looked.contains(" time "), "{looked}");
+        assert!(looked.lines().any(|line| line.starts_with(input) && line.contains("input")), "{looked}");
+    }
+    refused(
+        table("t,x,y", |k, [_, x, y]| texts(&[&-(k as f64), &x, &y])),
+        "",
+        "error: data.csv: column \"t\" falls, as no time does: name another with --time, or use --time none",
+    );
+    let data = table("t,x,y", |_, [t, x, y]| texts(&[&t, &x, &y]));
+    told(data, "--time none", &["input    x: ", "ignored  t: time, which --time none leaves out"]);
+}
+
+#[test]
+fn what_names_and_values_do_not_tell_is_asked() {
+    let outputs = table("t,Displacement (mm),Force1 [kN],Force2 [kN]", |_, [t, x, y]| {
+        texts(&[&t, &x, &y, &(y * y + x)])
+    });
+    refused(
+        outputs.clone(),
+        "",
+        "error: data.csv: \"Force1 [kN]\" and \"Force2 [kN]\" could both be the output: name input and output, for \
+         instance --input 'Displacement (mm)' --output 'Force2 [kN]'",
+    );
+    let lines = ["input    Displacement (mm): ", "ignored  Force2 [kN]: another output"];
+    told(outputs, "--output Force1", &lines);
 }

@@ -120,7 +120,7 @@ fn further_inputs_and_a_given_rate_are_found_by_name() {
         .map(|row| vec![row[1].clone(), format!("{}", number(&row[0]).cos()), row[2].clone(), row[2].clone()])
         .collect();
     bench.put("wide.csv", csv("x_mm,v_mm_s,load,y", ",", "\n", &wide));
-    let fit = bench.run("fit wide.csv --rate v_mm_s --model xpnn+ --starts 1 --epochs 2 --no-report");
+    let fit = bench.run("fit wide.csv --input x_mm --input load --rate v_mm_s --model xpnn+ --starts 1 --epochs 2 --no-report");
     assert_eq!(fit.status, Some(0), "{}", fit.stderr);
     assert!(fit.stderr.contains("of x_mm from column v_mm_s"), "{}", fit.stderr);
     assert!(fit.stderr.contains("load:"), "{}", fit.stderr);

@@ -232,7 +232,7 @@ fn further_inputs_and_useless_options_are_told() {
     let further =
         csv("t,x,temperature,y", ",", "\n", &rows().into_iter().map(with_temperature).collect::<Vec<_>>());
     bench.put("further.csv", further);
-    let ran = succeeds(&bench, "diagnose further.csv --no-report");
+    let ran = succeeds(&bench, "diagnose further.csv --input x --input temperature --no-report");
     let told = "warning: diagnosed: y over x; temperature is not diagnosed (choose with --input)";
     assert!(ran.stderr.contains(told), "{}", ran.stderr);
     let ran = succeeds(&bench, "diagnose further.csv --input temperature --rate central --no-report");

@@ -169,7 +169,10 @@ fn further_inputs_are_read_from_the_reference() {
         .map(|(k, (x, y))| format!("{x},{},{}\n", heat(k), y + 0.5 * heat(k)))
         .collect();
     bench.put("train.csv", format!("x_mm,T_C,F_kN\n{rows}"));
-    succeeds(&bench, "fit train.csv --model xpnn+ --starts 1 --epochs 40 -o two.json --no-report");
+    succeeds(
+        &bench,
+        "fit train.csv --input x_mm --input T_C --model xpnn+ --starts 1 --epochs 40 -o two.json --no-report",
+    );
     let rows: String =
         wanted().iter().enumerate().map(|(k, y)| format!("{},{}\n", heat(k), 0.5 * y)).collect();
     bench.put("wanted.csv", format!("T_C,F_kN\n{rows}"));

@@ -1,14 +1,19 @@
-//! Which of the columns that no option names are time, inputs and output: guessed from names, units and values. A guess
-//! that is more likely wrong than right is refused.
+//! Which of the columns that no option names are time, inputs and output: guessed from names, units and values. What is
+//! clear is taken, what accompanies a test is set aside with its reason, and what remains doubtful is a question that
+//! names the options that answer it.
 
 use std::ops::Range;
+use std::path::Path;
 
-use anyhow::{Result, bail};
-use hysid_core::data::column::{Course, Domain, Part, one_signal};
+use anyhow::{Result, anyhow, bail};
+use hysid_core::data::column::{Course, Domain, one_signal};
 use hysid_core::data::unit;
-
+use hysid_document::shell::shown;
 use hysid_document::visible::{clipped, listed};
-use hysid_tables::{CellReader, ColumnReader, Table, starts_again};
+use hysid_tables::Table;
+
+use super::kind::{self, Kind};
+use super::values::{self, Running, Seen, numbers};
 
 /// More columns than this are not all inputs.
 const MOST_INPUTS: usize = 4;
@@ -16,121 +21,339 @@ const MOST_INPUTS: usize = 4;
 /// Values are not looked at in a table with more free columns than this.
 const MOST_READ: usize = 200;
 
+/// Largest drift of a temperature, in kelvins, that drives nothing.
+const MOST_DRIFT: f64 = 15.0;
+
 /// What is to be guessed, and from what.
 pub struct Guess<'t> {
     pub table: &'t Table,
+    /// The column with the names of records.
+    pub record: Option<String>,
     /// Rows of each record.
     pub records: Vec<Range<usize>>,
     /// Columns without a role so far, in their order.
     pub free: Vec<&'t String>,
     /// Time stamps, if they are known.
     pub time: Option<String>,
+    /// Time is not looked for.
+    pub no_time: bool,
     /// The output, if an option names it.
     pub output: Option<String>,
-    /// An option names the inputs.
-    pub has_inputs: bool,
+    /// Inputs that options name.
+    pub inputs: Vec<String>,
     /// Columns that are left out, each with the reason.
-    pub set_aside: Vec<(String, &'static str)>,
+    pub set_aside: Vec<(String, String)>,
+    /// A condition that divides the rows into records.
+    pub condition: Option<String>,
+    /// What is taken against the names, in a sentence.
+    pub note: Option<String>,
 }
 
-impl Guess<'_> {
+/// Why a column is set aside, the surest reason first. The last ones are by name alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    Text,
+    Constant,
+    Counts,
+    Held,
+    CountsInSteps,
+    Raw,
+    Statistic,
+    Counter,
+    Integral,
+    Kept,
+    Derived,
+    Condition,
+}
+
+/// A column that may be set aside.
+struct Doubt<'t> {
+    name: &'t String,
+    rank: Rank,
+    reason: String,
+    /// Its values divide the rows into records.
+    divides: bool,
+}
+
+impl<'t> Guess<'t> {
     /// Guesses: time, output, and inputs where no option names them.
     ///
     /// # Errors
-    /// Columns of which the names and values tell that the guess would be wrong.
+    /// Columns of which the names and values do not tell enough.
     pub fn complete(&mut self) -> Result<()> {
+        let before = self.free.len();
+        let mut weakest = None;
         if self.free.len() > self.needed() && self.free.len() <= MOST_READ {
-            self.set_aside_what_no_input_is()?;
+            let seen = self.see();
+            self.find_time(&seen);
+            if !self.has_inputs() || self.output.is_none() {
+                weakest = self.set_aside_what_accompanies(&seen);
+                self.refuse_growing(&seen)?;
+            }
         }
+        let follows_the_order = self.free.len() == 2 && before <= 3 && self.set_aside.is_empty();
+        self.refuse_channels()?;
         if self.output.is_none() {
-            self.output = self.last_that_may_be_output();
-            self.refuse_the_inverse()?;
+            self.guess_output(follows_the_order && self.time_is_first())?;
         }
-        if !self.has_inputs {
-            self.set_aside_velocity();
+        if !self.has_inputs() {
+            self.set_aside_other_outputs();
             self.refuse_many()?;
             self.refuse_alike()?;
+            self.refuse_unclear_inputs()?;
+            self.put_the_main_input_first();
+            self.refuse_what_accompanies(weakest)?;
+            self.refuse_other_drives()?;
         }
         Ok(())
     }
 
-    /// The last column that is no temperature or the like.
-    fn last_that_may_be_output(&mut self) -> Option<String> {
-        let accompanies = |name: &&&String| Part::of(name) == Some(Part::Accompanies);
-        let place =
-            self.free.iter().rposition(|name| !accompanies(&name)).or(self.free.len().checked_sub(1))?;
-        Some(self.free.remove(place).clone())
+    fn has_inputs(&self) -> bool {
+        !self.inputs.is_empty()
     }
 
     /// Columns that must be left.
     fn needed(&self) -> usize {
-        usize::from(self.output.is_none()) + usize::from(!self.has_inputs)
+        usize::from(self.output.is_none()) + usize::from(!self.has_inputs())
     }
 
-    /// Sets aside text, counters, constants and time stamps, as long as there is more than what is needed.
-    fn set_aside_what_no_input_is(&mut self) -> Result<()> {
-        let mut unclear = Vec::new();
-        for name in self.free.clone() {
-            let values = self.values(name);
-            let parts = values.as_ref().map(|values| self.parts(values));
-            let runs = parts.as_ref().map(|parts| Running::of(parts));
-            let course = parts.map(Course::of);
-            let is_time = match runs {
-                Some(Running::Strictly) => unit::may_be_time(name) || self.is_first_nameless(name),
-                Some(Running::WithEqualStamps) => unit::may_be_time(name),
-                Some(Running::No) | None => false,
-            };
-            if is_time && (course != Some(Course::Counts) || unit::may_be_time(name)) {
-                self.take_time(name);
-                continue;
-            }
-            // Where nothing else is to be guessed, columns without a role need no reason.
-            if self.has_inputs && self.output.is_some() {
-                continue;
-            }
-            let reason = match course {
-                None => "text",
-                Some(Course::Counts) => "counts the rows",
-                Some(Course::Constant) => "constant",
-                Some(Course::Grows) => {
-                    unclear.push((name, "grows from row to row: name it with --time"));
-                    continue;
+    fn see(&self) -> Vec<(&'t String, Option<Seen>)> {
+        let see = |name: &&'t String| {
+            let seen = numbers(self.table, name).map(|values| Seen::of(&values, &self.records));
+            (*name, seen)
+        };
+        self.free.iter().map(see).collect()
+    }
+
+    fn find_time(&mut self, seen: &[(&'t String, Option<Seen>)]) {
+        for (name, seen) in seen {
+            let Some(seen) = seen else { continue };
+            let is_named = unit::may_be_time(name);
+            let is_time = match seen.running {
+                Running::Strictly => {
+                    is_named || self.is_first_nameless(name) && seen.course != Course::Counts
                 }
-                Some(Course::CountsInSteps) => {
-                    unclear.push((name, "counts up in steps: name it with --record"));
-                    continue;
-                }
-                Some(Course::Varies) => continue,
+                Running::WithEqualStamps => is_named,
+                Running::Falls | Running::No => false,
             };
-            self.set_aside(name, reason);
-        }
-        // A column that only grows has no hysteresis; alone, it may still be what is wanted.
-        match unclear.first() {
-            Some((name, what)) if !self.has_inputs && self.free.len() > self.needed() => bail!(
-                "{}: column \"{}\" {what}, or name input and output with --input and --output",
-                self.table.file,
-                clipped(name)
-            ),
-            _ => Ok(()),
+            let is_free = !self.no_time && self.time.is_none();
+            match (is_time, is_free) {
+                (false, _) => {}
+                (true, true) => {
+                    self.time = Some((*name).clone());
+                    self.free.retain(|other| other != name);
+                }
+                (true, false) if is_named => {
+                    let reason =
+                        if self.no_time { "time, which --time none leaves out" } else { "a second time" };
+                    self.set_aside(name, reason.into());
+                }
+                (true, false) => {}
+            }
         }
     }
 
-    /// Sets aside the velocity beside a displacement and a force, as `hysid force` writes it: it is the rate of the input, and
-    /// no second input.
-    fn set_aside_velocity(&mut self) {
-        if self.output.as_deref().and_then(Part::of) != Some(Part::Follows(Domain::Mechanics)) {
-            return;
+    /// Sets aside, the surest first, what is no input and no output, as long as there is more than what is needed. Gives
+    /// the weakest reason.
+    fn set_aside_what_accompanies(&mut self, seen: &[(&'t String, Option<Seen>)]) -> Option<Rank> {
+        let mut doubts: Vec<Doubt<'t>> = Vec::new();
+        for (name, seen) in seen.iter().filter(|(name, _)| self.free.contains(name)) {
+            doubts.extend(self.doubt(name, *seen));
         }
-        let is_velocity = |name: &str| unit::split(name).0 == "velocity";
-        let drives = |name: &&&String| !is_velocity(name) && Part::of(name) != Some(Part::Accompanies);
-        if !self.free.iter().any(|name| drives(&name)) {
-            return;
+        doubts.sort_by_key(|doubt| doubt.rank);
+        let mut weakest = None;
+        for doubt in doubts {
+            let is_first = doubt.divides && self.condition.is_none();
+            if self.set_aside(doubt.name, doubt.reason) {
+                weakest = Some(doubt.rank);
+                self.condition = self.condition.take().or(is_first.then(|| doubt.name.clone()));
+            }
         }
-        let (velocities, others) = self.free.iter().partition(|name| is_velocity(name));
-        self.free = others;
-        let velocities: Vec<&String> = velocities;
-        let reason = "a rate, not an input (use it with --rate)";
-        self.set_aside.extend(velocities.into_iter().map(|name| (name.clone(), reason)));
+        weakest
+    }
+
+    fn doubt(&self, name: &'t String, seen: Option<Seen>) -> Option<Doubt<'t>> {
+        let kind = Kind::of(name);
+        let doubt =
+            |rank: Rank, reason: &str| Some(Doubt { name, rank, reason: reason.into(), divides: false });
+        let by_name = |rank: Rank| doubt(rank, kind.accompanies().unwrap_or_default());
+        let Some(seen) = seen else {
+            let is_time = unit::may_be_time(name) && self.time.is_none() && !self.no_time;
+            return doubt(
+                Rank::Text,
+                if is_time { "text, and no time stamp that Hysid reads" } else { "text" },
+            );
+        };
+        match seen.course {
+            Course::Constant => return doubt(Rank::Constant, "constant"),
+            Course::Counts => return doubt(Rank::Counts, "counts the rows"),
+            Course::CountsInSteps => {
+                let record = shown(Path::new(name));
+                return doubt(
+                    Rank::CountsInSteps,
+                    &format!("counts up in steps (to divide the rows into records: --record {record})"),
+                );
+            }
+            Course::Grows | Course::Varies => {}
+        }
+        if seen.is_held {
+            return doubt(Rank::Held, "held constant");
+        }
+        if let Some(made) = kind::made_of(name, &self.free) {
+            return doubt(Rank::Raw, &format!("raw, and \"{}\" is made of it", clipped(made)));
+        }
+        match kind {
+            Kind::Statistic => by_name(Rank::Statistic),
+            Kind::Counter if seen.may_count() => by_name(Rank::Counter),
+            Kind::Integral => by_name(Rank::Integral),
+            Kind::Derived if kind::is_rate(name) => {
+                doubt(Rank::Derived, "a rate, not an input (use it with --rate)")
+            }
+            Kind::Derived => by_name(Rank::Derived),
+            Kind::Condition if seen.is_kept => {
+                let divides = self.record.is_none() && self.records.len() == 1;
+                let more = if divides { ", which divide the rows into records" } else { "" };
+                let reason = format!("a condition of the test, with few values{more}");
+                Some(Doubt { name, rank: Rank::Kept, reason, divides })
+            }
+            Kind::Condition => by_name(Rank::Condition),
+            Kind::Unknown if seen.is_kept && self.free.iter().any(|other| Kind::of(other).drives()) => {
+                doubt(Rank::Kept, "few values, each kept for many rows")
+            }
+            Kind::Drives(Domain::Electricity)
+                if seen.is_kept && self.has(Kind::Drives(Domain::Mechanics)) =>
+            {
+                doubt(Rank::Kept, "few values, each kept for many rows: a condition")
+            }
+            // Resistance is calculated where voltage and current are there.
+            Kind::Unknown if kind::words(name).iter().any(|word| word == "resistance") => {
+                let drives = |other: &&&String| Kind::of(other) == Kind::Drives(Domain::Electricity);
+                if self.free.iter().filter(drives).count() < 2 {
+                    return None;
+                }
+                doubt(Rank::Derived, "calculated from other columns")
+            }
+            Kind::Drives(_) | Kind::Follows(_) | Kind::Excites | Kind::Unknown | Kind::Counter => None,
+        }
+    }
+
+    fn has(&self, kind: Kind) -> bool {
+        self.free.iter().any(|name| Kind::of(name) == kind)
+    }
+
+    /// Refuses a column that only grows, which has no hysteresis, beside others; alone, it may be what is wanted.
+    fn refuse_growing(&self, seen: &[(&'t String, Option<Seen>)]) -> Result<()> {
+        if self.has_inputs() || self.free.len() <= self.needed() {
+            return Ok(());
+        }
+        let grows = |seen: &Seen| seen.course == Course::Grows || seen.never_falls;
+        let unclear =
+            seen.iter().find(|(name, seen)| self.free.contains(name) && seen.as_ref().is_some_and(grows));
+        let Some((name, _)) = unclear else { return Ok(()) };
+        let time = match self.time {
+            None => format!("name it with --time {}, or ", shown(Path::new(name))),
+            Some(_) => String::new(),
+        };
+        bail!(
+            "{}: column \"{}\" grows from row to row: {time}name input and output with --input and --output{}",
+            self.table.file,
+            clipped(name),
+            self.columns()
+        )
+    }
+
+    /// Refuses more than two columns that have no more than numbers for names.
+    fn refuse_channels(&self) -> Result<()> {
+        let is_unclear = self.needed() == 2 && (3..=MOST_INPUTS + 1).contains(&self.free.len());
+        if is_unclear && self.free.iter().all(|name| kind::is_channel(name)) {
+            return Err(self.question("the names of the columns do not tell input and output"));
+        }
+        Ok(())
+    }
+
+    /// Takes the last column; names that say otherwise are a question, or a note where the table is in the documented order.
+    fn guess_output(&mut self, follows_the_order: bool) -> Result<()> {
+        let Some(last) = self.free.last().copied() else { return Ok(()) };
+        let follows: Vec<&'t String> =
+            self.free.iter().filter(|name| Kind::of(name).follows()).copied().collect();
+        let mut output = last;
+        if self.free.len() > 1 {
+            match (follows.as_slice(), Kind::of(last)) {
+                ([_, .., other], _)
+                    if self.has_inputs() || self.free.iter().any(|name| Kind::of(name).drives()) =>
+                {
+                    let words = format!(
+                        "\"{}\" and \"{}\" could both be the output",
+                        clipped(follows[0]),
+                        clipped(other)
+                    );
+                    return Err(self.question(&words));
+                }
+                ([one], _) if self.has_inputs() => output = one,
+                ([one], kind)
+                    if *one != last && (self.free.len() > 2 || Kind::are_swapped(Kind::of(one), kind)) =>
+                {
+                    if !follows_the_order {
+                        return Err(self.against_the_order(one, last));
+                    }
+                    self.note = Some(self.order_believed(one, last));
+                }
+                ([], kind) if !self.has_inputs() => {
+                    let swapped = self.free.iter().find(|name| Kind::are_swapped(Kind::of(name), kind));
+                    match swapped {
+                        Some(one) if follows_the_order => self.note = Some(self.order_believed(one, last)),
+                        Some(one) => return Err(self.against_the_order(one, last)),
+                        None => {}
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.free.retain(|name| *name != output);
+        self.output = Some(output.clone());
+        Ok(())
+    }
+
+    fn against_the_order(&self, one: &str, last: &str) -> anyhow::Error {
+        anyhow!(
+            "{}: \"{}\" is the last column, but \"{}\" looks more like the output: choose with --output {} or \
+             --output {}",
+            self.table.file,
+            clipped(last),
+            clipped(one),
+            shown(Path::new(one)),
+            shown(Path::new(last)),
+        )
+    }
+
+    fn order_believed(&self, one: &str, last: &str) -> String {
+        format!(
+            "{}: output \"{}\", because it is the last column, although \"{}\" looks more like an output (to change it: \
+             --output {})",
+            self.table.file,
+            clipped(last),
+            clipped(one),
+            shown(Path::new(one)),
+        )
+    }
+
+    /// Other outputs beside the one that is known are no inputs if another column is.
+    fn set_aside_other_outputs(&mut self) {
+        if self.output.as_deref().is_some_and(|output| Kind::of(output).follows())
+            && self.free.iter().any(|name| Kind::of(name).drives())
+        {
+            for name in self.free.clone() {
+                if Kind::of(name).follows() {
+                    self.set_aside(name, "another output".into());
+                }
+            }
+        }
+    }
+
+    fn time_is_first(&self) -> bool {
+        let place = |name: &str| self.table.column(name);
+        let first = self.free.first().and_then(|name| place(name));
+        self.time.as_deref().and_then(place).is_none_or(|time| first.is_some_and(|first| time < first))
     }
 
     fn is_first_nameless(&self, name: &str) -> bool {
@@ -139,117 +362,146 @@ impl Guess<'_> {
             && self.table.header.first().is_some_and(|first| first == name)
     }
 
-    /// The values of each record.
-    fn parts<'v>(&self, values: &'v [f64]) -> Vec<&'v [f64]> {
-        self.records.iter().map(|rows| &values[rows.clone()]).collect()
-    }
-
-    fn take_time(&mut self, name: &String) {
-        if self.time.is_some() {
-            return self.set_aside(name, "a second time");
-        }
-        self.time = Some(name.clone());
-        self.free.retain(|other| *other != name);
-    }
-
-    fn set_aside(&mut self, name: &String, reason: &'static str) {
-        if self.free.len() > self.needed() {
+    fn set_aside(&mut self, name: &str, reason: String) -> bool {
+        let is_more = self.free.len() > self.needed();
+        if is_more {
             self.free.retain(|other| *other != name);
-            self.set_aside.push((name.clone(), reason));
+            self.set_aside.push((name.to_string(), reason));
         }
-    }
-
-    /// The numbers of a column, NaN where it is blank; `None` if its first cells are no numbers.
-    fn values(&self, name: &str) -> Option<Vec<f64>> {
-        let place = self.table.column(name)?;
-        let mut cells = CellReader::new(self.table.numbers());
-        let mut column = ColumnReader::new(self.table, place);
-        let number = |(row, &line): (usize, &u64)| {
-            column.number(self.table, &mut cells, self.table.cell(row, place), line).ok()
-        };
-        let numbers: Vec<Option<f64>> = self.table.lines.iter().enumerate().map(number).collect();
-        // A single word among numbers is a mistake, which is told where the column is read for its numbers.
-        let is_text = numbers.iter().all(|number| number.is_none_or(f64::is_nan));
-        (!is_text).then(|| numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
-    }
-
-    fn refuse_the_inverse(&self) -> Result<()> {
-        let Some(output) = self.output.as_deref().filter(|_| !self.has_inputs) else { return Ok(()) };
-        let is_swapped = |input: &&&String| Part::are_swapped(Part::of(input), Part::of(output));
-        match self.free.iter().find(is_swapped) {
-            None => Ok(()),
-            Some(input) => {
-                let (input, output) = (clipped(input), clipped(output));
-                bail!(
-                    "{}: \"{output}\" is in the last column, but \"{input}\" looks more like the output: \
-                     choose with --output {input} or --output {output}",
-                    self.table.file
-                )
-            }
-        }
+        is_more
     }
 
     fn refuse_many(&self) -> Result<()> {
         if self.free.len() <= MOST_INPUTS {
             return Ok(());
         }
-        let names: Vec<String> = self.free.iter().map(|name| (*name).clone()).collect();
         bail!(
             "{}: {} columns could be inputs: name them with --input ({})",
             self.table.file,
-            names.len(),
-            listed(&names)
+            self.free.len(),
+            listed(&self.free)
         )
     }
 
     fn refuse_alike(&self) -> Result<()> {
         let columns: Vec<(&&String, Vec<f64>)> =
-            self.free.iter().filter_map(|name| Some((name, self.values(name)?))).collect();
+            self.free.iter().filter_map(|name| Some((name, numbers(self.table, name)?))).collect();
         for (place, (name, values)) in columns.iter().enumerate() {
             for (other, other_values) in &columns[..place] {
                 if let Some(correlation) = one_signal(other_values, values) {
                     bail!(
                         "{}: columns \"{}\" and \"{}\" are nearly the same signal (correlation {correlation:.4}), such as \
-                         a command and its measurement: name the input with --input",
+                         a command and its measurement: name the input with --input {} or --input {}",
                         self.table.file,
                         clipped(other),
-                        clipped(name)
+                        clipped(name),
+                        shown(Path::new(other)),
+                        shown(Path::new(name)),
                     );
                 }
             }
         }
         Ok(())
     }
-}
 
-/// Whether values may be time stamps: they grow, and may start again where a record begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Running {
-    Strictly,
-    /// Some are equal to the one before, as of a clock of few digits.
-    WithEqualStamps,
-    No,
-}
-
-impl Running {
-    fn of(records: &[&[f64]]) -> Self {
-        let (mut equal, mut rises) = (0, 0);
-        for values in records {
-            let Some(&first) = values.first() else { continue };
-            let mut first = first;
-            for pair in values.windows(2) {
-                match pair[1] - pair[0] {
-                    step if step > 0.0 => rises += 1,
-                    0.0 => equal += 1,
-                    _ if starts_again(first, pair[0], pair[1]) => first = pair[1],
-                    _ => return Self::No,
-                }
-            }
+    /// Refuses several columns of one kind, and unknown ones beside a known one: they may be inputs, copies or neither.
+    fn refuse_unclear_inputs(&self) -> Result<()> {
+        let [first, others @ ..] = self.free.as_slice() else { return Ok(()) };
+        let known: Vec<&&String> = self.free.iter().filter(|name| Kind::of(name).drives()).collect();
+        if others.is_empty() || known.is_empty() {
+            return Ok(());
         }
-        match (rises, equal) {
-            (0, _) => Self::No,
-            (_, 0) => Self::Strictly,
-            _ => Self::WithEqualStamps,
+        // A force over displacement and current, as of a damper with a magnetic liquid.
+        let output = self.output.as_deref().map(Kind::of);
+        let is_damper = output == Some(Kind::Follows(Domain::Mechanics))
+            && self.has(Kind::Drives(Domain::Mechanics))
+            && self.has(Kind::Drives(Domain::Electricity))
+            && self.free.len() == 2;
+        if is_damper {
+            return Ok(());
+        }
+        let names = if others.len() == 1 {
+            format!("\"{}\" and \"{}\" could both be inputs", clipped(first), clipped(others[0]))
+        } else {
+            format!("{} columns could be inputs", self.free.len())
+        };
+        Err(self.question(&names))
+    }
+
+    /// The input of the output's own branch of physics is the hysteretic one.
+    fn put_the_main_input_first(&mut self) {
+        let Some(Kind::Follows(domain)) = self.output.as_deref().map(Kind::of) else { return };
+        self.free.sort_by_key(|name| Kind::of(name) != Kind::Drives(domain));
+    }
+
+    /// Refuses an input or output that only accompanies by its name if others like it, or weaker ones, were set aside.
+    fn refuse_what_accompanies(&self, weakest: Option<Rank>) -> Result<()> {
+        if weakest.is_none_or(|rank| rank < Rank::Statistic) {
+            return Ok(());
+        }
+        let used = self.free.iter().copied().chain(self.output.as_ref().filter(|_| self.needed() == 1));
+        let doubtful = used.filter(|name| Kind::of(name).accompanies().is_some()).collect::<Vec<_>>();
+        if let Some(name) = doubtful.first() {
+            return Err(self.question(&format!("\"{}\" is no sure input or output", clipped(name))));
+        }
+        // A field of few values beside a temperature that varies: which one drives?
+        if let [input] = self.free.as_slice()
+            && weakest == Some(Rank::Condition)
+            && numbers(self.table, input).is_some_and(|values| Seen::of(&values, &self.records).is_kept)
+        {
+            return Err(
+                self.question(&format!("\"{}\" keeps few values, and a condition varies", clipped(input)))
+            );
+        }
+        Ok(())
+    }
+
+    /// Refuses a battery whose current stands last, and a movement beside a temperature that changes much: it may drive.
+    fn refuse_other_drives(&self) -> Result<()> {
+        let ([input], Some(output)) = (self.free.as_slice(), &self.output) else { return Ok(()) };
+        let set_aside = || self.set_aside.iter().map(|(name, _)| name);
+        let has_capacity = set_aside().any(|name| Kind::of(name) == Kind::Integral);
+        if has_capacity && kind::is_current(output) && Kind::of(input) == Kind::Drives(Domain::Electricity) {
+            return Err(self.against_the_order(input, output));
+        }
+        let changes_much = |name: &&String| {
+            Kind::of(name) == Kind::Condition
+                && numbers(self.table, name).is_some_and(|values| values::span(&values) > MOST_DRIFT)
+                && self.condition.as_ref() != Some(name)
+        };
+        if let (false, Some(name)) = (Kind::of(output).follows(), set_aside().find(changes_much)) {
+            return Err(self.question(&format!(
+                "\"{}\" and \"{}\" could both be the input",
+                clipped(name),
+                clipped(input)
+            )));
+        }
+        Ok(())
+    }
+
+    /// A question, with the options that answer it.
+    fn question(&self, words: &str) -> anyhow::Error {
+        anyhow!("{}: {words}: name input and output{}", self.table.file, self.columns())
+    }
+
+    /// Options that name likely columns, ready to be pasted, or all columns.
+    fn columns(&self) -> String {
+        let free = || self.free.iter().copied();
+        let input = self.inputs.first().or(free().find(|name| Kind::of(name).drives()));
+        let output = self.output.as_ref().or(free().rfind(|name| Kind::of(name).follows()));
+        let option = |option: &str, name: &String| format!("--{option} {}", shown(Path::new(name)));
+        match (input, output) {
+            (Some(input), Some(output)) if input != output => {
+                format!(", for instance {} {}", option("input", input), option("output", output))
+            }
+            _ => {
+                let names: Vec<String> = free().map(|name| option("input", name)).collect();
+                format!(
+                    ", for instance {} (columns: {})",
+                    names.first().cloned().unwrap_or_default(),
+                    listed(&self.table.header)
+                )
+            }
         }
     }
 }

@@ -128,7 +128,8 @@ mod tests {
         assert_eq!(kind("20 °C"), Kind::Number(Some("°C".into())));
         assert_eq!(kind("#N/A"), Kind::Missing);
         assert_eq!(kind("12:00:00"), Kind::Stamp);
-        for text in ["force", "2024-03-01", "1.2.3", "5 apples", "mm"] {
+        assert_eq!(kind("2024-03-01"), Kind::Stamp);
+        for text in ["force", "1.2.3", "5 apples", "mm"] {
             assert_eq!(kind(text), Kind::Text, "{text}");
         }
     }

@@ -124,7 +124,8 @@ fn row(line: &Line<'_>, cells: &[Cell<'_>], run: &Run, is_first: bool) -> Fit {
     let width = run.width;
     if texts.len() == width + 1 && texts.last().is_some_and(|last| is_remark(last)) {
         texts.pop();
-    } else if run.delimiter == Delimiter::Blanks && texts.len() != width {
+    } else if texts.len() != width && (run.delimiter == Delimiter::Blanks || texts.len() == 1 && width > 1) {
+        // Some instruments print names in columns of blanks over rows with commas.
         texts = with_their_units(line.content()).filter(|texts| texts.len() == width).unwrap_or(texts);
     }
     // Tools for statistics leave out the name of the index.
