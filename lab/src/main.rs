@@ -3,6 +3,7 @@
 mod bench;
 mod cases;
 mod compensation;
+mod cycle_battery;
 mod files;
 mod generate_cases;
 mod generate_files;
@@ -45,6 +46,8 @@ enum Measurement {
     Cases(cases::Request),
     /// Measure the tables of docs/compensation.md: synthetic actuators driven by inverses of models
     Compensation,
+    /// Count right and wrong tables of `hysid cycles` on protocols and loops that are known
+    CycleBattery(cycle_battery::Request),
     /// Write synthetic cases as folders with train.csv and test.csv, for `cases`
     ///
     /// Laws with random parameters, protocols as engineers use them, and noise. The same seed gives the same cases; the
@@ -111,6 +114,7 @@ fn run(measurement: &Measurement) -> Result<()> {
         Measurement::Bench(request) => bench::run(request),
         Measurement::Cases(request) => cases::run(request),
         Measurement::Compensation => compensation::run(),
+        Measurement::CycleBattery(request) => cycle_battery::run(request),
         Measurement::GenerateCases(request) => generate_cases::run(request),
         Measurement::GenerateFiles { folder } => generate_files::run(folder),
         Measurement::Growth(request) => growth::run(request),

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow};
 use hysid::Model;
 use hysid::data::record::Dataset;
-use hysid::diagnosis::cycles::{CycleOptions, CycleTable, FIGURES, Figure};
+use hysid::diagnosis::cycles::{Correction, CycleOptions, CycleTable, FIGURES, Figure, corrected};
 use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
 use hysid_document::count;
@@ -50,18 +50,26 @@ impl<'a> Cycles<'a> {
     pub fn of_data(
         data: &'a Data,
         options: &CycleOptions,
-        smoothing_factor: Option<usize>,
-        understood: Vec<(String, String)>,
+        corrections: &[Correction],
+        (smoothing_factor, understood): (Option<usize>, Vec<(String, String)>),
     ) -> Result<Self> {
         let explained = |error| data.explain(error);
-        let table = CycleTable::of(&data.set, options).map_err(explained)?;
+        let (set, removed) = match corrections {
+            [] => (std::borrow::Cow::Borrowed(&data.set), Vec::new()),
+            _ => {
+                let (set, notes) = corrected(&data.set, corrections).map_err(explained)?;
+                (std::borrow::Cow::Owned(set), notes)
+            }
+        };
+        let mut table = CycleTable::of(&set, options).map_err(explained)?;
+        table.notes.splice(..0, removed);
         let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor };
-        let curves = ReversalCurves::of(&data.set, &of_curves).map_err(explained)?;
+        let curves = ReversalCurves::of(&set, &of_curves).map_err(explained)?;
         Ok(Self {
             file: data.source.tables[0].file.clone(),
             of_model: false,
             quantities: Quantities::of(data.set.names()),
-            data: std::borrow::Cow::Borrowed(&data.set),
+            data: set,
             table,
             curves,
             understood,

@@ -1,6 +1,7 @@
 //! The path of the input as branches between turning points, and the loops that each branch closes, theory.md (10.2).
 
 mod opening;
+mod reversals;
 
 use std::ops::Range;
 
@@ -9,9 +10,10 @@ use super::significance;
 use super::smoothing::{Parabola, Place, Points, Smoothed, choose_window, smooth_where_straight};
 use super::{DiagnosisOptions, PictureCurve, Piece};
 use hysid_core::data::record::{Dataset, Record};
-use hysid_core::data::turning_points::turning_points;
 pub(crate) use opening::Opening;
 use opening::openings;
+pub(crate) use reversals::ReversalRule;
+use reversals::reversals;
 
 /// Branches of twice as many rows are averaged in blocks, to about so many points.
 const MOST_POINTS: usize = 400;
@@ -147,6 +149,11 @@ impl Curve {
         self.points.iter().map(|point| (point.x, point.y))
     }
 
+    /// The points with the deviation of their outputs, in the order of the input.
+    pub fn points_with_deviation(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
+        self.points.iter().map(|point| (point.x, point.y, point.deviation))
+    }
+
     /// The output at an input; `None` beyond the curve by more than the distance of its last points.
     pub fn at(&self, x: f64) -> Option<Reading> {
         let count = self.points.len();
@@ -222,10 +229,22 @@ impl<'a> BranchSet<'a> {
         // Jitter of all rows together hardly ever jumps further.
         let jitter = 2.0 * roughness * significance::critical_value(rows);
         let smallest_reversal = (options.smallest_reversal * width).max(jitter);
+        Self::by_rule(data, options.smoothing, ReversalRule::Size(smallest_reversal))
+    }
+
+    /// Looks through the data, with branches between the reversals that a rule finds.
+    pub fn by_rule(data: &'a Dataset, smoothing: bool, rule: ReversalRule) -> Self {
+        let input = data.input_range(0);
+        let width = input.1 - input.0;
+        let inputs = data.records().iter().map(|record| &*record.inputs()[0]);
+        let roughness = noise::roughness(inputs);
+        let mut smallest_reversal: f64 = 0.0;
         let reached = REACHED * width + 2.0 * roughness;
         let mut branches = Vec::new();
         for (number, record) in data.records().iter().enumerate() {
-            follow(number, record, smallest_reversal, (reached, BETWEEN_ROWS * width), &mut branches);
+            let (turns, smallest) = reversals(&record.inputs()[0], rule);
+            smallest_reversal = smallest_reversal.max(smallest);
+            follow(number, record, turns, (reached, BETWEEN_ROWS * width), &mut branches);
         }
         let input_noise = Noise::of(branches.iter().map(|branch| {
             let (values, output) = channels(data, branch);
@@ -241,7 +260,7 @@ impl<'a> BranchSet<'a> {
             output_noise: &output_noise,
         };
         let points: Vec<Points> = branches.iter().map(|branch| reading.points(branch)).collect();
-        let window = if options.smoothing { choose_window(&points) } else { 1 };
+        let window = if smoothing { choose_window(&points) } else { 1 };
         for (branch, points) in branches.iter_mut().zip(points) {
             branch.curve = reading.curve(&points, window);
         }
@@ -361,13 +380,13 @@ impl<'a> BranchSet<'a> {
 fn follow(
     number: usize,
     record: &Record,
-    smallest: f64,
+    turns: Vec<usize>,
     (reached, longest_beside): (f64, f64),
     branches: &mut Vec<Branch>,
 ) {
     let x = &record.inputs()[0];
     let mut ends = vec![0];
-    ends.extend(turning_points(x, smallest));
+    ends.extend(turns);
     ends.push(x.len() - 1);
     ends.dedup();
     // Each with the number of the branch that arrived there.
@@ -415,6 +434,11 @@ fn follow(
             curve: Curve::default(),
         });
     }
+}
+
+/// Smallest and largest value.
+fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
 }
 
 /// The longer of the ways of the input to a row and from it.

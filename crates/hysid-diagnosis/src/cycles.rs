@@ -1,10 +1,11 @@
 //! Cycles of the input and the numbers engineers read from their loops.
 //!
-//! A [`Cycle`] is a closed loop between turning points, as the tests of properties compare them. A [`CycleTable`] divides
+//! A [`CycleTable`] divides
 //! whole records into cycles, one row a cycle, with the figures of structures, magnets and actuators; definitions:
 //! docs/cycles.md.
 
 mod backbone;
+mod correction;
 mod creep;
 mod division;
 mod field;
@@ -14,15 +15,15 @@ mod path;
 mod quantities;
 mod reading;
 mod row;
+mod strand;
 mod table;
 #[cfg(test)]
 mod tests;
 
 use std::collections::HashMap;
 
-use serde::Serialize;
-
 pub use self::backbone::{BackbonePoint, Direction};
+pub use self::correction::{Correction, corrected};
 pub use self::division::Division;
 pub use self::field::Field;
 pub use self::figure::{FIGURES, Figure, Quantity};
@@ -32,7 +33,7 @@ pub use self::row::CycleRow;
 pub use self::table::{CycleOptions, CycleTable};
 
 use self::path::{area, range, weights};
-use self::reading::{apart_along_input, apart_along_output, ends, secant};
+use self::reading::apart_along_input;
 use super::branch::{Branch, BranchSet};
 use super::significance::{self, MEDIAN_OF_NORMAL};
 use super::static_hysteresis::FULL;
@@ -42,9 +43,10 @@ use hysid_core::data::record::Dataset;
 /// A cycle closes if the input comes back this close, as a share of its swing.
 pub(crate) const CLOSED: f64 = 0.02;
 
-/// A cycle of the input, there and back, and its loop. Inputs and outputs are in the user's units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Cycle {
+/// A branch and the next one, if they come back to the same input: what tests of properties compare. The table of cycles
+/// that users read is a [`CycleTable`].
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Cycle {
     /// Name of the record.
     pub record: String,
     /// First and last row, counted from 0 at the beginning of the record.
@@ -61,18 +63,7 @@ pub struct Cycle {
     pub energy_deviation: f64,
     /// Distance of the branches along the input, half way up the loop.
     pub width: f64,
-    /// Slope of the line from tip to tip.
-    pub secant_stiffness: f64,
-    /// Half the distance of the branches where the output is 0, if it is.
-    pub coercive_input: Option<f64>,
-    /// Half the distance of the branches where the input is 0, if it is.
-    pub remanent_output: Option<f64>,
-    /// Output at the end less output at the beginning.
-    pub gap: f64,
-    /// Mean speed of the input, for records with time.
-    pub speed: Option<f64>,
     /// Its branches among those of the survey.
-    #[serde(skip)]
     pub(crate) branches: (usize, usize),
 }
 
@@ -134,13 +125,11 @@ fn cycle(survey: &BranchSet, index: usize) -> Option<Cycle> {
     let record = &survey.data.records()[out.record];
     let rows = out.rows.start..back.rows.end;
     let (x, y) = (&record.inputs()[0][rows.clone()], &record.output()[rows.clone()]);
-    if y.iter().any(|y| y.is_nan()) {
+    if y.iter().any(|y| y.is_nan()) || out.curve.is_empty() || back.curve.is_empty() {
         return None;
     }
     let (input, output) = (range(x), range(y));
     let middle = 0.5 * (output.0 + output.1);
-    let ((first, tip), (_, last)) = (ends(out)?, ends(back)?);
-    let half = |apart: f64| 0.5 * apart;
     Some(Cycle {
         record: record.name().into(),
         rows: (rows.start, rows.end - 1),
@@ -150,11 +139,6 @@ fn cycle(survey: &BranchSet, index: usize) -> Option<Cycle> {
         area: survey.openings[place].area,
         energy_deviation: survey.output_noise.of_sum(&weights(x)),
         width: apart_along_input(out, back, middle).unwrap_or(0.0),
-        secant_stiffness: secant((out.from, 0.5 * (first + last)), (out.to, tip)),
-        coercive_input: apart_along_input(out, back, 0.0).map(half),
-        remanent_output: apart_along_output(out, back, 0.0).map(half),
-        gap: last - first,
-        speed: out.duration().zip(back.duration()).map(|(a, b)| (out.travel() + back.travel()) / (a + b)),
         branches: (index, index + 1),
     })
 }

@@ -9,6 +9,7 @@ mod creep;
 mod drift;
 mod hum;
 mod lag;
+mod loops;
 mod marks;
 mod repetition;
 mod resonance;
@@ -23,7 +24,7 @@ use serde::Serialize;
 
 use super::artifact::Explanation;
 use super::branch::BranchSet;
-use super::{Cycle, Delay, DiagnosisOptions, FEWEST_ROWS, Finding, Piece};
+use super::{Cycle, CycleTable, Delay, DiagnosisOptions, FEWEST_ROWS, Finding, Piece};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::unit;
 use hysid_core::error::Result;
@@ -66,6 +67,10 @@ pub enum DataIssueKind {
     TimeGap,
     /// Loops of a periodic input stay open.
     UnclosedLoops,
+    /// A straight line lies under a loop, such as the diamagnetism of a holder.
+    LinearBackground,
+    /// The output of loops about the input 0 has another middle than 0.
+    OutputOffset,
     /// The output falls as the input grows.
     WrongSign,
     /// The output looks like the command, the input like the answer.
@@ -125,7 +130,7 @@ impl DataIssue {
 /// Looks for all that may be wrong; warnings first.
 pub(crate) fn examine(
     survey: &BranchSet,
-    cycles: &[Cycle],
+    (cycles, table): (&[Cycle], &CycleTable),
     findings: &[Finding],
     delay: Option<&Delay>,
     explanations: &[Explanation],
@@ -142,6 +147,7 @@ pub(crate) fn examine(
         repetition::complaints(survey),
         sampling::complaints(survey),
         closure::complaints(findings),
+        loops::complaints(survey, table),
         columns::complaints(survey),
         start::complaints(survey),
     ];

@@ -48,7 +48,8 @@ use std::fmt;
 use serde::Serialize;
 
 pub use advice::Advice;
-pub use cycles::{BackbonePoint, Cycle, CycleOptions, CycleTable};
+pub(crate) use cycles::Cycle;
+pub use cycles::{BackbonePoint, CycleOptions, CycleTable};
 pub use doctor::{DataIssue, DataIssueKind, Severity, before_a_fit};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
@@ -73,6 +74,18 @@ pub struct DiagnosisOptions {
 impl Default for DiagnosisOptions {
     fn default() -> Self {
         Self { smallest_reversal: 0.02, smoothing: true }
+    }
+}
+
+impl DiagnosisOptions {
+    /// How the cycles of the same data are found: by the noise, unless a smallest reversal is asked for.
+    fn of_cycles(&self) -> CycleOptions {
+        let asked = self.smallest_reversal != Self::default().smallest_reversal;
+        CycleOptions {
+            smallest_reversal: asked.then_some(self.smallest_reversal),
+            smoothing: self.smoothing,
+            ..CycleOptions::default()
+        }
     }
 }
 
@@ -211,8 +224,9 @@ pub struct Diagnosis {
     /// The backbone of each record.
     #[serde(skip)]
     pub backbone: Vec<BackbonePoint>,
-    /// Cycles of the first input with an output, in the order of the data.
-    pub cycles: Vec<Cycle>,
+    /// The cycles of the first input: the table of `hysid cycles`.
+    #[serde(flatten)]
+    pub cycles: CycleTable,
     /// What in the data would mislead a fit, warnings first.
     pub doctor: Vec<DataIssue>,
     /// The simplest model that can hold what was found.
@@ -265,9 +279,10 @@ impl Diagnosis {
                 Property::OddSymmetry => odd_symmetry::test(corrected, equal_speed),
                 _ => loop_closure::test(corrected, &cycles::cycles(corrected), may_fade),
             });
+        let table = CycleTable::of(data, &options.of_cycles())?;
         let turning_rows = survey.turning_rows();
         Ok(Self {
-            doctor: doctor::examine(&measured, &cycles, &properties, delay.as_ref(), &explanations),
+            doctor: doctor::examine(&measured, (&cycles, &table), &properties, delay.as_ref(), &explanations),
             advice: advice::advise(&properties, delay.as_ref()),
             properties,
             delay,
@@ -277,7 +292,7 @@ impl Diagnosis {
             backbone: cycles::backbones(survey),
             turning_rows,
             smallest_reversal: survey.smallest_reversal,
-            cycles,
+            cycles: table,
         })
     }
 

@@ -31,7 +31,7 @@ pub fn figure_names() -> Vec<&'static str> {
 pub fn cycles(
     py: Python<'_>,
     data: &Dataset,
-    smallest_reversal: f64,
+    smallest_reversal: Option<f64>,
     smoothing: bool,
     division: Option<&str>,
     field: Option<&str>,

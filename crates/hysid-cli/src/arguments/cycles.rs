@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{ArgAction, Args};
-use hysid::diagnosis::cycles::{CycleOptions, Division, Field};
+use hysid::diagnosis::cycles::{Correction, CycleOptions, Division, Field};
 use hysid::diagnosis::reversal_curves::SMOOTHING_FACTORS;
 
 use super::{ColumnOptions, Overwriting, RUN, fraction, number_within};
@@ -39,14 +39,24 @@ pub struct Cycles {
     /// Field of engineering, which selects the figures: structure, magnet, actuator or general (all) [default: by names and units of the columns]
     #[arg(long, value_name = "FIELD", value_parser = named::<Field>, help_heading = "Method")]
     pub field: Option<Field>,
-    /// Where cycles begin: zero, mean or reversals [default: as suits the data]
+    /// Where cycles begin: zero, mean, reversals or start [default: as suits the data]
     ///
-    /// Where the input passes zero or its mean, always in the same direction; or at every other turning point.
+    /// Where the input passes zero, its mean, or the value with which the record starts, always in the same direction; or
+    /// at every other turning point.
     #[arg(long, value_name = "WHERE", value_parser = named::<Division>, help_heading = "Method")]
     pub divide: Option<Division>,
-    /// Ignore reversals of the input below this share of its range
-    #[arg(long, value_name = "FRACTION", default_value_t = CycleOptions::default().smallest_reversal, value_parser = fraction, help_heading = "Method", hide_short_help = true)]
-    pub smallest_reversal: f64,
+    /// Remove from the output of each record first: slope (a straight background), drift (over the record)
+    ///
+    /// The slope is that of the outer 30 % of the input; the drift is the gain of the output from the beginning of the
+    /// record to its end, if the input comes back.
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = named::<Correction>, help_heading = "Method")]
+    pub subtract: Vec<Correction>,
+    /// Remove the offset of the output: the middle of its values at both ends of the input
+    #[arg(long, help_heading = "Method")]
+    pub center: bool,
+    /// Ignore reversals of the input below this share of its range [default: the noise of the input decides]
+    #[arg(long, value_name = "FRACTION", value_parser = fraction, help_heading = "Method", hide_short_help = true)]
+    pub smallest_reversal: Option<f64>,
     /// Smooth branches before the figures are computed
     #[arg(long, value_name = "BOOL", default_value_t = CycleOptions::default().smoothing, action = ArgAction::Set, help_heading = "Method", hide_short_help = true)]
     pub smoothing: bool,
@@ -70,6 +80,11 @@ impl Cycles {
             division: self.divide,
             field: self.field,
         }
+    }
+
+    /// What is removed from the outputs before.
+    pub fn corrections(&self) -> Vec<Correction> {
+        self.subtract.iter().copied().chain(self.center.then_some(Correction::Offset)).collect()
     }
 }
 

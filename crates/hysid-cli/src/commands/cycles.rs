@@ -43,7 +43,7 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
             if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
                 warning("cycles ignores --rate: it needs no rate");
             }
-            let cycles = Cycles::of_data(&data, &options, factor, understood)?;
+            let cycles = Cycles::of_data(&data, &options, &arguments.corrections(), (factor, understood))?;
             tell(arguments, &outputs, &inputs, &cycles)
         }
     }
@@ -126,7 +126,9 @@ fn useless_for_models(arguments: &arguments::Cycles) -> Vec<&'static str> {
         ("--input", !columns.input.is_empty()),
         ("--output", columns.output.is_some()),
         ("--rate", columns.rate != RateOption::Choice(RateChoice::Auto)),
-        ("--smallest-reversal", arguments.smallest_reversal != defaults.smallest_reversal),
+        ("--smallest-reversal", arguments.smallest_reversal.is_some()),
+        ("--subtract", !arguments.subtract.is_empty()),
+        ("--center", arguments.center),
         ("--smoothing", arguments.smoothing != defaults.smoothing),
     ];
     asked.into_iter().filter(|(_, asked)| *asked).map(|(option, _)| option).collect()

@@ -68,6 +68,7 @@ pub fn begin(cycles: &Cycles) -> &'static str {
         Division::Zero => "where the input passes 0",
         Division::Mean => "where the input passes its mean",
         Division::Reversals => "at turning points",
+        Division::Start => "where the input passes its first value",
     }
 }
 

@@ -95,7 +95,7 @@ fn a_magnet_has_losses_in_its_units_at_each_frequency() {
     let ran = succeeds(&bench, "cycles core.csv --output B_T --input H_A_per_m --no-report");
     let rows = rows(&bench.text("core.cycles.csv"));
     let complete: Vec<_> = rows.iter().filter(|row| row["complete"] == "yes").collect();
-    assert_eq!(complete.len(), 6);
+    assert_eq!(complete.len(), 8);
     let loss = std::f64::consts::PI * 100.0 * 1.2 * 0.3f64.sin();
     for row in complete {
         let frequency = if row["record"] == "slow" { 1.0 } else { 50.0 };

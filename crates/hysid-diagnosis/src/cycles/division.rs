@@ -1,13 +1,13 @@
 //! How a record is divided into cycles.
 //!
 //! ```text
-//! zero, mean    from one passing of a level to the next in the same direction; the level is 0, or the median of the
-//!               middles of the half cycles
-//! reversals     from one turning point of the input to the next but one
+//! zero, mean, start   from one passing of a level to the next in the same direction; the level is 0, the median of the
+//!                     middles of the half cycles, or the first input of the record
+//! reversals           from one turning point of the input to the next but one
 //! ```
 //!
-//! Turning points are those of the diagnosis: reversals below a share of the range, and below what noise can do, are none.
-//! What is left at the beginning and at the end of a record is a part of its own, marked as incomplete.
+//! The noise of the input decides what is a turning point ([`ReversalRule`](crate::branch::ReversalRule)). What is left at
+//! the beginning and at the end of a record is a part of its own, marked as incomplete.
 
 use std::fmt;
 use std::ops::Range;
@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use super::CLOSED;
 use super::field::Field;
-use super::path::{range, share};
+use super::path::{at, range, share, width};
 use crate::branch::{Branch, BranchSet};
 use crate::significance::median;
 
@@ -31,11 +31,13 @@ pub enum Division {
     Mean,
     /// At every other turning point.
     Reversals,
+    /// Where the input passes the value with which its record begins, always in the same direction.
+    Start,
 }
 
 impl Division {
     /// All divisions.
-    pub const ALL: [Self; 3] = [Self::Zero, Self::Mean, Self::Reversals];
+    pub const ALL: [Self; 4] = [Self::Zero, Self::Mean, Self::Reversals, Self::Start];
 
     /// The name, such as `zero`.
     pub fn name(self) -> &'static str {
@@ -43,6 +45,7 @@ impl Division {
             Self::Zero => "zero",
             Self::Mean => "mean",
             Self::Reversals => "reversals",
+            Self::Start => "start",
         }
     }
 }
@@ -70,10 +73,13 @@ const BEYOND: f64 = 0.1;
 /// A record of whole cycles may end a step before the level is passed again; next to a turning point steps are shorter.
 pub(super) const LAST_STEP: f64 = 1.25;
 
+/// Deviations of the input's noise within which two inputs are the same.
+const IN_NOISE: f64 = 4.0;
+
 /// Such a step is at most this share of the way since the last turning point.
 const LARGEST_STEP: f64 = 0.5;
 
-/// Share of the half cycles that pass the level of a division.
+/// Share of the way of the input in half cycles that pass the level of a division.
 const MOST: f64 = 0.5;
 
 /// A record that oscillates about its mean begins this close to it, as a share of the swing.
@@ -82,32 +88,96 @@ const NEAR_THE_MEAN: f64 = 0.1;
 /// Turning points of one side that scatter less than this share of those of the other side are the ends of the cycles.
 const STEADIER: f64 = 0.5;
 
-/// The division that suits data of a field: magnets and actuators from turning point to turning point, so that a cycle has
-/// both branches of its loop; other data from zero to zero, or from mean to mean, if most half cycles pass it.
+/// Output at the end of a closed loop less output at its beginning, at most, as a share of the loop's range of the output.
+const CLOSED_OUTPUT: f64 = 0.05;
+
+/// A division is better than another if it has more of the way of the input in closed loops, by this share.
+const BETTER: f64 = 1e-3;
+
+/// Ratios of successive half cycles scatter this many times less if the other pairs of them are the cycles.
+const OTHER_PAIRS: f64 = 4.0;
+
+/// Mean deviation of the logarithm of the ratio of two half cycles below which they are alike.
+const ALIKE: f64 = 0.1;
+
+/// The division with the most of the data in loops that close; of equal ones, that which is usual in the field: magnets and
+/// actuators from turning point to turning point, so that a cycle has both branches of its loop; other data from zero to
+/// zero, or from mean to mean, if most half cycles pass it.
 pub(super) fn choose(survey: &BranchSet, field: Field) -> Division {
-    if matches!(field, Field::Magnet | Field::Actuator) {
-        return Division::Reversals;
-    }
-    let records = 0..survey.data.records().len();
-    let pass = |level: &dyn Fn(usize) -> f64| {
-        let halves = records.clone().flat_map(|record| {
-            half_cycles(survey.of_record(record)).iter().map(move |branch| (record, branch))
-        });
-        let (passing, all) = halves.fold((0, 0), |(passing, all), (record, branch)| {
-            (passing + usize::from(is_beyond(branch, level(record))), all + 1)
-        });
-        passing as f64 > MOST * all as f64
+    let from_tips = matches!(field, Field::Magnet | Field::Actuator);
+    let order = match from_tips {
+        true => [Division::Reversals, Division::Zero, Division::Mean, Division::Start],
+        false => [Division::Zero, Division::Mean, Division::Reversals, Division::Start],
     };
-    if pass(&|_| 0.0) {
-        return Division::Zero;
+    let records = 0..survey.data.records().len();
+    let candidates: Vec<(Division, f64, f64)> = order
+        .into_iter()
+        .filter(|&division| suits(survey, division))
+        .map(|division| {
+            let ways = records.clone().map(|record| ways(survey, record, division, from_tips));
+            let (closed, open) = ways.fold((0.0, 0.0), |sum, way| (sum.0 + way.0, sum.1 + way.1));
+            (division, closed, open)
+        })
+        .collect();
+    let any_closes = candidates.iter().any(|candidate| candidate.1 > 0.0);
+    let way = |candidate: &(Division, f64, f64)| if any_closes { candidate.1 } else { candidate.2 };
+    let most = candidates.iter().map(way).fold(0.0, f64::max);
+    candidates
+        .iter()
+        .find(|candidate| way(candidate) >= (1.0 - BETTER) * most)
+        .map_or(order[0], |found| found.0)
+}
+
+/// True unless most half cycles do not pass the level of a division.
+fn suits(survey: &BranchSet, division: Division) -> bool {
+    let records = 0..survey.data.records().len();
+    let level = |record: usize| level(survey, record, division);
+    if matches!(division, Division::Reversals | Division::Start) {
+        return true;
     }
-    let means: Vec<f64> = records.clone().map(|record| mean(survey.of_record(record))).collect();
-    let begins_there = records.clone().all(|record| {
-        let branches = survey.of_record(record);
-        let swing = half_cycles(branches).iter().map(Branch::travel).fold(0.0, f64::max);
-        branches.first().is_some_and(|first| (first.from - means[record]).abs() <= NEAR_THE_MEAN * swing)
-    });
-    if begins_there && pass(&|record| means[record]) { Division::Mean } else { Division::Reversals }
+    let (mut passing, mut all) = (0.0, 0.0);
+    for record in records.clone() {
+        let Some(level) = level(record) else { return true };
+        for branch in half_cycles(survey.of_record(record)) {
+            all += branch.travel();
+            passing += if is_beyond(branch, level) { branch.travel() } else { 0.0 };
+        }
+    }
+    let begins_there = division == Division::Zero
+        || records.clone().all(|record| {
+            let branches = survey.of_record(record);
+            let swing = half_cycles(branches).iter().map(Branch::travel).fold(0.0, f64::max);
+            let level = level(record).unwrap_or_default();
+            branches.first().is_some_and(|first| (first.from - level).abs() <= NEAR_THE_MEAN * swing)
+        });
+    passing > MOST * all && begins_there
+}
+
+/// The way of the input in whole cycles of a record that close, and in those that do not.
+fn ways(survey: &BranchSet, record: usize, division: Division, output_too: bool) -> (f64, f64) {
+    let data = &survey.data.records()[record];
+    let (x, y) = (&*data.inputs()[0], data.output());
+    let (mut closed, mut open) = (0.0, 0.0);
+    for span in divide(survey, record, division).iter().filter(|span| span.part == SpanPart::Cycle) {
+        let rows = span.from.floor() as usize..span.to.ceil() as usize + 1;
+        let swing = width(&x[rows.clone()]);
+        let back = (at(x, span.to) - at(x, span.from)).abs() <= tolerance(survey, swing);
+        if back && (!output_too || output_closes(survey, y, (span.from, span.to))) {
+            closed += 2.0 * swing;
+        } else {
+            open += 2.0 * swing;
+        }
+    }
+    (closed, open)
+}
+
+/// True if the outputs at both ends of a part of a record are the same.
+pub(super) fn output_closes(survey: &BranchSet, y: &[f64], (from, to): (f64, f64)) -> bool {
+    let measured: Vec<f64> =
+        y[from.floor() as usize..=to.ceil() as usize].iter().copied().filter(|y| !y.is_nan()).collect();
+    let gap = (at(y, to) - at(y, from)).abs();
+    let noise = 5.0 * survey.output_noise.deviation();
+    gap.is_nan() || gap <= CLOSED_OUTPUT * width(&measured) + noise
 }
 
 /// The branches between two turning points; all of them, if there are none.
@@ -159,6 +229,7 @@ pub(super) fn level(survey: &BranchSet, record: usize, division: Division) -> Op
     match division {
         Division::Zero => Some(0.0),
         Division::Mean => Some(mean(survey.of_record(record))),
+        Division::Start => survey.of_record(record).first().map(|first| first.from),
         Division::Reversals => None,
     }
 }
@@ -169,7 +240,9 @@ pub(super) fn divide(survey: &BranchSet, record: usize, division: Division) -> V
     let branches = survey.of_record(record);
     let (Some(first), Some(last)) = (branches.first(), branches.last()) else { return Vec::new() };
     let bounds = match level(survey, record, division) {
-        Some(level) => passings(survey, record, level),
+        Some(level) => {
+            in_pairs(&survey.data.records()[record].inputs()[0], level, passings(survey, record, level))
+        }
         None => reversals(survey, branches),
     };
     let (begin, end) = (first.rows.start as f64, (last.rows.end - 1) as f64);
@@ -235,6 +308,26 @@ fn passings(survey: &BranchSet, record: usize, level: f64) -> Vec<f64> {
     places
 }
 
+/// The passings from that one on from which two half cycles make a cycle: the first one, unless the half cycles before and
+/// after each second passing are clearly more alike.
+fn in_pairs(x: &[f64], level: f64, passings: Vec<f64>) -> Vec<f64> {
+    let furthest = |pair: &[f64]| {
+        let rows = &x[pair[0].floor() as usize..=pair[1].ceil() as usize];
+        let (low, high) = range(rows);
+        (high - level).max(level - low)
+    };
+    let heights: Vec<f64> = passings.windows(2).map(furthest).collect();
+    let scatter = |first: usize| {
+        let ratio = |pair: &[f64]| (pair[0] / pair[1]).ln();
+        let mut ratios: Vec<f64> = heights[first..].chunks_exact(2).map(ratio).collect();
+        let middle = median(&mut ratios.clone());
+        let count = ratios.len() as f64;
+        ratios.drain(..).map(|ratio| (ratio - middle).abs()).sum::<f64>() / count
+    };
+    let shifted = heights.len() >= 5 && scatter(0) > ALIKE.max(OTHER_PAIRS * scatter(1));
+    if shifted { passings[1..].to_vec() } else { passings }
+}
+
 /// Half cycles begin and end at turning points, every other of which is the end of a cycle: on the side where they scatter
 /// less. A record that begins or ends at the same input as its neighbours begins or ends there.
 fn reversals(survey: &BranchSet, branches: &[Branch]) -> Vec<f64> {
@@ -270,5 +363,5 @@ fn reversals(survey: &BranchSet, branches: &[Branch]) -> Vec<f64> {
 
 /// Inputs at the ends of a cycle that are closer than this are the same.
 fn tolerance(survey: &BranchSet, swing: f64) -> f64 {
-    CLOSED * swing + 2.0 * survey.input_noise.deviation()
+    CLOSED * swing + IN_NOISE * survey.input_noise.deviation()
 }

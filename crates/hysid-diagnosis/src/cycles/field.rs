@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use hysid_core::data::column::{Domain, Part};
 use hysid_core::data::record::ColumnNames;
+use hysid_core::data::unit;
 use serde::Serialize;
 
 /// A field of engineering, which determines what is read from its loops.
@@ -27,6 +28,10 @@ impl Field {
 
     /// The field that the names and units of the first input and the output indicate.
     pub fn of(names: &ColumnNames) -> Self {
+        if names.inputs.first().is_some_and(|name| is_applied_field(name)) && is_magnetic_state(&names.output)
+        {
+            return Self::Magnet;
+        }
         let input = names.inputs.first().and_then(|name| Part::of(name));
         match (input, Part::of(&names.output)) {
             (Some(Part::Drives(Domain::Mechanics)), Some(Part::Follows(Domain::Mechanics))) => {
@@ -87,6 +92,59 @@ impl FromStr for Field {
     }
 }
 
+/// Units of magnetic and electric fields, without blanks.
+const FIELD_UNITS: [&str; 16] = [
+    "T", "mT", "uT", "µT", "G", "kG", "Oe", "kOe", "A/m", "kA/m", "MA/m", "V/m", "kV/m", "MV/m", "kV/cm",
+    "kV/mm",
+];
+
+/// Words of an applied field.
+const FIELD_WORDS: [&str; 5] = ["field", "feld", "champ", "campo", "h"];
+
+/// Units of moments, magnetisations and polarisations, without blanks.
+const STATE_UNITS: [&str; 16] = [
+    "emu", "memu", "emu/g", "emu/cm3", "emu/cc", "Am2", "Am^2", "mAm2", "Am2/kg", "Am^2/kg", "uB", "C/m2",
+    "uC/cm2", "µC/cm2", "mdeg", "mrad",
+];
+
+/// Words of moments, magnetisations and polarisations.
+const STATE_WORDS: [&str; 16] = [
+    "moment",
+    "magnetization",
+    "magnetisation",
+    "magnetisierung",
+    "magnetic",
+    "polarization",
+    "polarisation",
+    "kerr",
+    "moke",
+    "induction",
+    "flux",
+    "charge",
+    "m",
+    "j",
+    "b",
+    "p",
+];
+
+fn has_word(name: &str, words: &[&str]) -> bool {
+    let lower = name.to_lowercase();
+    lower.split(|c: char| !c.is_alphanumeric()).any(|word| words.contains(&word))
+}
+
+fn has_unit(name: &str, units: &[&str]) -> bool {
+    let plain = |unit: String| unit.replace([' ', '·', '*', '.'], "");
+    unit::of_column(name).map(plain).is_some_and(|unit| units.contains(&unit.as_str()))
+}
+
+fn is_applied_field(name: &str) -> bool {
+    has_unit(name, &FIELD_UNITS) || has_word(unit::split(name).0, &FIELD_WORDS)
+}
+
+fn is_magnetic_state(name: &str) -> bool {
+    has_unit(name, &STATE_UNITS) || has_word(unit::split(name).0, &STATE_WORDS)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,6 +159,19 @@ mod tests {
             ("V_V", "P_uC_per_cm2", Field::Magnet),
             ("u_V", "y_um", Field::Actuator),
             ("i_A", "y_um", Field::Actuator),
+            ("Field (T)", "Moment (Am2)", Field::Magnet),
+            ("Field (Oe)", "Moment (emu)", Field::Magnet),
+            ("Magnetic Field (Oe)", "DC Moment Fixed Ctr (emu)", Field::Magnet),
+            ("B (T)", "M (Am2/kg)", Field::Magnet),
+            ("B (T)", "M (A m2/kg)", Field::Magnet),
+            ("H (kA/m)", "J (T)", Field::Magnet),
+            ("mu0H (T)", "Magnetization (emu/g)", Field::Magnet),
+            ("Field (mT)", "Kerr rotation (mdeg)", Field::Magnet),
+            ("E (kV/cm)", "P (uC/cm2)", Field::Magnet),
+            ("Electric field (kV/cm)", "Polarization (µC/cm²)", Field::Magnet),
+            ("Field (T)", "Magnetostriction strain (ppm)", Field::General),
+            ("rotation (rad)", "moment (kN m)", Field::Structure),
+            ("Strain (%)", "Stress (kPa)", Field::Structure),
             ("x", "y", Field::General),
             ("force_N", "x_mm", Field::General),
         ] {

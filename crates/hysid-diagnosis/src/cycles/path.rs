@@ -134,6 +134,12 @@ pub(super) fn range(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
 }
 
+/// Difference of the largest and the smallest value.
+pub(super) fn width(values: &[f64]) -> f64 {
+    let (low, high) = range(values);
+    high - low
+}
+
 /// The value at a row and a share of the step to the next.
 pub(super) fn at(values: &[f64], place: f64) -> f64 {
     let row = (place.floor() as usize).min(values.len() - 1);

@@ -21,16 +21,6 @@ pub(super) fn apart_along_input(one: &Branch, other: &Branch, level: f64) -> Opt
     Some((crossing(one, level)? - crossing(other, level)?).abs())
 }
 
-/// Distance along the output of two branches at an input.
-pub(super) fn apart_along_output(one: &Branch, other: &Branch, x: f64) -> Option<f64> {
-    Some((one.curve.at(x)?.y - other.curve.at(x)?.y).abs())
-}
-
-/// Outputs at both ends of a branch.
-pub(super) fn ends(branch: &Branch) -> Option<(f64, f64)> {
-    Some((branch.curve.at(branch.from)?.y, branch.curve.at(branch.to)?.y))
-}
-
 /// Output at an end of a branch; the curve of a noisy input may stop a little before.
 pub(super) fn output_at_end(branch: &Branch, x: f64) -> Option<f64> {
     let (low, high) = branch.curve.range();

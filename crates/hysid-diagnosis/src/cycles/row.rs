@@ -80,4 +80,18 @@ pub struct CycleRow {
     pub creep_per_decade: Option<f64>,
     /// Why figures are missing or to be read with care.
     pub notes: Vec<String>,
+    /// Signs of a measurement that is not the specimen's loop alone.
+    #[serde(skip)]
+    pub(crate) faults: LoopFaults,
+}
+
+/// Signs that something lies under or beside a loop.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct LoopFaults {
+    /// Output at the end less output at the beginning, if the loop is open.
+    pub opening: Option<f64>,
+    /// How often both branches pass the middle of the outputs, if more than once.
+    pub passings: usize,
+    /// The middle of the outputs of a loop about the input 0, if it is not 0.
+    pub offset: Option<f64>,
 }

@@ -4,22 +4,29 @@ use std::f64::consts::PI;
 
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
+use hysid_core::significant::Significant;
 use serde::Serialize;
 
 use super::CLOSED;
 use super::backbone::{BackbonePoint, Direction, backbone};
+use super::correction::gap;
 use super::creep::{Hold, holds};
-use super::division::{Division, LAST_STEP, Span, SpanPart, choose, divide, level};
+use super::division::{Division, LAST_STEP, Span, SpanPart, choose, divide, level, output_closes};
 use super::field::Field;
 use super::losses::{LossAtFrequency, losses};
-use super::path::{Closure, Path, area, at, range, weights};
-use super::reading::{Widest, apart_along_output, crossing, output_at_end, secant, widest};
+use super::path::{Closure, Path, area, at, range, weights, width};
+use super::reading::{Widest, output_at_end, secant, widest};
 use super::row::CycleRow;
-use crate::branch::{Branch, BranchSet};
+use super::strand::Strand;
+use crate::branch::{Branch, BranchSet, ReversalRule};
+use crate::smoothing::{Parabola, Place};
 use crate::{DiagnosisOptions, FEWEST_ROWS};
 
 /// A loop over less than this share of a cycle's swing is smaller than the cycle: either that is said, or there is none.
 const COMES_BACK: f64 = 0.9;
+
+/// A loop over this share of a cycle's swing is the whole cycle.
+const WHOLE: f64 = 0.98;
 
 /// Rows further apart than this share of a swing do not show what the output does between them.
 const FAR_APART: f64 = 0.1;
@@ -27,14 +34,44 @@ const FAR_APART: f64 = 0.1;
 /// Share of a swing that is rounding.
 const ROUNDING: f64 = 1e-12;
 
+/// An input has noise above this share of its range.
+const NOISY: f64 = 2e-4;
+
+/// Fewest rows of a parabola at an end of a branch.
+const FEWEST_AT_AN_END: usize = 8;
+
+/// Deviations of the noise between the extremes of a turning point and of the rows beside it.
+const FAR_IN_NOISE: f64 = 6.0;
+
+/// Reversals that are ignored are said above this share of the range.
+const HIDDEN: f64 = 0.005;
+
+/// Relative difference of an amplitude and that of the reversals that is said.
+const MISMATCH: f64 = 0.05;
+
+/// Area of a loop below which it is rounding, as a share of its box.
+const LINE: f64 = 1e-5;
+
+/// A loop is about the input 0 if its middle is this close to it, as a share of the swing.
+const CENTRED: f64 = 0.05;
+
+/// An offset of the output that is said, as a share of the loop's height.
+const OFFSET: f64 = 0.02;
+
+/// Share of the energy that an opening may add before it is said.
+const ADDS: f64 = 0.01;
+
+/// An opening of a loop that is said, as a share of its height.
+const OPEN: f64 = 0.02;
+
 /// Deviations of the noise below which a figure is not told from noise.
 const SURE: f64 = 3.0;
 
 /// How cycles are found and what is read from them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleOptions {
-    /// Reversals of the input below this share of its range are no turning points.
-    pub smallest_reversal: f64,
+    /// Reversals of the input below this share of its range are no turning points; `None`: the noise of the input decides.
+    pub smallest_reversal: Option<f64>,
     /// Whether noise is smoothed out of branches before outputs are read from them.
     pub smoothing: bool,
     /// Where cycles begin and end; `None` for what suits the data.
@@ -45,15 +82,23 @@ pub struct CycleOptions {
 
 impl Default for CycleOptions {
     fn default() -> Self {
-        let DiagnosisOptions { smallest_reversal, smoothing } = DiagnosisOptions::default();
-        Self { smallest_reversal, smoothing, division: None, field: None }
+        Self { smallest_reversal: None, smoothing: true, division: None, field: None }
     }
 }
 
 impl CycleOptions {
-    /// How the branches are found.
+    /// How the branches of reversal curves are found.
     pub fn branches(&self) -> DiagnosisOptions {
-        DiagnosisOptions { smallest_reversal: self.smallest_reversal, smoothing: self.smoothing }
+        let smallest_reversal =
+            self.smallest_reversal.unwrap_or(DiagnosisOptions::default().smallest_reversal);
+        DiagnosisOptions { smallest_reversal, smoothing: self.smoothing }
+    }
+
+    fn survey<'d>(&self, data: &'d Dataset) -> BranchSet<'d> {
+        match self.smallest_reversal {
+            Some(_) => BranchSet::new(data, &self.branches()),
+            None => BranchSet::by_rule(data, self.smoothing, ReversalRule::Noise),
+        }
     }
 }
 
@@ -98,7 +143,7 @@ impl CycleTable {
     /// Data without loops: a constant input or output, hardly any rows.
     pub fn of(data: &Dataset, options: &CycleOptions) -> Result<Self> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let survey = BranchSet::new(data, &options.branches());
+        let survey = options.survey(data);
         let field = options.field.unwrap_or_else(|| Field::of(data.names()));
         let division = options.division.unwrap_or_else(|| choose(&survey, field));
         let (mut cycles, mut points) = (Vec::new(), Vec::new());
@@ -109,7 +154,7 @@ impl CycleTable {
             cycles.extend(rows_of(&survey, number, (field, division), &backbone));
             points.extend(backbone);
         }
-        let notes = notes(data, &cycles, field);
+        let notes = notes(&survey, &cycles, (field, division));
         Ok(Self { field, division, losses: losses(&cycles), cycles, backbone: points, notes })
     }
 
@@ -235,7 +280,8 @@ impl Reader<'_> {
         let (lowest, highest) = range(&path.x);
         let (path, closure) = path.without_blank_ends(CLOSED).closed();
         let (low, high) = range(&path.x);
-        row.amplitude = Some(0.5 * (high - low));
+        let (low_tip, high_tip) = self.without_noise(&path, tips).unwrap_or((low, high));
+        row.amplitude = Some(0.5 * (high_tip - low_tip));
         // Ends that differ in sign only by rounding have the mean 0.
         row.mean_input = Some(0.5 * (high + low))
             .map(|mean| if mean.abs() < ROUNDING * (high - low) { 0.0 } else { mean });
@@ -252,11 +298,11 @@ impl Reader<'_> {
                 "rows are up to {percent:.0} % of the swing apart: what lies between is interpolated"
             ));
         }
-        let branches = tips.falling(self.branches).zip(tips.rising(self.branches));
-        if let Some((falling, rising)) = branches
+        let strands = self.strands(tips, (low, high));
+        if let Some((falling, rising)) = &strands
             && self.field != Field::Actuator
         {
-            self.read_zero_output(row, falling, rising);
+            self.read_levels(row, falling, rising);
         }
         if high - low < COMES_BACK * (highest - lowest) {
             row.notes.push(match closure {
@@ -266,7 +312,7 @@ impl Reader<'_> {
                 _ => "the input goes beyond where the cycle began: the loop is the part before".into(),
             });
             if closure == Closure::BeginningCut {
-                row.coercive_input = None;
+                (row.coercive_input, row.remanent_output) = (None, None);
                 return;
             }
         }
@@ -278,16 +324,42 @@ impl Reader<'_> {
         if self.field != Field::Actuator && path.blanks() == 0 {
             self.read_area(row, &path, high - low);
         }
-        if let Some((falling, rising)) = branches
-            && self.field.has_magnets()
-        {
-            read_zero_input(row, falling, rising);
+        // Where the input passes its zero, the cycles of growing tests are open by their nature.
+        let should_close = self.field != Field::Structure
+            || matches!(self.division, Division::Reversals | Division::Start)
+                && high - low >= WHOLE * (highest - lowest);
+        if should_close && path.blanks() == 0 {
+            self.note_open_loop(row, &path);
         }
         if self.field.has_actuators() && is_coarse {
             row.notes.push("no width: the rows are too far apart".into());
         } else if self.field.has_actuators() {
             self.read_width(row, &path, high - low);
         }
+    }
+
+    /// Smallest and largest input of a noisy loop, as the smoothed branches have them.
+    fn without_noise(&self, path: &Path, tips: &Tips) -> Option<(f64, f64)> {
+        if self.survey.input_noise.deviation() <= NOISY * self.survey.width() {
+            return None;
+        }
+        let x = &self.record.inputs()[0];
+        // Both sides of a turning point, so that the row of its extreme, which noise chose, does not matter.
+        let end = |tip: Tip| {
+            let beside = [tip.leaves.checked_sub(1), Some(tip.leaves)];
+            let ends: Vec<f64> = beside
+                .into_iter()
+                .enumerate()
+                .filter_map(|(side, number)| end_without_noise(x, self.branches.get(number?)?, side == 0))
+                .collect();
+            (!ends.is_empty()).then(|| ends.iter().sum::<f64>() / ends.len() as f64)
+        };
+        let (peak, valley) = (tips.peak?, tips.valley?);
+        let (low, high) = range(&path.x);
+        // Of a loop that was cut, the ends are no turning points.
+        let near = FAR_IN_NOISE * self.survey.input_noise.deviation();
+        let is_whole = (peak.input - high).abs() <= near && (valley.input - low).abs() <= near;
+        if is_whole { Some((end(valley)?, end(peak)?)) } else { None }
     }
 
     /// Energy, loss per time and damping.
@@ -304,7 +376,9 @@ impl Reader<'_> {
             row.notes.push("the energy is within three deviations of the noise".into());
         }
         let Some(stiffness) = row.secant_stiffness else { return };
-        match damping(energy, stiffness, swing) {
+        let (low, high) = range(&path.y);
+        let is_line = energy.abs() < LINE * swing * (high - low);
+        match damping(if is_line { energy.abs() } else { energy }, stiffness, swing) {
             Some(ratio) => row.damping_percent = Some(100.0 * ratio),
             None if energy < 0.0 => {
                 row.notes.push("no equivalent damping: the loop is passed anticlockwise".into());
@@ -313,21 +387,117 @@ impl Reader<'_> {
         }
     }
 
-    /// Where both branches pass the output 0.
-    fn read_zero_output(&self, row: &mut CycleRow, falling: &Branch, rising: &Branch) {
-        let (after_peak, after_valley) = (crossing(falling, 0.0), crossing(rising, 0.0));
-        let which = match (after_peak, after_valley) {
-            (None, None) => Some("neither branch passes"),
-            (None, _) => Some("the branch after the peak does not pass"),
-            (_, None) => Some("the branch after the valley does not pass"),
-            _ => None,
-        };
-        row.notes.extend(which.map(|which| format!("{which} the output 0")));
-        if self.field.has_structures() {
-            (row.residual_after_peak, row.residual_after_valley) = (after_peak, after_valley);
+    /// Both ways between peak and valley: down, and up.
+    fn strands(&self, tips: &Tips, (low, high): (f64, f64)) -> Option<(Strand, Strand)> {
+        let (peak, valley) = (tips.peak?, tips.valley?);
+        let beyond = CLOSED * (high - low);
+        let down = self.strand(&peak, valley.input + beyond, peak.input + beyond);
+        let up = self.strand(&valley, peak.input - beyond, valley.input - beyond);
+        Some((down, up))
+    }
+
+    /// The way from a turning point on until the input reaches `target`, and no further than where it turns beyond
+    /// `limit`. If the record ends before, a loop that closes goes on where it began.
+    fn strand(&self, tip: &Tip, target: f64, limit: f64) -> Strand {
+        let falls = target < tip.input;
+        let is_past = |x: f64, level: f64| if falls { x <= level } else { x >= level };
+        let mut strand = Strand::default();
+        for branch in self.branches.get(tip.leaves..).unwrap_or_default() {
+            if is_past(limit, branch.to) {
+                return strand;
+            }
+            strand.extend(branch);
+            if is_past(branch.to, target) {
+                return strand;
+            }
         }
-        if self.field.has_magnets() {
-            row.coercive_input = after_peak.zip(after_valley).map(|(down, up)| 0.5 * (up - down).abs());
+        let (from, to) = (self.span.from, self.span.to);
+        let ends_there = to >= (self.record.len() - 1) as f64;
+        if !ends_there || !output_closes(self.survey, self.record.output(), (from, to)) {
+            return strand;
+        }
+        for (place, branch) in self.branches[self.span.branches.clone()].iter().enumerate() {
+            match place {
+                0 => strand.extend_from(branch, at(&self.record.inputs()[0], from)),
+                _ => strand.extend(branch),
+            }
+            if is_past(branch.to, target) {
+                break;
+            }
+        }
+        strand
+    }
+
+    /// What is read where both ways pass a level: residual inputs, coercive input, remanence.
+    fn read_levels(&self, row: &mut CycleRow, falling: &Strand, rising: &Strand) {
+        if self.field.has_structures() {
+            row.residual_after_peak = falling.crossings(0.0).first().copied();
+            row.residual_after_valley = rising.crossings(0.0).first().copied();
+        }
+        if self.field == Field::Structure {
+            let notes = missed(row.residual_after_peak.is_some(), row.residual_after_valley.is_some());
+            row.notes.extend(notes.map(|which| format!("{which} the output 0")));
+        }
+        if !self.field.has_magnets() {
+            return;
+        }
+        let (Some((low, high)), Some(peak), Some(valley)) =
+            (row.input_min.zip(row.input_max), row.peak_output, row.valley_output)
+        else {
+            return;
+        };
+        let (middle, swing, height) = (0.5 * (low + high), high - low, (peak - valley).abs());
+        let (down, up) = (falling.crossings(0.0), rising.crossings(0.0));
+        let innermost = |found: &[f64]| {
+            found.iter().copied().min_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()))
+        };
+        let (after_peak, after_valley) = (innermost(&down), innermost(&up));
+        row.coercive_input = after_peak.zip(after_valley).map(|(down, up)| 0.5 * (up - down).abs());
+        match missed(after_peak.is_some(), after_valley.is_some()) {
+            Some(which) => row.notes.push(format!("{which} the output 0")),
+            None if down.len() > 1 && up.len() > 1 => {
+                row.faults.passings = down.len().max(up.len());
+                row.notes.push(format!(
+                    "both branches pass the output 0 {} times, as over a straight background (--subtract \
+                     slope removes it): the coercive field is that of the innermost passings",
+                    row.faults.passings
+                ));
+            }
+            None => {}
+        }
+        // A loop about the input 0 has its own middle at the output 0, unless the instrument has an offset.
+        let own = 0.5 * (peak + valley);
+        let noise = SURE * self.survey.output_noise.deviation();
+        if middle.abs() <= CENTRED * swing && own.abs() > OFFSET * height + noise {
+            row.faults.offset = Some(own);
+            row.notes.push(format!(
+                "the middle of the outputs is {:.3}, not 0 (--center removes it)",
+                Significant(own)
+            ));
+        }
+        let (down, up) = (falling.output_at(0.0, CLOSED * swing), rising.output_at(0.0, CLOSED * swing));
+        row.remanent_output = down.zip(up).map(|(down, up)| 0.5 * (down - up).abs());
+        if row.remanent_output.is_none() {
+            row.notes.push("a branch does not pass the input 0: no remanence".into());
+        }
+    }
+
+    /// A loop whose output does not come back with the input.
+    fn note_open_loop(&self, row: &mut CycleRow, path: &Path) {
+        let Some(gap) = gap(&path.x, &path.y) else { return };
+        let (low, high) = range(&path.y);
+        let noise = SURE * self.survey.output_noise.deviation();
+        // A drift adds up to half of the gap over the whole swing to the area.
+        let swing = width(&path.x);
+        let adds = row.energy.is_some_and(|energy| 0.5 * gap.abs() * swing > ADDS * energy.abs());
+        if (adds || gap.abs() > OPEN * (high - low)) && gap.abs() > noise + LINE * (high - low) {
+            row.faults.opening = Some(gap);
+            row.notes.push(format!(
+                "the loop is open by {:.2} of {:.2}: drift of the output (--subtract drift), or a beginning in another \
+                 state",
+                Significant(gap.abs()),
+                Significant(high - low)
+            ));
         }
     }
 
@@ -414,16 +584,29 @@ impl Reader<'_> {
     }
 }
 
-/// The distance of the branches at the input 0.
-fn read_zero_input(row: &mut CycleRow, falling: &Branch, rising: &Branch) {
-    let passes = |branch: &Branch| {
-        let (low, high) = branch.curve.range();
-        low <= 0.0 && high >= 0.0
+/// The input at an end of a branch, of the parabola through its last or its first quarter; `None` for a few rows.
+fn end_without_noise(x: &[f64], branch: &Branch, is_last: bool) -> Option<f64> {
+    let count = branch.rows.len() / 4;
+    if count < FEWEST_AT_AN_END {
+        return None;
+    }
+    let rows = match is_last {
+        true => branch.rows.end - count..branch.rows.end,
+        false => branch.rows.start..branch.rows.start + count,
     };
-    if passes(falling) && passes(rising) {
-        row.remanent_output = apart_along_output(falling, rising, 0.0).map(|apart| 0.5 * apart);
-    } else {
-        row.notes.push("a branch does not pass the input 0: no remanence".into());
+    let end = if is_last { rows.end - 1 } else { rows.start } as f64;
+    let places: Vec<Place> = rows.map(|row| Place { station: row as f64, x: x[row], y: x[row] }).collect();
+    let parabola = Parabola::over(&places, end);
+    Some(places.iter().map(|place| parabola.weight(place) * place.x).sum())
+}
+
+/// Which branch does not pass a level.
+fn missed(after_peak: bool, after_valley: bool) -> Option<&'static str> {
+    match (after_peak, after_valley) {
+        (false, false) => Some("neither branch passes"),
+        (false, true) => Some("the branch after the peak does not pass"),
+        (true, false) => Some("the branch after the valley does not pass"),
+        (true, true) => None,
     }
 }
 
@@ -451,14 +634,6 @@ impl Tips {
             *side = Some(tip);
         }
     }
-
-    fn falling<'b>(&self, branches: &'b [Branch]) -> Option<&'b Branch> {
-        branches.get(self.peak?.leaves).filter(|branch| !branch.rises())
-    }
-
-    fn rising<'b>(&self, branches: &'b [Branch]) -> Option<&'b Branch> {
-        branches.get(self.valley?.leaves).filter(|branch| branch.rises())
-    }
 }
 
 /// Equivalent viscous damping ratio: that of the viscous damper which loses as much energy in a cycle of the same amplitude
@@ -473,17 +648,22 @@ fn damping(energy: f64, stiffness: f64, swing: f64) -> Option<f64> {
 }
 
 /// What every row lacks, and why.
-fn notes(data: &Dataset, cycles: &[CycleRow], field: Field) -> Vec<String> {
+fn notes(survey: &BranchSet, cycles: &[CycleRow], (field, division): (Field, Division)) -> Vec<String> {
     let mut notes = Vec::new();
     let complete = cycles.iter().filter(|row| row.complete).count();
     if complete == 0 {
-        notes.push(
-            "no whole cycle: the input must come back to where a cycle began; smaller reversals count with a \
-             smaller smallest reversal"
-                .to_string(),
-        );
+        notes.push("no whole cycle: the input does not come back to where a cycle began".to_string());
     }
-    if !data.has_time() {
+    let hidden = survey.smallest_reversal;
+    if hidden > HIDDEN * survey.width() && survey.input_noise.deviation() > NOISY * survey.width() {
+        notes.push(format!(
+            "reversals of the input below {:.2}, {:.1} % of its range, are not told from its noise",
+            Significant(hidden),
+            100.0 * hidden / survey.width()
+        ));
+    }
+    notes.extend(check(cycles, division));
+    if !survey.data.has_time() {
         let missing = match field {
             Field::Structure => "period and frequency",
             Field::Magnet => "period, frequency and loss per time",
@@ -493,6 +673,29 @@ fn notes(data: &Dataset, cycles: &[CycleRow], field: Field) -> Vec<String> {
         notes.push(format!("no time: no {missing}"));
     } else if field == Field::Actuator && cycles.iter().all(|row| row.creep.is_none()) {
         notes.push("no creep: the input rests nowhere long enough".into());
+    }
+    notes
+}
+
+/// What in a table contradicts itself: rows that do not follow each other, amplitudes that are not those of the reversals.
+fn check(cycles: &[CycleRow], division: Division) -> Vec<String> {
+    let mut notes = Vec::new();
+    let follows = |pair: &[CycleRow]| {
+        pair[0].record != pair[1].record || pair[1].rows.0.saturating_sub(pair[0].rows.1) <= 1
+    };
+    if !cycles.windows(2).all(follows) {
+        notes.push("cycles do not follow each other without a gap: check their rows".into());
+    }
+    let differs = |row: &&CycleRow| {
+        let tips = row.peak_input.zip(row.valley_input).map(|(peak, valley)| 0.5 * (peak - valley));
+        row.complete && tips.zip(row.amplitude).is_some_and(|(tips, own)| (tips - own).abs() > MISMATCH * own)
+    };
+    let unlike: Vec<String> = cycles.iter().filter(differs).map(|row| row.cycle.to_string()).collect();
+    if division != Division::Reversals && !unlike.is_empty() {
+        notes.push(format!(
+            "amplitudes that are not half the distance of the reversals: cycles {}",
+            unlike.join(", ")
+        ));
     }
     notes
 }

@@ -406,3 +406,120 @@ fn every_figure_is_a_field_of_the_serialized_row() {
         assert!(names.contains(&"amplitude") && names.len() < FIGURES.len(), "{field}");
     }
 }
+
+/// Cycles about 0 through all amplitudes, in steps of a twelfth of the smallest one.
+fn protocol(amplitudes: &[f64]) -> Vec<f64> {
+    let mut turning = vec![0.0];
+    turning.extend(amplitudes.iter().flat_map(|amplitude| [*amplitude, -amplitude]));
+    turning.push(0.0);
+    path(&turning, amplitudes.iter().copied().fold(f64::INFINITY, f64::min) / 12.0)
+}
+
+/// `4 (a - 1)` above the yield displacement 1 of a stop, less 1/2 where the cycle begins elastic.
+#[test]
+fn amplitudes_of_a_hundredth_of_the_largest_are_cycles_of_their_own() {
+    let amplitudes = [0.2, 0.4, 0.8, 1.2, 1.6, 3.2, 3.2, 9.6, 9.6, 16.0, 16.0, 0.16, 0.16];
+    let x = protocol(&amplitudes);
+    let y = Stop::new(1.0).unwrap().run(&x);
+    let names =
+        ColumnNames { output: "force_kN".into(), inputs: vec!["disp_mm".into()], ..ColumnNames::plain(1) };
+    let data = Dataset::new(names, vec![Record::new("r", vec![x.clone()], y.clone()).unwrap()]).unwrap();
+    let table = CycleTable::of(&data, &CycleOptions::default()).unwrap();
+    assert_eq!((table.field, table.division), (Field::Structure, Division::Zero));
+    let found: Vec<f64> = table.complete().map(|row| row.amplitude.unwrap()).collect();
+    assert_eq!(found.len(), amplitudes.len(), "{found:?}");
+    let mut begin = 0;
+    for (row, amplitude) in table.cycles.iter().zip(amplitudes) {
+        assert_relative_eq!(row.amplitude.unwrap(), amplitude, max_relative = 1e-9);
+        assert_relative_eq!(row.peak_input.unwrap(), amplitude, max_relative = 1e-9);
+        assert!(row.rows.0.abs_diff(begin) <= 1, "each begins where the one before ends");
+        begin = row.rows.1;
+        // The trapezoidal rule over its rows, back to its beginning by a straight line.
+        let rows: Vec<usize> = (row.rows.0..=row.rows.1).chain([row.rows.0]).collect();
+        let area: f64 = rows.windows(2).map(|k| 0.5 * (y[k[0]] + y[k[1]]) * (x[k[1]] - x[k[0]])).sum();
+        assert_relative_eq!(row.energy.unwrap(), area, epsilon = 0.02 * amplitude);
+    }
+    // The diagnosis has the same cycles.
+    let diagnosis = crate::Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap();
+    assert_eq!(diagnosis.cycles, table);
+}
+
+/// One loop of `tanh(x ∓ 0.4)` from either tip, and one period of it from the middle of a branch and from 0.
+#[test]
+fn a_single_loop_is_one_cycle_wherever_it_begins() {
+    let branches = |turning: &[f64], first_falls: bool| {
+        let x = path(turning, 0.02);
+        let mut falls = first_falls;
+        let y = (0..x.len()).map(|k| {
+            if k > 0 && x[k] != x[k - 1] {
+                falls = x[k] < x[k - 1];
+            }
+            (x[k] + if falls { 0.4 } else { -0.4 }).tanh()
+        });
+        data(x.clone(), y.collect())
+    };
+    for (turning, falls) in [
+        (vec![6.0, -6.0, 6.0], true),
+        (vec![-6.0, 6.0, -6.0], false),
+        (vec![0.0, 6.0, -6.0, 0.0], false),
+        (vec![1.0, -6.0, 6.0, 1.0], true),
+        (vec![-3.0, 6.0, -6.0, -3.0], false),
+        (vec![5.0, -6.0, 6.0, 5.0], true),
+    ] {
+        for field in [Field::Magnet, Field::General] {
+            let table = table_of(&branches(&turning, falls), field);
+            assert_eq!(
+                (table.cycles.len(), table.complete().count()),
+                (1, 1),
+                "{turning:?} {:?}",
+                table.notes
+            );
+            let row = &table.cycles[0];
+            assert_relative_eq!(row.coercive_input.unwrap(), 0.4, max_relative = 2e-3);
+            assert_relative_eq!(row.remanent_output.unwrap(), 0.4f64.tanh(), max_relative = 2e-3);
+            assert_relative_eq!(row.energy.unwrap().abs(), 1.6, max_relative = 2e-3);
+        }
+    }
+}
+
+/// Without the middle of the outputs at 0, with a straight background and with a drift: said, and read as it can be.
+#[test]
+fn backgrounds_offsets_and_drifts_under_a_loop_are_said() {
+    let x = path(&[6.0, -6.0, 6.0], 0.02);
+    let middle = x.iter().position(|x| *x == -6.0).unwrap();
+    let with = |add: &dyn Fn(usize) -> f64| {
+        let branch = |row: usize| ((x[row] + if row <= middle { 0.4 } else { -0.4 }) / 0.3).tanh();
+        let table = table_of(
+            &data(x.clone(), (0..x.len()).map(|row| branch(row) + add(row)).collect()),
+            Field::Magnet,
+        );
+        (table.cycles[0].coercive_input, table.cycles[0].notes.join("; "))
+    };
+    let (coercive, notes) = with(&|row| -0.4 * x[row]);
+    assert!(notes.contains("pass the output 0 3 times"), "{notes}");
+    assert!((coercive.unwrap() - 0.4).abs() < 0.08, "the innermost passings: {coercive:?}");
+    let (coercive, notes) = with(&|_| 0.3);
+    assert!(notes.contains("middle of the outputs is 0.3,") && coercive.is_some(), "{notes}");
+    let (_, notes) = with(&|row| 0.2 * row as f64 / x.len() as f64);
+    assert!(notes.contains("open by 0.2"), "{notes}");
+    assert_eq!(with(&|_| 0.0).1, "");
+}
+
+/// A fifth harmonic that turns within each branch.
+#[test]
+fn a_rippled_loop_has_its_coercive_field() {
+    let phase = |row: usize| TAU * row as f64 / 400.0;
+    let x: Vec<f64> = (0..=1200).map(|row| phase(row).sin() + 0.3 * (5.0 * phase(row)).sin()).collect();
+    let y = Play::new(0.2).unwrap().run(&x);
+    let options = CycleOptions {
+        field: Some(Field::Magnet),
+        division: Some(Division::Mean),
+        ..CycleOptions::default()
+    };
+    let table = CycleTable::of(&data(x, y), &options).unwrap();
+    assert_eq!(table.complete().count(), 3);
+    for row in table.complete() {
+        assert_relative_eq!(row.coercive_input.unwrap(), 0.2, max_relative = 0.01);
+        assert!(row.remanent_output.is_some(), "{:?}", row.notes);
+    }
+}

@@ -70,7 +70,7 @@ impl ModelCycles {
         let data = cycles(&probe)?;
         let branches = DiagnosisOptions { smallest_reversal: SMALLEST_REVERSAL, smoothing: false };
         let options = CycleOptions {
-            smallest_reversal: branches.smallest_reversal,
+            smallest_reversal: Some(branches.smallest_reversal),
             smoothing: branches.smoothing,
             ..options.clone()
         };

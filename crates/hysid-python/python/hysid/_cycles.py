@@ -40,7 +40,7 @@ class Cycles(Mapping[str, np.ndarray]):
     field : str
         The field of engineering: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"``.
     division : str
-        Where cycles begin: ``"zero"``, ``"mean"`` or ``"reversals"``.
+        Where cycles begin: ``"zero"``, ``"mean"``, ``"reversals"`` or ``"start"``.
     rows : dict of arrays
         The columns.
     backbone : dict of arrays
@@ -147,7 +147,7 @@ def cycles(
     *,
     division: str | None = None,
     field: str | None = None,
-    smallest_reversal: float = 0.02,
+    smallest_reversal: float | None = None,
     smoothing: bool = True,
     smoothing_factor: int | None = None,
 ) -> Cycles:
@@ -164,12 +164,12 @@ def cycles(
     records : array of shape (n,), optional
         A label for each row.
     division : str, optional
-        Where cycles begin: ``"zero"``, ``"mean"`` or ``"reversals"``; as suits the data by default.
+        Where cycles begin: ``"zero"``, ``"mean"``, ``"reversals"`` or ``"start"``; as suits the data by default.
     field : str, optional
         What is read: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"`` (all); by default as names and units
         of pandas objects indicate.
-    smallest_reversal : float
-        Reversals of the input below this share of its range are ignored.
+    smallest_reversal : float, optional
+        Reversals of the input below this share of its range are ignored; by default the noise of the input decides.
     smoothing : bool
         Smooth branches before outputs are read from them.
     smoothing_factor : int, optional
@@ -196,7 +196,8 @@ def cycles(
     >>> table["residual_after_peak"].round(2)
     array([2., 2., 2.])
     """
-    smallest_reversal = fraction("smallest_reversal", smallest_reversal)
+    if smallest_reversal is not None:
+        smallest_reversal = fraction("smallest_reversal", smallest_reversal)
     smoothing = truth("smoothing", smoothing)
     options = named_options(division, field, smoothing_factor)
     arranged = columns(x, y, time, None, records)
@@ -209,7 +210,7 @@ def cycles_of(
     field: str | None = None,
     smoothing_factor: int | None = None,
     *,
-    smallest_reversal: float = 0.02,
+    smallest_reversal: float | None = None,
     smoothing: bool = True,
 ) -> Cycles:
     """The figures of each cycle in columns; arguments as of `cycles`."""

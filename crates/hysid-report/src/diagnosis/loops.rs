@@ -1,6 +1,7 @@
-//! The loops of a record in numbers: first, last and largest for a terminal, all of them for a page.
+//! The loops of a record in numbers: first, last and largest for a terminal, all of them for a page. They are
+//! those of `hysid cycles`.
 
-use hysid::diagnosis::Cycle;
+use hysid::diagnosis::cycles::{CycleRow, CycleTable, FIGURES, Figure};
 use hysid::significant::Significant;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::plain::aligned;
@@ -15,77 +16,81 @@ const AT_EACH_END: usize = 8;
 /// More cycles than these are drawn as a line.
 const MOST_DOTS: usize = 400;
 
-/// A number read from a loop.
-struct Measure {
-    /// Named like a column, with its unit.
-    name: String,
-    of: fn(&Cycle) -> Option<f64>,
+/// The figures that are shown, where the field has them.
+const SHOWN: [&str; 11] = [
+    "input_min",
+    "input_max",
+    "output_min",
+    "output_max",
+    "energy",
+    "secant_stiffness",
+    "damping_percent",
+    "coercive_input",
+    "remanent_output",
+    "width",
+    "frequency",
+];
+
+/// The figures that any of the cycles has.
+fn known(table: &CycleTable) -> Vec<&'static Figure> {
+    let has = |figure: &&Figure| table.complete().any(|row| (figure.of)(row).is_some());
+    FIGURES.iter().filter(|figure| SHOWN.contains(&figure.name)).filter(has).collect()
 }
 
-fn measures(quantities: &Quantities) -> Vec<Measure> {
-    let measure = |name: String, of: fn(&Cycle) -> Option<f64>| Measure { name, of };
-    vec![
-        measure(quantities.as_input("input from"), |cycle| Some(cycle.input.0)),
-        measure(quantities.as_input("input to"), |cycle| Some(cycle.input.1)),
-        measure(quantities.as_energy("energy"), |cycle| Some(cycle.energy)),
-        measure(quantities.as_input("width"), |cycle| Some(cycle.width)),
-        measure(quantities.as_output("height"), |cycle| Some(cycle.height())),
-        measure(quantities.as_input("coercive input"), |cycle| cycle.coercive_input),
-        measure(quantities.as_output("remanent output"), |cycle| cycle.remanent_output),
-        measure(quantities.as_stiffness("secant stiffness"), |cycle| Some(cycle.secant_stiffness)),
-        measure(quantities.as_speed("speed"), |cycle| cycle.speed),
-    ]
+/// The name of a figure with its unit.
+fn name(figure: &Figure, quantities: &Quantities) -> String {
+    let of_both = if figure.name == "width" { "width along the output" } else { figure.label };
+    quantities.as_figure(of_both, figure.quantity)
 }
 
-/// The measures that any of the cycles has.
-fn known(quantities: &Quantities, cycles: &[Cycle]) -> Vec<Measure> {
-    let mut measures = measures(quantities);
-    measures.retain(|measure| cycles.iter().any(|cycle| (measure.of)(cycle).is_some()));
-    measures
+/// The cycle that loses most energy, or has the largest amplitude.
+fn largest(rows: &[&CycleRow]) -> Option<usize> {
+    let size = |row: &CycleRow| row.energy.map_or(row.amplitude.unwrap_or(0.0), f64::abs);
+    (0..rows.len()).max_by(|&a, &b| size(rows[a]).total_cmp(&size(rows[b])))
 }
 
-/// The cycle with the largest area.
-fn largest(cycles: &[Cycle]) -> Option<usize> {
-    (0..cycles.len()).max_by(|&a, &b| cycles[a].area.total_cmp(&cycles[b].area))
-}
-
-/// First, last and largest loop, column by column.
-pub fn text(cycles: &[Cycle], quantities: &Quantities) -> String {
+/// First, last and largest cycle, column by column.
+pub fn text(table: &CycleTable, quantities: &Quantities) -> String {
+    let cycles: Vec<&CycleRow> = table.complete().collect();
     let heading = format!("loops of {} over {}", clipped(&quantities.output), clipped(&quantities.input));
-    let Some(largest) = largest(cycles) else {
-        return format!("{heading}: none closes\n");
+    let Some(largest) = largest(&cycles) else {
+        return format!("{heading}: no whole cycle\n");
     };
     let shown = [("first", 0), ("last", cycles.len() - 1), ("largest", largest)];
     let shown = if cycles.len() == 1 { &shown[..1] } else { &shown };
     let mut rows = vec![vec![count(cycles.len(), "cycle")]];
     rows[0].extend(shown.iter().map(|(which, _)| which.to_string()));
-    for measure in known(quantities, cycles) {
+    for figure in known(table) {
         let cell = |&(_, place): &(&str, usize)| {
-            (measure.of)(&cycles[place]).map_or_else(|| "-".into(), |v| format!("{:.4}", Significant(v)))
+            (figure.of)(cycles[place]).map_or_else(|| "-".into(), |v| format!("{:.4}", Significant(v)))
         };
-        rows.push(std::iter::once(text_label(&measure.name)).chain(shown.iter().map(cell)).collect());
+        let label = text_label(&name(figure, quantities));
+        rows.push(std::iter::once(label).chain(shown.iter().map(cell)).collect());
     }
     format!("{heading}\n{}\n", aligned(&rows).join("\n"))
 }
 
 /// Energy over the number of the cycle, and the table; `None` without cycles.
-pub fn cycles_section(cycles: &[Cycle], quantities: &Quantities, several_records: bool) -> Option<Part> {
-    let largest = largest(cycles)?;
-    let words = "Energy is the area ∮ y dx, positive if the loop is traversed clockwise. Width is measured \
-                 at half the height; coercive input and remanent output are half the distance of the \
-                 branches where the output, or the input, is 0; secant stiffness is the slope from tip to \
-                 tip. Rows count from 1 in their record.";
-    let parts = [
-        Part::chart(energy_chart(cycles, quantities)),
-        Part::Table(cycles_table(cycles, quantities, largest, several_records)),
-        Part::note(words),
-    ];
+pub fn cycles_section(table: &CycleTable, quantities: &Quantities, several_records: bool) -> Option<Part> {
+    let cycles: Vec<&CycleRow> = table.complete().collect();
+    let largest = largest(&cycles)?;
+    let words = "The cycles of `hysid cycles`, where docs/cycles.md defines the figures. Rows count from 1 in their \
+                 record.";
+    let mut parts: Vec<Part> = energy_chart(&cycles, quantities).map(Part::chart).into_iter().collect();
+    parts.push(Part::Table(cycles_table(table, &cycles, quantities, largest, several_records)));
+    parts.push(Part::note(words));
     Some(Part::section(format!("Loops: {}", count(cycles.len(), "cycle")), parts))
 }
 
-fn energy_chart(cycles: &[Cycle], quantities: &Quantities) -> Chart {
-    let points: Vec<Point> =
-        cycles.iter().enumerate().map(|(number, cycle)| ((number + 1) as f64, cycle.energy)).collect();
+fn energy_chart(cycles: &[&CycleRow], quantities: &Quantities) -> Option<Chart> {
+    let points: Vec<Point> = cycles
+        .iter()
+        .enumerate()
+        .filter_map(|(number, cycle)| Some(((number + 1) as f64, cycle.energy?)))
+        .collect();
+    if points.is_empty() {
+        return None;
+    }
     let label = unit::label(&quantities.as_energy("energy"));
     let mut curves = vec![Curve::new(thin(&points, 2000), Colour::Faint, 1.0)];
     if cycles.len() <= MOST_DOTS {
@@ -93,38 +98,45 @@ fn energy_chart(cycles: &[Cycle], quantities: &Quantities) -> Chart {
     }
     let y = Axis::linear(label, points.iter().map(|point| point.1).chain([0.0]));
     let x = Axis::linear("cycle", points.iter().map(|point| point.0));
-    Chart::on_axes("Energy of each cycle in the order of the record", x, y, curves).with_height(260.0)
+    let words = "Energy of each cycle in the order of the record";
+    Some(Chart::on_axes(words, x, y, curves).with_height(260.0))
 }
 
-fn cycles_table(cycles: &[Cycle], quantities: &Quantities, largest: usize, several_records: bool) -> Table {
-    let measures = known(quantities, cycles);
+fn cycles_table(
+    table: &CycleTable,
+    cycles: &[&CycleRow],
+    quantities: &Quantities,
+    largest: usize,
+    several_records: bool,
+) -> Table {
+    let figures = known(table);
     let mut headings = vec!["cycle".to_string()];
     if several_records {
         headings.push("record".into());
     }
     headings.push("rows".into());
-    headings.extend(measures.iter().map(|measure| unit::label(&measure.name)));
+    headings.extend(figures.iter().map(|figure| unit::label(&name(figure, quantities))));
     let row = |place: usize| {
-        let cycle = &cycles[place];
+        let cycle = cycles[place];
         let mark = if place == largest { " (largest)" } else { "" };
         let mut cells = vec![Cell::from(format!("{}{mark}", place + 1))];
         if several_records {
             cells.push(cycle.record.as_str().into());
         }
         cells.push(format!("{} to {}", cycle.rows.0 + 1, cycle.rows.1 + 1).into());
-        cells.extend(measures.iter().map(|measure| Cell::number((measure.of)(cycle), 4)));
+        cells.extend(figures.iter().map(|figure| Cell::number((figure.of)(cycle), 4)));
         cells
     };
-    let mut table = Table::new(headings);
+    let mut printed = Table::new(headings);
     let mut next = 0;
     for place in shown(cycles.len(), largest) {
         if place > next {
-            table.push(["…".into(), format!("{} more", count(place - next, "cycle")).into()]);
+            printed.push(["…".into(), format!("{} more", count(place - next, "cycle")).into()]);
         }
-        table.push(row(place));
+        printed.push(row(place));
         next = place + 1;
     }
-    table
+    printed
 }
 
 /// The cycles that a table shows: all of a few, otherwise the first, the last and the largest.

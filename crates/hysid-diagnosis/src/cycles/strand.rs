@@ -1,0 +1,83 @@
+//! A way of the input from one end of a loop to the other, through all branches between them: where the output passes a
+//! level, and its value at an input.
+
+use crate::branch::Branch;
+
+/// Deviations of the noise by which an output is on one side of a level.
+const CLEAR: f64 = 3.0;
+
+/// Output over input in the order of time.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Strand {
+    points: Vec<StrandPoint>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct StrandPoint {
+    x: f64,
+    y: f64,
+    deviation: f64,
+}
+
+impl Strand {
+    /// Goes on along a branch.
+    pub fn extend(&mut self, branch: &Branch) {
+        self.extend_from(branch, branch.from);
+    }
+
+    /// Goes on along the part of a branch after an input.
+    pub fn extend_from(&mut self, branch: &Branch, from: f64) {
+        let is_after = |x: f64| from == branch.from || if branch.rises() { x >= from } else { x <= from };
+        let points = branch.curve.points_with_deviation().filter(|(x, ..)| is_after(*x));
+        let mut points: Vec<StrandPoint> =
+            points.map(|(x, y, deviation)| StrandPoint { x, y, deviation }).collect();
+        if !branch.rises() {
+            points.reverse();
+        }
+        self.points.extend(points);
+    }
+
+    /// Inputs at which the output passes a level, in the order of time. Noise about the level is one passing.
+    pub fn crossings(&self, level: f64) -> Vec<f64> {
+        let (mut found, mut between) = (Vec::new(), Vec::new());
+        let mut side: Option<bool> = None;
+        for (place, point) in self.points.iter().enumerate() {
+            let away = point.y - level;
+            if let Some(before) = place.checked_sub(1).map(|before| &self.points[before]) {
+                let from = before.y - level;
+                if from * away <= 0.0 && from != away {
+                    between.push(before.x + from / (from - away) * (point.x - before.x));
+                }
+            }
+            if away != 0.0 && away.abs() >= CLEAR * point.deviation {
+                let now = away > 0.0;
+                if side.is_some_and(|side| side != now)
+                    && let (Some(first), Some(last)) = (between.first(), between.last())
+                {
+                    found.push(0.5 * (first + last));
+                }
+                side = Some(now);
+                between.clear();
+            }
+        }
+        let ends_there = self.points.last().is_some_and(|point| point.y == level);
+        found.extend(between.last().filter(|_| ends_there && found.is_empty()));
+        found
+    }
+
+    /// The output at an input: in the middle of all passings of it. Beyond the ends by `reach` at most.
+    pub fn output_at(&self, x: f64, reach: f64) -> Option<f64> {
+        let passing = |pair: &[StrandPoint]| {
+            let (a, b) = (pair[0], pair[1]);
+            let passes = (a.x - x) * (b.x - x) <= 0.0 && a.x != b.x;
+            passes.then(|| a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x))
+        };
+        let found: Vec<f64> = self.points.windows(2).filter_map(passing).collect();
+        if !found.is_empty() {
+            return Some(found.iter().sum::<f64>() / found.len() as f64);
+        }
+        let near = |point: &&StrandPoint| (point.x - x).abs() <= reach;
+        let nearest = self.points.iter().min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()));
+        nearest.filter(near).map(|point| point.y)
+    }
+}
