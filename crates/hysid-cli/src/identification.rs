@@ -110,7 +110,15 @@ pub fn printed(identified: &Identified, unseen: Option<&Errors>, written: &[(&st
     sets.extend(unseen.map(|errors| ("unseen test", errors)));
     let mut text = errors_table::errors_table(&sets);
     if let Some(selection) = &provenance.selection {
-        text += &format!("(validation: errors on the rows held out in {} folds)\n", selection.folds.len());
+        text += &match selection.one_loop {
+            true => {
+                "(validation: on parts of the one measured loop; the error on smaller loops is unknown)\n"
+                    .into()
+            }
+            false => {
+                format!("(validation: errors on the rows held out in {} folds)\n", selection.folds.len())
+            }
+        };
         text.push('\n');
         for (label, line) in ["chosen", "why"].into_iter().zip(selection.summary()) {
             text += &labelled(label, &line);

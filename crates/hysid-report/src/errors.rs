@@ -36,9 +36,15 @@ pub fn verdict(report: &Report) -> Part {
     });
     let unseen = report.sets.iter().filter(|set| set.name != "training");
     parts.extend(unseen.map(|set| format!("{} on the {} data", judged(&set.errors), set.name)));
+    let is_one_loop = provenance.selection.as_ref().is_some_and(|selection| selection.one_loop);
+    let doubt = if is_one_loop {
+        " The data are one loop: the error on smaller loops is not known, and may be many times larger."
+    } else {
+        ""
+    };
     Part::Lead(
         format!(
-            "Error of a free run, in percent of the standard deviation of the output: {}.",
+            "Error of a free run, in percent of the standard deviation of the output: {}.{doubt}",
             joined(&parts)
         )
         .into(),

@@ -109,6 +109,9 @@ pub(crate) fn folds_of_loop(data: &Dataset) -> Vec<Fold> {
         train: of_fold(fold, false),
         held_out: of_fold(fold, true),
     };
+    if data.scored() < 4 * FEWEST_ROWS {
+        return Vec::new();
+    }
     (0..FOLDS_OF_LOOP).map(fold).filter(has_enough).collect()
 }
 

@@ -93,8 +93,9 @@ impl Model {
         self.provenance().selection.as_ref().is_some_and(one_loop).then(|| {
             format!(
                 "one loop: all reversals of {} are at the ends of its range, so the data contain no smaller \
-                 loops; the ensemble weights therefore also use errors on smaller loops of synthetic cases, \
-                 and the band is wider (to improve this, measure loops of three or more amplitudes)",
+                 loops, and the errors say nothing about these; candidates are also judged by the errors that their \
+                 kind had on smaller loops of simulated cases, and the band is wider (measure loops of three or more \
+                 amplitudes)",
                 self.names().inputs[0]
             )
         })

@@ -9,6 +9,9 @@ use crate::cycles::{CycleRow, CycleTable, Field};
 /// Loops of this share of all cycles show the same sign.
 const MOST: f64 = 0.5;
 
+/// Amplitudes that differ by less than this share are one.
+const SAME_SIZE: f64 = 0.03;
+
 pub(super) fn complaints(survey: &BranchSet, table: &CycleTable) -> Vec<DataIssue> {
     if table.field != Field::Magnet {
         return Vec::new();
@@ -20,6 +23,16 @@ pub(super) fn complaints(survey: &BranchSet, table: &CycleTable) -> Vec<DataIssu
     let shown = |has: &dyn Fn(&CycleRow) -> bool| -> Option<&CycleRow> {
         let found: Vec<&CycleRow> = rows.iter().copied().filter(|row| has(row)).collect();
         (found.len() as f64 > MOST * rows.len() as f64).then(|| found[0])
+    };
+    // A loop after one of another size is open because it begins elsewhere on the branch.
+    let is_steady = |row: &CycleRow| {
+        let place = rows.iter().position(|other| std::ptr::eq(*other, row)).unwrap_or(0);
+        let before =
+            place.checked_sub(1).map(|before| rows[before]).filter(|other| other.record == row.record);
+        match before.and_then(|before| before.amplitude).zip(row.amplitude) {
+            Some((before, now)) => (before - now).abs() <= SAME_SIZE * now,
+            None => rows.iter().filter(|other| other.record == row.record).count() == 1,
+        }
     };
     let issue = |kind, row: &CycleRow, value: f64, statement: String| DataIssue {
         value: Some(value),
@@ -35,8 +48,8 @@ pub(super) fn complaints(survey: &BranchSet, table: &CycleTable) -> Vec<DataIssu
         );
         issues.push(issue(DataIssueKind::LinearBackground, row, row.faults.passings as f64, statement));
     }
-    if let Some((row, opening)) =
-        shown(&|row| row.faults.opening.is_some()).and_then(|row| Some((row, row.faults.opening?)))
+    if let Some((row, opening)) = shown(&|row| row.faults.opening.is_some() && is_steady(row))
+        .and_then(|row| Some((row, row.faults.opening?)))
     {
         let height = row.output_max.zip(row.output_min).map_or(0.0, |(high, low)| high - low);
         let statement = format!(

@@ -158,6 +158,7 @@ fn decisions_are_obeyed() {
     let wears = |member: &Model| match member.predictor() {
         Predictor::Network { network, .. } => network.architecture().deterioration,
         Predictor::Law(Classical::BoucWen(law)) => law.degradation.is_some(),
+        Predictor::Law(Classical::PeakOriented(law)) => law.degradation.is_some(),
         _ => false,
     };
     assert!(with.iter().all(wears));

@@ -254,14 +254,14 @@ fn states_of_a_magnet_at_remanence_are_found() {
 #[test]
 fn a_validation_does_not_look_at_what_is_held_out() {
     let (up, down) = (&[1.0][..], &[-1.0][..]);
-    let saturating = |pace: f64| {
-        let mut x = path(100, 0.8, pace);
+    let saturating = |pace: f64, size: f64| {
+        let mut x = path(100, size, pace);
         x.extend((0..200).map(|k| (0.07 * f64::from(k)).sin()));
         x
     };
     let data = untimed(vec![
-        measured("a", up, saturating(0.11)),
-        measured("b", up, saturating(0.13)),
+        measured("a", up, saturating(0.11, 0.8)),
+        measured("b", up, saturating(0.13, 0.5)),
         measured("c", down, path(200, 0.8, 0.12)),
     ]);
     let request = request(serde_json::json!({ "model": "preisach", "initial_state": "unknown" }));

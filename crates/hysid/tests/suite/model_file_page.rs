@@ -142,7 +142,7 @@ fn with_rare_parts(model: &Model) -> Model {
     selection["found_states"] = json!({"found_percent": 1.0, "virgin_percent": 2.0});
     selection["warm_up"] = json!({"rows": 4, "without_percent": 1.0, "with_percent": 2.0});
     selection["single"] =
-        json!({"name": "lugre", "distilled": false, "distilled_percent": null, "plain_percent": [1.0, 1.0]});
+        json!({"name": "lugre", "distilled": false, "distilled_percent": null, "plain_percent": 1.0});
     let text = file.to_string();
     Model::from_json(&with_checksum(&text)).unwrap()
 }
