@@ -150,7 +150,7 @@ fn compensated(actuator: &'static Actuator) -> Result<Compensated> {
 
 /// `auto` with its defaults.
 fn default_model(data: &Dataset) -> FitSpec {
-    let rate = RateChoice::Auto.method(ModelName::AUTO, data.has_time());
+    let rate = RateChoice::Auto.method(ModelName::AUTO, data);
     FitSpec::of(ModelName::AUTO, rate, SEED)
 }
 
@@ -162,7 +162,7 @@ fn fit(data: &Dataset, spec: &FitSpec) -> Result<Model> {
 fn best_classical(train: &Dataset) -> Result<(Model, String, f64)> {
     let mut best: Option<(FitSpec, f64)> = None;
     for model in CLASSICAL {
-        let rate = RateChoice::Auto.method(ModelName::Classical(model), train.has_time());
+        let rate = RateChoice::Auto.method(ModelName::Classical(model), &train);
         let options = ClassicalOptions { rate, seed: SEED, ..ClassicalOptions::of(model) };
         let spec = FitSpec::Classical(options);
         if spec.model().check_data(train, spec.rate()).is_err() {

@@ -177,12 +177,12 @@ pub struct ColumnOptions {
     /// one record.
     #[arg(long, value_name = "COLUMN")]
     pub record: Option<String>,
-    /// Time stamps, or none [default: `t` or `time`, also with a unit]
+    /// Time stamps, or none [default: `t` or `time`]
     ///
-    /// Examples with a unit: `t_ms`, `Time (s)`. `--time none` uses no column as time.
+    /// The default is found with a unit too: `t_ms`, `Time (s)`. `--time none` uses no column as time.
     #[arg(long, value_name = "COLUMN")]
     pub time: Option<String>,
-    /// Input; repeat for several [default: the other columns that may be inputs]
+    /// Input; repeat for several [default: from names]
     #[arg(long, value_name = "COLUMN")]
     pub input: Vec<String>,
     /// Output [default: the last column that may be one]

@@ -30,8 +30,8 @@ library they are arguments of `fit`.
 | `--quiet` (`-q`) | only warnings and errors on stderr | off |
 | `--time` | column of time stamps | a column that is named like time |
 | `--record` | column with the record of each row | `record` or `segment`; otherwise each table is a record |
-| `--input` | column of an input; repeat for several | all other columns |
-| `--output` | column of the output | the last column |
+| `--input` | column of an input; repeat for several | from names and values |
+| `--output` | column of the output | from names and values; where they tell nothing, the last column |
 | `--rate` | rate of the first input: `auto`, `none`, `central`, `backward`, `savitzky-golay` or a column with the rate | `auto`: `backward` if the model uses a rate and the data pass each place at several speeds; else `none` |
 | `--inverse` | exchange the first input and the output, to fit a model of the inverse | off |
 | `--threads` | number of threads; the model does not depend on it | one for each processor |
