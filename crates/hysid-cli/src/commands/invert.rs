@@ -63,8 +63,8 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
         Some(drive) => {
             files::write(drive, &text)?;
             match arguments.json {
-                true => json_results(&Printed::of(drive.path(), page_path.as_deref(), &inverted))?,
-                false => results(&summary(&inverted))?,
+                true => json_results(&Printed::of(&model, drive.path(), page_path.as_deref(), &inverted))?,
+                false => results(&summary(&model, &inverted))?,
             }
         }
     }
@@ -222,11 +222,24 @@ fn warnings(inverted: &Inverted) -> Vec<String> {
     all
 }
 
+/// The error of the model, which is that of the specimen when it is driven: that on held-out rows, or else in training.
+fn expected(model: &Model) -> (&Errors, &'static str) {
+    let provenance = model.provenance();
+    match &provenance.validation {
+        Some(errors) => (errors, "held-out rows"),
+        None => (provenance.trained_error(), "training rows; on other inputs it may be larger"),
+    }
+}
+
 /// The result as text.
-fn summary(inverted: &Inverted) -> String {
+fn summary(model: &Model, inverted: &Inverted) -> String {
     let (low, high) = inverted.range();
+    let (errors, rows) = expected(model);
+    let output = &model.names().output;
+    let unit = unit::suffix(unit::of_column(output).as_deref());
     format!(
-        "{}\nrows reached: {} of {}; drive from {:.4} to {:.4}\n",
+        "expected deviation of the specimen: {:.4}{unit} RMS, the error of the model on {rows}\n\n{}\nrows reached: {} of {}; drive from {:.4} to {:.4}\n",
+        Significant(errors.rmse),
         errors_table(&[("model driven", &inverted.errors)]),
         inverted.reached(),
         count(inverted.rows(), "row"),
@@ -251,12 +264,14 @@ struct Printed<'a> {
     drive_range: (f64, f64),
     /// How far the search looked ahead, for each record.
     previews: &'a [f64],
+    /// The expected deviation of the specimen: RMSE of the model on held-out rows, or else in training.
+    expected_rmse: f64,
     /// The output of the driven model against the wanted one.
     errors: &'a Errors,
 }
 
 impl<'a> Printed<'a> {
-    fn of(drive: &Path, report: Option<&'a Path>, inverted: &'a Inverted) -> Self {
+    fn of(model: &Model, drive: &Path, report: Option<&'a Path>, inverted: &'a Inverted) -> Self {
         Self {
             drive: drive.to_path_buf(),
             report,
@@ -267,6 +282,7 @@ impl<'a> Printed<'a> {
             extrapolated: inverted.extrapolated(),
             drive_range: inverted.range(),
             previews: &inverted.previews,
+            expected_rmse: expected(model).0.rmse,
             errors: &inverted.errors,
         }
     }

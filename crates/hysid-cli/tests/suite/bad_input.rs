@@ -124,7 +124,6 @@ fn values_that_nothing_can_be_learnt_from() {
             ("huge input", with_cell(4, 1, "1e200").into()),
             ("huge output", with_cell(4, 2, "-1e200").into()),
             ("tiny output", scaled(2, "e-200").into()),
-            ("tiny steps", scaled(0, "e-300").into()),
         ],
         r#"
         one row => : only 1 row has an output: at least 10 are needed
@@ -136,9 +135,14 @@ fn values_that_nothing_can_be_learnt_from() {
         huge input => , line 6, column "x": 1e200 is too large: at most 1e100 in magnitude (choose another unit)
         huge output => , line 6, column "y": -1e200 is too large: at most 1e100 in magnitude (choose another unit)
         tiny output => : column "y" is constant (-9.95e-201): there is nothing to identify
-        tiny steps => , line 2, column "t": the rate here is 1.50e300: the time step is too small (is the time column right?)
     "#,
     );
+    let bench = Workbench::new();
+    bench.put("steps.csv", scaled(0, "e-300"));
+    let ran = bench.run("fit steps.csv --model xpnn --rate backward");
+    let told = r#"line 3, column "t": the rate here is "#;
+    assert!(ran.status == Some(1) && ran.stderr.contains(told), "{}", ran.stderr);
+    assert!(ran.stderr.contains("the time step is too small (is the time column right?)"), "{}", ran.stderr);
 }
 
 #[test]

@@ -49,7 +49,7 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
     assert_narrow(&told.stdout);
     for words in [
         "\nchosen ensemble of 3 networks",
-        "\nwhy    cross-validation error (geometric mean over 3 folds",
+        "\nwhy    error on the rows held out (RMSE in % of std): ensemble",
         "auto with ",
     ] {
         assert!(told.stdout.contains(words), "{words}: {}", told.stdout);

@@ -16,7 +16,7 @@ const FITS: f64 = 1.3;
 
 /// What may be added to it for data of one loop, in percent of the standard deviation: how a candidate behaves inside the
 /// loop matters more than small errors on it. Designed.
-const SLACK_OF_ONE_LOOP: f64 = 2.0;
+const SLACK_OF_ONE_LOOP: f64 = 0.5;
 
 /// Held-out error of a candidate, relative to that of the ensemble, at which the candidate is preferred: the lowest of
 /// many errors is low by chance. Designed.
