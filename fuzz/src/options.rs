@@ -30,7 +30,8 @@ pub fn run(data: &[u8]) {
         Ok(chosen) => chosen,
         Err(error) => return assert_is_one_line(&error.to_string()),
     };
-    let rate = Some(RateMethod::Backward).filter(|_| data.len() % 2 == 0 && chosen.model().uses_rate());
+    let rate =
+        Some(RateMethod::Backward).filter(|_| data.len().is_multiple_of(2) && chosen.model().uses_rate());
     let request = chosen.request(rate, false);
     let data = fixtures::data();
     match memory_need(data, &request, 1).and_then(|need| need.check(MEMORY)) {

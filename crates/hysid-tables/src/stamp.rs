@@ -153,10 +153,7 @@ fn date_with_name(text: &str) -> Option<i64> {
     };
     let lower = month.to_lowercase();
     let is_named = |names: &&str| names.split(' ').any(|name| lower.starts_with(name));
-    let month = MONTHS
-        .iter()
-        .rposition(|names| is_named(&names))
-        .filter(|_| lower.chars().all(char::is_alphabetic))?;
+    let month = MONTHS.iter().rposition(is_named).filter(|_| lower.chars().all(char::is_alphabetic))?;
     let [first, second] = numbers[..] else { return None };
     let (day, year) = if first.len() == 4 { (second, first) } else { (first, second) };
     let year: i16 = year.parse().ok().filter(|_| matches!(year.len(), 2 | 4))?;

@@ -201,7 +201,7 @@ mod tests {
 
     fn seen(value: impl Fn(f64) -> f64, rows: u32) -> Seen {
         let values: Vec<f64> = (0..rows).map(|k| value(f64::from(k))).collect();
-        Seen::of(&values, &[0..values.len()])
+        Seen::of(&values, std::slice::from_ref(&(0..values.len())))
     }
 
     /// A sequence between -1 and 1 that turns as noise does.

@@ -43,7 +43,7 @@ impl Chosen<'_, '_, '_> {
         if self.options.only.is_some() {
             return Ok(());
         }
-        for step in 0..ABOUT_AS_GOOD.len() {
+        for (step, about_as_good) in ABOUT_AS_GOOD.into_iter().enumerate() {
             let Some(ensemble) = self.fitness_of_ensemble()? else { return Ok(()) };
             let all: Vec<Option<Fitness>> = self.trials.iter().map(|trial| self.fitness(trial)).collect();
             let least = |figure: fn(&Fitness) -> f64| {
@@ -61,7 +61,7 @@ impl Chosen<'_, '_, '_> {
                 && predicts.score < ensemble.score;
             let is_kept = |one: &Fitness| {
                 let fits_well = one.training <= most || step == 0 && one.score < fits.score;
-                let predicts_well = one.held_out <= ABOUT_AS_GOOD[step] * predicts.held_out;
+                let predicts_well = one.held_out <= about_as_good * predicts.held_out;
                 (!is_misfit || fits_well) && (!is_beaten || predicts_well)
             };
             let keeps: Vec<bool> = all.iter().map(|one| one.as_ref().is_some_and(is_kept)).collect();
