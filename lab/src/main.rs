@@ -12,6 +12,7 @@ mod origin;
 mod plan_battery;
 mod program;
 mod questions;
+mod residual_battery;
 mod rig;
 mod roles_battery;
 mod same_models;
@@ -66,6 +67,8 @@ enum Measurement {
     PlanBattery(plan_battery::Request),
     /// Measure the tables of docs/questions.md
     Questions(questions::Request),
+    /// Measure power and false alarms of the tests of the residual on planted dependences
+    ResidualBattery(residual_battery::Request),
     /// Count right, asked and wrong roles of columns under the headers of twelve fields
     ///
     /// Runs `hysid look` on tables with these headers; fails if a role is wrong.
@@ -120,6 +123,7 @@ fn run(measurement: &Measurement) -> Result<()> {
         Measurement::Growth(request) => growth::run(request),
         Measurement::PlanBattery(request) => plan_battery::run(request),
         Measurement::Questions(request) => questions::run(request),
+        Measurement::ResidualBattery(request) => residual_battery::run(request),
         Measurement::RolesBattery(request) => roles_battery::run(request),
         Measurement::SameModels(request) => same_models::run(request),
         Measurement::Soak(request) => soak::run(request),

@@ -223,8 +223,8 @@ impl Residuals {
             effective_rows: if effective_rows.is_finite() { effective_rows } else { n },
             correlation_lag: lag,
             whiteness: Whiteness::of(&residual),
-            inputs: input::correlations(&rows, &about_mean, names, lag),
-            places: place::places(&rows, lag),
+            inputs: input::correlations(&rows, &about_mean, names),
+            places: place::places(&rows),
             caution: None,
             findings: Vec::new(),
         };

@@ -3,12 +3,15 @@
 //! ```text
 //! r_k = Σ_t (x_{t-k} - x̄)(e_t - ē) / (n s_x s_e)                               theory.md (13.6)
 //! t_k = T_k/√V_kk,   T_k = Σ_t (x_{t-k} - x̄)(e_t - ē)                          theory.md (13.7)
+//! u_t = e_t - ē - b (x_{t-m} - x̄),   m the lag of the largest |r_k|            theory.md (13.13)
 //! ```
 //!
-//! `V` is the covariance of the sums `T_k` (theory.md (13.1)), which contains the autocorrelation of both, as the
-//! formula of Bartlett (1946) does, and holds where the size of the residual depends on the input too. The p-value is
-//! that of the largest `|t_k|` among t-distributed numbers with the correlations of `V`, by simulation with a fixed
-//! seed.
+//! `V` is the covariance (theory.md (13.1)) that the sums `T_k` have by chance. It is that of the products of the input
+//! with the remainder `u`, which least squares leave beside the strongest correlation: the correlated part itself must
+//! not count as scatter, or a residual that is nothing but a multiple of the input would not be found. `V` contains the
+//! autocorrelation of both, as the formula of Bartlett (1946) does, and holds where the size of the residual depends on
+//! the input too. The p-value is that of the largest `|t_k|` among t-distributed numbers with the correlations of `V`,
+//! by simulation with a fixed seed. The input's past contains its rate, so that the rate is tested in the same row only.
 
 use hysid_core::data::record::ColumnNames;
 use hysid_core::linear_algebra::Symmetric;
@@ -17,7 +20,7 @@ use serde::Serialize;
 
 use super::rows::Rows;
 use crate::distribution::{t_quantile, t_tail};
-use crate::serial::SerialSum;
+use crate::serial::{SerialSum, correlation_lag};
 
 /// Lags in rows. They grow as the Fibonacci numbers: neighbouring lags of a smooth input tell the same.
 const LAGS: [usize; 15] = [0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610];
@@ -46,17 +49,13 @@ pub struct InputCorrelation {
     pub bounds: Vec<f64>,
     /// Number of independent rows that would have this bound, at each lag.
     pub effective_rows: Vec<f64>,
-    /// Probability of a larger t-value at any of the lags, for a residual that is not related to the input.
+    /// Probability of a larger t-value at any of the lags, of a rate in the same row, for a residual that is not related
+    /// to it.
     pub p_value: f64,
 }
 
 /// Correlations with each input that varies, and with the rate of the first.
-pub(super) fn correlations(
-    rows: &Rows,
-    residual: &[Vec<f64>],
-    names: &ColumnNames,
-    lag: usize,
-) -> Vec<InputCorrelation> {
+pub(super) fn correlations(rows: &Rows, residual: &[Vec<f64>], names: &ColumnNames) -> Vec<InputCorrelation> {
     let input =
         |index: usize| -> Vec<&[f64]> { rows.inputs.iter().map(|inputs| inputs[index].as_slice()).collect() };
     let rate: Vec<Vec<f64>> =
@@ -64,8 +63,8 @@ pub(super) fn correlations(
     let rate: Vec<&[f64]> = rate.iter().map(Vec::as_slice).collect();
     let named = names.inputs.iter().enumerate().take(MOST_INPUTS);
     let mut found: Vec<InputCorrelation> =
-        named.filter_map(|(index, name)| correlation(name, false, &input(index), residual, lag)).collect();
-    found.extend(correlation(&names.inputs[0], true, &rate, residual, lag));
+        named.filter_map(|(index, name)| correlation(name, false, &input(index), residual)).collect();
+    found.extend(correlation(&names.inputs[0], true, &rate, residual));
     found
 }
 
@@ -75,7 +74,6 @@ fn correlation(
     of_rate: bool,
     column: &[&[f64]],
     residual: &[Vec<f64>],
-    lag: usize,
 ) -> Option<InputCorrelation> {
     let rows: usize = residual.iter().map(Vec::len).sum();
     let n = rows as f64;
@@ -92,10 +90,8 @@ fn correlation(
         2 * with >= rows && **lag as f64 <= LONGEST_LAG * n
     };
     let lags: Vec<usize> = LAGS.iter().take_while(has_past).copied().collect();
-    let products: Vec<Vec<f64>> = residual
-        .iter()
-        .zip(column)
-        .map(|(residual, x)| {
+    let products = |residual: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let of_record = |(residual, x): (&Vec<f64>, &&[f64])| {
             let of_row = |(row, e): (usize, &f64)| {
                 let product = move |&lag: &usize| {
                     row.checked_sub(lag).map_or(0.0, |past| e / scatter * (x[past] - mean) / deviation)
@@ -103,28 +99,68 @@ fn correlation(
                 lags.iter().map(product).collect::<Vec<f64>>()
             };
             residual.iter().enumerate().flat_map(of_row).collect()
-        })
-        .collect();
-    let sums = SerialSum::of(&products, lags.len(), lag, 1);
+        };
+        residual.iter().zip(column).map(of_record).collect()
+    };
+    let mut sum = vec![0.0; lags.len()];
+    for row in products(residual).iter().flat_map(|record| record.chunks_exact(lags.len())) {
+        sum.iter_mut().zip(row).for_each(|(sum, product)| *sum += product);
+    }
+    // What is left beside the strongest correlation is what can make one by chance.
+    let strongest = (0..lags.len()).max_by(|&a, &b| sum[a].abs().total_cmp(&sum[b].abs())).unwrap_or(0);
+    let left = without(residual, column, mean, lags[strongest]);
+    let lag = correlation_lag(&left);
+    let mut products = products(&left);
+    centre(&mut products, lags.len());
+    let sums = SerialSum::of(&products, lags.len(), lag, 2);
     let spread = |k: usize| sums.covariance.diagonal(k).sqrt();
     let quantile = t_quantile(0.05, sums.degrees);
-    let t: Vec<f64> = (0..lags.len())
-        .map(|k| if spread(k) > 0.0 { (sums.sum[k] / spread(k)).abs() } else { 0.0 })
-        .collect();
+    // Without anything left there is no doubt.
+    let t = |k: usize| match (sum[k].abs() / spread(k), sum[k] == 0.0) {
+        (_, true) => 0.0,
+        (t, false) => t,
+    };
+    // The past of the input is in its rate: only the rate in the same row is not the input's.
+    let tested = if of_rate { 1 } else { lags.len() };
+    let largest = (0..tested).map(t).fold(0.0, f64::max);
     Some(InputCorrelation {
         input: input.into(),
         of_rate,
-        correlation: sums.sum.iter().map(|sum| sum / n).collect(),
+        correlation: sum.iter().map(|sum| sum / n).collect(),
         bounds: (0..lags.len()).map(|k| quantile * spread(k) / n).collect(),
         effective_rows: (0..lags.len()).map(|k| (n * n / sums.covariance.diagonal(k)).min(n)).collect(),
-        p_value: tail_of_largest(
-            &sums.covariance,
-            lags.len(),
-            sums.degrees,
-            t.into_iter().fold(0.0, f64::max),
-        ),
+        p_value: tail_of_largest(&sums.covariance, tested, sums.degrees, largest),
         lags,
     })
+}
+
+/// The residual without what is proportional to a column so many rows before.
+fn without(residual: &[Vec<f64>], column: &[&[f64]], mean: f64, lag: usize) -> Vec<Vec<f64>> {
+    let past = |x: &[f64], row: usize| if row < lag { 0.0 } else { x[row - lag] - mean };
+    let (mut product, mut square) = (0.0, 0.0);
+    for (residual, x) in residual.iter().zip(column) {
+        for (row, e) in residual.iter().enumerate() {
+            product += e * past(x, row);
+            square += past(x, row) * past(x, row);
+        }
+    }
+    let slope = if square > 0.0 { product / square } else { 0.0 };
+    let of_record = |(residual, x): (&Vec<f64>, &&[f64])| {
+        residual.iter().enumerate().map(|(row, e)| e - slope * past(x, row)).collect()
+    };
+    residual.iter().zip(column).map(of_record).collect()
+}
+
+/// Takes its mean out of each component.
+fn centre(records: &mut [Vec<f64>], width: usize) {
+    let mut means = vec![0.0; width];
+    let rows: usize = records.iter().map(|record| record.len() / width).sum();
+    for row in records.iter().flat_map(|record| record.chunks_exact(width)) {
+        means.iter_mut().zip(row).for_each(|(mean, value)| *mean += value / rows as f64);
+    }
+    for row in records.iter_mut().flat_map(|record| record.chunks_exact_mut(width)) {
+        row.iter_mut().zip(&means).for_each(|(value, mean)| *value -= mean);
+    }
 }
 
 /// The probability that the largest magnitude of t-distributed numbers with these covariances exceeds `t`.

@@ -63,12 +63,12 @@ pub struct Group {
 }
 
 /// All places, in the order of [`ResidualTest`].
-pub(super) fn places(rows: &Rows, lag: usize) -> Vec<Place> {
+pub(super) fn places(rows: &Rows) -> Vec<Place> {
     let divided = |test, names: &[&str], group: &dyn Fn(&Row) -> Option<usize>| {
-        compared(test, names.iter().map(|name| ((*name).to_string(), None)).collect(), rows, lag, group)
+        compared(test, names.iter().map(|name| ((*name).to_string(), None)).collect(), rows, group)
     };
     let after = format!("first {:.0} % of the way after a turning point", 100.0 * AFTER_A_TURN);
-    let classes = |test, names, what, quantity| classes(test, names, what, rows, lag, quantity);
+    let classes = |test, names, what, quantity| classes(test, names, what, rows, quantity);
     let mut by_speed =
         classes(ResidualTest::Speed, ["slow", "medium", "fast"], "the speed of the input", |row| {
             row.rate.abs()
@@ -118,7 +118,6 @@ fn classes(
     names: [&str; 3],
     what: &str,
     rows: &Rows,
-    lag: usize,
     quantity: fn(&Row) -> f64,
 ) -> Place {
     let mut values: Vec<f64> = rows.records.iter().flatten().map(quantity).collect();
@@ -135,7 +134,7 @@ fn classes(
     let ends = [values[0], limits[0], limits[1], largest];
     let named = names.iter().zip(ends.windows(2));
     let groups = named.map(|(name, ends)| ((*name).to_string(), Some((ends[0], ends[1])))).collect();
-    compared(test, groups, rows, lag, &|row| Some(class(row)))
+    compared(test, groups, rows, &|row| Some(class(row)))
 }
 
 fn untestable(test: ResidualTest, why: String) -> Place {
@@ -157,7 +156,6 @@ fn compared(
     test: ResidualTest,
     names: Vec<Named>,
     rows: &Rows,
-    lag: usize,
     group: &dyn Fn(&Row) -> Option<usize>,
 ) -> Place {
     let count = names.len();
@@ -188,10 +186,7 @@ fn compared(
         };
         return untestable(test, why);
     }
-    let size_lag = lag.max(correlation_lag(&size.about));
-    let (Some(bias_p_value), Some(size_p_value)) =
-        (bias.p_value(&groups, lag), size.p_value(&groups, size_lag))
-    else {
+    let (Some(bias_p_value), Some(size_p_value)) = (bias.p_value(&groups), size.p_value(&groups)) else {
         return untestable(
             test,
             "the residual is correlated over so many rows that too few independent ones are left".into(),
@@ -238,7 +233,7 @@ impl Means {
     }
 
     /// The probability of means as different; `None` if too few rows are independent.
-    fn p_value(&self, groups: &[Vec<Option<usize>>], lag: usize) -> Option<f64> {
+    fn p_value(&self, groups: &[Vec<Option<usize>>]) -> Option<f64> {
         let kept: Vec<usize> = (0..self.rows.len()).filter(|&group| self.rows[group] > 0).collect();
         let width = kept.len();
         let scores: Vec<Vec<f64>> = self
@@ -255,7 +250,7 @@ impl Means {
                 scores
             })
             .collect();
-        let sums = SerialSum::of(&scores, width, lag, width);
+        let sums = SerialSum::of(&scores, width, correlation_lag(&self.about), width);
         let q = width - 1;
         let degrees = sums.degrees - q as f64 + 1.0;
         if degrees < FEWEST_DEGREES {

@@ -119,6 +119,47 @@ fn known_structure_is_found_and_named() {
     assert!(found_share(ResidualTest::Distance, |row, x| grows(row, x, 2.5)) > 0.9);
 }
 
+/// What follows from the input is found however small the noise beside it, also in four cycles of one sine; it is found
+/// by the test of its name only where the drive tells both apart.
+#[test]
+fn structure_without_noise_is_found_too() {
+    let sine: Vec<f64> = (0..1200).map(|row| (std::f64::consts::TAU * row as f64 / 300.0).sin()).collect();
+    for x in [input(ROWS), sine] {
+        for noise_size in [0.0, 0.001, 0.1, 1.0] {
+            let beside = |part: &dyn Fn(usize) -> f64| -> Residuals {
+                let noise = noise(31, x.len());
+                let residual: Vec<f64> =
+                    (0..x.len()).map(|row| part(row) + noise_size * noise[row]).collect();
+                tested(&x, &residual)
+            };
+            let of_rate = beside(&|row| 20.0 * rate(row, &x));
+            assert!(of_rate.is_found(ResidualTest::Rate), "{noise_size}: {:?}", of_rate.findings);
+            let of_input = beside(&|row| x[row]);
+            assert!(of_input.is_found(ResidualTest::Input), "{noise_size}: {:?}", of_input.findings);
+            assert!(!of_input.is_found(ResidualTest::Rate), "{noise_size}: {:?}", of_input.findings);
+        }
+    }
+}
+
+/// The advice is about what the data can show: of one speed a rate is not advised, and a sign of the direction is no rate.
+#[test]
+fn advice_is_of_what_was_planted() {
+    let advice = |x: &[f64], uses_rate: bool, part: &dyn Fn(usize) -> f64| {
+        let residual: Vec<f64> =
+            noise(7, x.len()).iter().enumerate().map(|(row, e)| part(row) + 0.1 * e).collect();
+        let data = Dataset::from_slices(x, &residual).unwrap();
+        let options = ResidualOptions { uses_rate, ..ResidualOptions::default() };
+        let found = Residuals::of(&data, &[vec![0.0; x.len()]], &options).unwrap();
+        found.findings.into_iter().find(|finding| finding.test == ResidualTest::Rate).unwrap().advice.unwrap()
+    };
+    let several = input(ROWS);
+    let one: Vec<f64> = (0..1200).map(|row| (std::f64::consts::TAU * row as f64 / 300.0).sin()).collect();
+    assert!(advice(&several, false, &|row| 20.0 * rate(row, &several)).contains("give the model the rate"));
+    assert!(advice(&several, true, &|row| 20.0 * rate(row, &several)).contains("too strong, too weak"));
+    assert!(advice(&several, false, &|row| rate(row, &several).signum()).contains("too wide or too narrow"));
+    assert!(advice(&one, true, &|row| 20.0 * rate(row, &one)).contains("measure at a second speed"));
+}
+
 /// An error only after reversals: the factor that is stated is the one that was made.
 #[test]
 fn an_error_after_reversals_is_found_with_its_factor() {

@@ -15,6 +15,11 @@ const SMALL_SHARE: f64 = 0.1;
 /// With fewer independent rows only large differences are found.
 const FEW_ROWS: f64 = 50.0;
 
+/// Advice where the residual of a model with a rate depends on the rate.
+const OTHER_RATE_DEPENDENCE: &str = "The rate dependence of the model is not that of the data: too strong, too weak or of \
+    another form. Compare it on held-out data with a model without the rate and with one with relaxation neurons (xpnn+), \
+    and check for a delay between the channels (diagnose the data).";
+
 /// What limits all tests.
 pub(super) fn caution(residuals: &Residuals, options: &ResidualOptions) -> Option<String> {
     let Residuals { rows, effective_rows, .. } = *residuals;
@@ -159,9 +164,10 @@ impl Teller<'_> {
         let input = &self.residuals.inputs[at];
         let (name, _) = hysid_core::data::unit::split(&input.input);
         let what = if input.of_rate { format!("the rate of {name}") } else { name.to_string() };
-        // The lag that decides is the one furthest beyond its bound.
+        // The lag that decides is the one furthest beyond its bound; of a rate it is the same row.
         let beyond = |k: &usize| input.correlation[*k].abs() / input.bounds[*k].max(f64::MIN_POSITIVE);
-        let at = (0..input.lags.len()).max_by(|a, b| beyond(a).total_cmp(&beyond(b))).unwrap_or(0);
+        let tested = if input.of_rate { 1 } else { input.lags.len() };
+        let at = (0..tested).max_by(|a, b| beyond(a).total_cmp(&beyond(b))).unwrap_or(0);
         let (lag, r) = (input.lags[at], input.correlation[at]);
         let when = match lag {
             0 => "in the same row".to_string(),
@@ -176,16 +182,9 @@ impl Teller<'_> {
             ),
             false => format!("No correlation of the residual with {what} was found ({}).", words(p)),
         };
-        let advice = match (input.of_rate, self.options.uses_rate) {
-            (true, false) => {
-                "The residual depends on the rate: give the model the rate of the input (option rate), or a law that \
-                 uses it, or check for a delay between the channels (diagnose the data)."
-            }
-            (true, true) => {
-                "The model uses the rate, but not enough of it: check for a delay between the channels (diagnose the \
-                 data), or use a model with relaxation neurons."
-            }
-            (false, _) => {
+        let advice = match input.of_rate {
+            true => self.advice_of_rate(r),
+            false => {
                 "A larger model, or one with more memory, can represent this: more operators or neurons, or the default \
                  model (auto)."
             }
@@ -193,6 +192,43 @@ impl Teller<'_> {
         let test = if input.of_rate { ResidualTest::Rate } else { ResidualTest::Input };
         let input = (test == ResidualTest::Input).then(|| input.input.clone());
         Told { test, input, statement, advice: Some(advice) }
+    }
+
+    /// What helps against a correlation `r` with the rate in the same row.
+    fn advice_of_rate(&self, r: f64) -> &'static str {
+        if self.is_of_one_speed() {
+            return "All half cycles have about the same speed, so that a dependence on the rate, loops of a wrong width and a \
+                    delay between the channels look the same: check for a delay (diagnose the data), and measure at a second \
+                    speed before you give the model the rate.";
+        }
+        if self.share_of_direction() > r * r {
+            return "The residual follows the direction of the input more closely than its rate: the simulated loops are too \
+                    wide or too narrow; see the finding by direction.";
+        }
+        if self.options.uses_rate {
+            return OTHER_RATE_DEPENDENCE;
+        }
+        "The residual depends on the rate: give the model the rate of the input (option rate), or a law that uses it, or \
+         check for a delay between the channels (diagnose the data)."
+    }
+
+    fn place_of(&self, test: ResidualTest) -> Option<&Place> {
+        self.residuals.places.iter().find(|place| place.test == test)
+    }
+
+    /// True if speed and place in the half cycle cannot be told apart.
+    fn is_of_one_speed(&self) -> bool {
+        self.place_of(ResidualTest::Speed)
+            .is_none_or(|place| place.caution.is_some() || place.not_testable.is_some())
+    }
+
+    /// Share of the variance that the means of rising and falling rows explain.
+    fn share_of_direction(&self) -> f64 {
+        let Residuals { rows, rms, bias, .. } = *self.residuals;
+        let groups = self.place_of(ResidualTest::Direction).map_or(&[][..], |place| &place.groups);
+        let explained =
+            groups.iter().map(|group| group.rows as f64 * (group.bias - bias).powi(2)).sum::<f64>();
+        explained / (rows as f64 * (rms * rms - bias * bias)).max(f64::MIN_POSITIVE)
     }
 
     fn place(&self, place: &Place, p: Option<f64>) -> Told {
@@ -269,10 +305,10 @@ impl Teller<'_> {
                 "The model does not follow the output after reversals: use a model with more memory (more operators or \
                  neurons, or the default model, auto), and check for a delay between the channels (diagnose the data)."
             }
-            ResidualTest::Speed if self.options.uses_rate => {
-                "The model uses the rate, but not enough of it: train on data of all speeds, or use a model with \
-                 relaxation neurons."
+            ResidualTest::Speed if self.is_of_one_speed() => {
+                "Whether the speed or the place in the half cycle matters, these data do not tell: measure at a second speed."
             }
+            ResidualTest::Speed if self.options.uses_rate => OTHER_RATE_DEPENDENCE,
             ResidualTest::Speed => {
                 "Rate-dependent residual: give the model the rate of the input (option rate), or a law that uses it."
             }
