@@ -28,6 +28,11 @@ pub enum Property {
     Deterioration,
     /// After a period of the input the output has its earlier value.
     LoopClosure,
+    /// The force at the tips of cycles falls with the amplitude, or from one cycle to the next. Only measured forces are
+    /// asked.
+    StrengthLoss,
+    /// Near zero load the stiffness is low, and grows again on the way to the tip. Only measured forces are asked.
+    Pinching,
     /// After any past, each output that can be reached in one step belongs to one input. Only a model can be asked: no
     /// record holds several next inputs after one past.
     Invertible,
@@ -35,7 +40,7 @@ pub enum Property {
 
 impl Property {
     /// The properties of data and of models, in the order in which they are reported. [`Property::Invertible`], of models
-    /// only, follows them.
+    /// only, follows them, and [`Property::StrengthLoss`] and [`Property::Pinching`] of measured members.
     pub const ALL: [Self; 10] = [
         Self::StaticHysteresis,
         Self::Orientation,
@@ -62,6 +67,8 @@ impl Property {
             Self::Saturation => "saturation",
             Self::Deterioration => "deterioration",
             Self::LoopClosure => "loop-closure",
+            Self::StrengthLoss => "strength-loss",
+            Self::Pinching => "pinching",
             Self::Invertible => "invertible",
         }
     }

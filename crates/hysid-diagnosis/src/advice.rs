@@ -40,6 +40,8 @@ struct Found {
     masing: Verdict,
     odd_symmetry: Verdict,
     deterioration: Verdict,
+    strength_loss: bool,
+    pinching: bool,
 }
 
 impl Found {
@@ -56,7 +58,14 @@ impl Found {
             masing: verdict(Property::Masing),
             odd_symmetry: verdict(Property::OddSymmetry),
             deterioration: verdict(Property::Deterioration),
+            strength_loss: verdict(Property::StrengthLoss) == Verdict::Yes,
+            pinching: verdict(Property::Pinching) == Verdict::Yes,
         }
+    }
+
+    /// True if the model must lose strength, by repetition or with the amplitude.
+    fn degrades(&self) -> bool {
+        self.deterioration == Verdict::Yes || self.strength_loss
     }
 
     /// True if the output follows the input alone.
@@ -76,6 +85,13 @@ pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>) -> Advice {
         None => reason.to_string(),
     }];
     statement.extend(law(&found).map(String::from));
+    if model.is_some() {
+        statement.push(
+            "how well it fits is not known before its error on held-out data was seen: fit the default, which cross-validates \
+             many models, and compare them (command compare)"
+                .into(),
+        );
+    }
     if let Some(delay) = delay {
         let shift = Significant(delay.time.abs());
         statement.push(format!(
@@ -89,7 +105,7 @@ pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>) -> Advice {
     Advice {
         model,
         needs_rate: found.rate_dependence,
-        needs_deterioration: found.deterioration,
+        needs_deterioration: if found.degrades() { Verdict::Yes } else { found.deterioration },
         needs_asymmetry: match found.odd_symmetry {
             Verdict::Yes => Verdict::No,
             Verdict::No => Verdict::Yes,
@@ -120,10 +136,16 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
                       fades with time (creep, relaxation), use xpnn+";
         return (network(Family::Xpnn), reason);
     }
-    if found.deterioration == Yes {
-        return match found.odd_symmetry {
-            No => (network(Family::Xpnn), "loops shrink when they are repeated, and are not symmetric"),
-            _ => (network(Family::Gpnn), "loops shrink when they are repeated"),
+    if found.degrades() {
+        return match (found.deterioration, found.odd_symmetry) {
+            (Yes, No) => {
+                (network(Family::Xpnn), "loops shrink when they are repeated, and are not symmetric")
+            }
+            (Yes, _) => (network(Family::Gpnn), "loops shrink when they are repeated"),
+            (_, No) => {
+                (network(Family::Xpnn), "strength is lost with the amplitude, and loops are not symmetric")
+            }
+            _ => (network(Family::Gpnn), "strength is lost with the amplitude"),
         };
     }
     if found.wiping_out == No {
@@ -155,7 +177,7 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
         "all branches are one curve, scaled, so a weighted sum of plays is enough (as a network: pnn)"
     } else {
         "these data show no property that a weighted sum of plays cannot represent, but they do not show that it is \
-         enough; compare it with more general models on data that were not used for the fit (command compare)"
+         enough"
     };
     (rival(ClassicalModel::PrandtlIshlinskii), reason)
 }
@@ -166,10 +188,15 @@ fn law(found: &Found) -> Option<&'static str> {
     if found.is_a_function() {
         return None;
     }
-    if found.deterioration == Verdict::Yes {
+    if found.degrades() {
         return Some(
             "with fewer parameters, if its shape fits: bouc-wen with the option degradation (stiffness and strength that \
              degrade, pinching), or peak-oriented with it (members and joints); compare fits every law in all its variants",
+        );
+    }
+    if found.pinching {
+        return Some(
+            "with fewer parameters, if its shape fits: peak-oriented (members and joints, pinched or full)",
         );
     }
     (found.rate_dependence == Verdict::Yes).then_some(
@@ -191,8 +218,8 @@ fn assumptions(found: &Found) -> Vec<String> {
     if found.rate_dependence == Verdict::Yes {
         return assumed;
     }
-    assume(found.deterioration, "deterioration (assumed: none)");
-    if found.deterioration != Verdict::Yes {
+    assume(found.deterioration, "deterioration by repetition (assumed: none)");
+    if !found.degrades() {
         assume(found.wiping_out, "wiping-out (assumed: yes)");
         if found.wiping_out != Verdict::No {
             assume(found.congruency, "congruency (assumed: yes; if not: preisach-nn)");
@@ -204,7 +231,7 @@ fn assumptions(found: &Found) -> Vec<String> {
             assume(found.masing, "Masing's rule (assumed: yes; if not: preisach)");
         }
     }
-    let relies_on_symmetry = found.deterioration == Verdict::Yes
+    let relies_on_symmetry = found.degrades()
         || found.wiping_out != Verdict::No && found.congruency != Verdict::No && found.masing != Verdict::No;
     if relies_on_symmetry {
         assume(found.odd_symmetry, "symmetry (assumed: yes)");
@@ -249,7 +276,7 @@ mod tests {
         let statement = |verdicts| advise(&findings(verdicts), None).statement.concat();
         assert!(statement([Yes, No, No, No, No, Yes, Yes]).contains("bouc-wen with the option degradation"));
         assert!(statement([Yes, Yes, Yes, Yes, Yes, Yes, No]).contains("rate-dependent-prandtl-ishlinskii"));
-        assert!(!statement([Yes, No, Yes, Yes, Yes, Yes, No]).contains("compare"));
+        assert!(!statement([Yes, No, Yes, Yes, Yes, Yes, No]).contains("fewer parameters"));
     }
 
     #[test]
@@ -278,8 +305,8 @@ mod tests {
     fn what_is_not_testable_is_said_to_be_assumed() {
         let advice = advise(&findings([NotTestable; 7]), None);
         assert_eq!(name(&advice), Some("prandtl-ishlinskii"));
-        assert_eq!(advice.statement.len(), 8, "{:?}", advice.statement);
-        assert!(advice.statement[1..].iter().all(|text| text.starts_with("not testable with these data: ")));
+        assert_eq!(advice.statement.len(), 9, "{:?}", advice.statement);
+        assert!(advice.statement[2..].iter().all(|text| text.starts_with("not testable with these data: ")));
         assert_eq!(advice.needs_rate, NotTestable);
         assert!(advice.statement[0].contains("do not show that it is enough"), "{:?}", advice.statement);
         // What would not change the model is not mentioned.

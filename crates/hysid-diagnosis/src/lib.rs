@@ -32,6 +32,7 @@ pub mod model;
 mod noise;
 mod odd_symmetry;
 mod orientation;
+mod pinching;
 mod rate_dependence;
 pub mod residuals;
 pub mod resonance;
@@ -41,6 +42,7 @@ pub mod serial;
 pub mod significance;
 mod smoothing;
 mod static_hysteresis;
+mod strength_loss;
 mod wiping_out;
 
 use std::fmt;
@@ -49,6 +51,7 @@ use serde::Serialize;
 
 pub use advice::Advice;
 pub(crate) use cycles::Cycle;
+use cycles::Field;
 pub use cycles::{BackbonePoint, CycleOptions, CycleTable};
 pub use doctor::{DataIssue, DataIssueKind, Severity, before_a_fit};
 use hysid_core::data::record::{Dataset, Record};
@@ -205,7 +208,8 @@ pub struct PictureCurve {
 /// Everything that the data say about their hysteresis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Diagnosis {
-    /// The properties, in the order of [`Property::ALL`].
+    /// The properties, in the order of [`Property::ALL`]; of members [`Property::StrengthLoss`] and
+    /// [`Property::Pinching`] follow.
     pub properties: Vec<Finding>,
     /// Standard deviation of the noise of the output, in its unit.
     pub output_noise: f64,
@@ -280,6 +284,15 @@ impl Diagnosis {
                 _ => loop_closure::test(corrected, &cycles::cycles(corrected), may_fade),
             });
         let table = CycleTable::of(data, &options.of_cycles())?;
+        let is_member = match table.field {
+            Field::Structure => true,
+            field => field.has_structures() && properties[1].verdict == Verdict::Yes,
+        };
+        if is_member {
+            let rate = properties[2].verdict;
+            properties.push(strength_loss::test(survey, &table.cycles, rate));
+            properties.push(pinching::test(survey, &table.cycles));
+        }
         let turning_rows = survey.turning_rows();
         Ok(Self {
             doctor: doctor::examine(&measured, (&cycles, &table), &properties, delay.as_ref(), &explanations),

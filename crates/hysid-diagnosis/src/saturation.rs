@@ -88,7 +88,7 @@ fn end(survey: &BranchSet, rising: bool) -> Option<Finding> {
         comparisons: comparisons.len(),
         statement,
         experiment: (verdict == Verdict::NotTestable)
-            .then(|| format!("measure with less noise; {EXPERIMENT}")),
+            .then(|| format!("measure with less noise, or repeat and average; {EXPERIMENT}")),
         evidence: comparisons.iter().map(|c| Evidence { index: c.index, pieces: c.pieces.clone() }).collect(),
         picture: Some(loops(comparisons[0].curves.clone())),
     })

@@ -41,6 +41,15 @@ const SHRINKS: f64 = 0.97;
 /// Loops that grow with a power of the speed below this one are not those of a relaxation.
 const SLOW_GROWTH: f64 = 0.5;
 
+/// A lag explains no loops whose widths ask for lags that differ by this factor.
+const UNLIKE_A_LAG: f64 = 2.0;
+
+/// Loops over less than this share of the widest say nothing about a lag.
+const SMALL_SWING: f64 = 0.2;
+
+/// Loops that are fuller than so many times what noise leaves say something about it.
+const CLEAR: f64 = 10.0;
+
 const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten times slower than the fastest";
 
 /// Tests whether loops remain at speed 0. At a single speed, `longest_lag` is the time by which the output may be
@@ -132,6 +141,13 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
                      explains"
             ),
         )
+    } else if !may_be_a_lag(survey, noise) {
+        (
+            Verdict::Yes,
+            format!(
+                "loops fill {percent:.0} % of their bounding box; a lag that explains some of them does not explain others"
+            ),
+        )
     } else if slowest.is_some() {
         (
             Verdict::NotTestable,
@@ -175,6 +191,20 @@ fn lag_of_few_rows(rows: usize) -> f64 {
     2.0 * FEW_ROWS / (0.5 * rows as f64)
 }
 
+/// True if one lag may explain all loops: the rows by which the output would be late are then the same for all of them,
+/// whatever their amplitude, within a factor that also allows for the shape of the curve.
+fn may_be_a_lag(survey: &BranchSet, noise: f64) -> bool {
+    let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
+    let lag = |opening: &Opening| {
+        let rows = opening.rows(survey) as f64;
+        let is_clear = opening.swing > SMALL_SWING * widest && opening.fullness() > FULL.max(CLEAR * noise);
+        is_clear.then_some(0.25 * opening.fullness() * rows)
+    };
+    let lags = || survey.openings.iter().filter_map(lag);
+    let (least, most) = (lags().fold(f64::INFINITY, f64::min), lags().fold(0.0, f64::max));
+    most < UNLIKE_A_LAG * least
+}
+
 /// [`test`] for a measured record: withholds a "yes" if a law without loops at speed 0 also explains the record.
 pub(crate) fn test_of_measured(
     survey: &BranchSet,
@@ -208,4 +238,30 @@ fn growth_is_known(large: &[&Opening]) -> bool {
     let grows = groups.windows(2).all(|pair| mean(&pair[1].1) >= SHRINKS * mean(&pair[0].1));
     let power = |a: &(f64, Vec<f64>), b: &(f64, Vec<f64>)| (mean(&b.1) / mean(&a.1)).ln() / (b.0 / a.0).ln();
     groups.len() >= SPEEDS && grows && power(&groups[0], &groups[1]) < SLOW_GROWTH
+}
+
+#[cfg(test)]
+mod tests {
+    use hysid_core::data::record::Dataset;
+    use hysid_core::operator::{Operator, Play};
+
+    use crate::{Diagnosis, DiagnosisOptions, Property, Verdict};
+
+    /// A narrow magnet on cycles of three amplitudes, 200 rows each: one lag does not explain the loops of all of them; a
+    /// function of the input that is read three rows late is explained by one.
+    #[test]
+    fn loops_that_no_single_lag_explains_are_static() {
+        let x: Vec<f64> = (0..1200)
+            .map(|row| [0.3, 0.6, 1.0][row / 400] * (std::f64::consts::TAU * row as f64 / 200.0).sin())
+            .collect();
+        let play = Play::new(0.05).unwrap().run(&x);
+        let magnet: Vec<f64> = play.iter().map(|x| (2.0 * x).tanh()).collect();
+        let late: Vec<f64> = (0..1200).map(|row: usize| (2.0 * x[row.saturating_sub(3)]).tanh()).collect();
+        for (y, expected) in [(magnet, Verdict::Yes), (late, Verdict::NotTestable)] {
+            let data = Dataset::from_slices(&x, &y).unwrap();
+            let diagnosis = Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap();
+            let finding = diagnosis.finding(Property::StaticHysteresis);
+            assert_eq!(finding.verdict, expected, "{}", finding.statement);
+        }
+    }
 }

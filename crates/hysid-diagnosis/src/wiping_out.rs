@@ -87,6 +87,10 @@ pub(super) fn loops(curves: Vec<super::PictureCurve>) -> Picture {
     Picture { x_label: String::new(), y_label: String::new(), curves }
 }
 
+/// Experiment where a model leaves a doubt: its own probes have no noise.
+pub(super) const OF_A_MODEL: &str =
+    "diagnose the data of the fit, or fit the model to a record with loops over a larger range of the input";
+
 impl BranchSet<'_> {
     /// A finding from comparisons of branches.
     pub(super) fn finding(
@@ -110,8 +114,10 @@ impl BranchSet<'_> {
             noise: Some(judgement.noise),
             comparisons: judgement.count,
             statement,
-            experiment: (judgement.verdict == Verdict::NotTestable)
-                .then(|| format!("measure with less noise, or repeat and average; {experiment}")),
+            experiment: (judgement.verdict == Verdict::NotTestable).then(|| match self.turns_on_rows {
+                true => OF_A_MODEL.into(),
+                false => format!("measure with less noise, or repeat and average; {experiment}"),
+            }),
             evidence: evidence.collect(),
             picture: Some(loops(comparisons[judgement.order[0]].curves.clone())),
         }

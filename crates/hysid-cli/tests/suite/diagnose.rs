@@ -113,8 +113,8 @@ fn the_doctor_speaks_and_the_advice_can_be_followed() {
         "{ran}"
     );
     let next = ran.stdout.lines().find(|line| line.starts_with("  hysid fit ")).unwrap();
-    assert_eq!(next, "  hysid fit 'a joint.csv' --input 'the way, mm' --model gpnn");
-    let fitted = bench.shell(&format!("{next} --starts 1 --epochs 1 --no-report"));
+    assert_eq!(next, "  hysid fit 'a joint.csv' --input 'the way, mm'");
+    let fitted = bench.shell(&format!("{next} --model gpnn --starts 1 --epochs 1 --no-report"));
     assert_eq!(fitted.status, Some(0), "{}", fitted.stderr);
 }
 

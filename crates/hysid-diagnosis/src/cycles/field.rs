@@ -45,7 +45,7 @@ impl Field {
     }
 
     /// True if the figures of structures are read.
-    pub(super) fn has_structures(self) -> bool {
+    pub(crate) fn has_structures(self) -> bool {
         matches!(self, Self::Structure | Self::General)
     }
 

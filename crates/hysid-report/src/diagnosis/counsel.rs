@@ -34,8 +34,7 @@ fn severity(complaint: &DataIssue) -> &'static str {
 pub fn advice_text(advice: &Advice, fit: &str) -> String {
     let said: String = advice.statement.iter().map(|line| indented(&sentence(line), INDENT)).collect();
     let needs = indented(&needs(advice), INDENT);
-    let next =
-        advice.model.map_or_else(String::new, |model| format!("\nnext:\n  {fit} --model {}\n", model.name()));
+    let next = advice.model.map_or_else(String::new, |_| format!("\nnext:\n  {fit}\n"));
     format!("advice\n{said}{needs}{next}")
 }
 

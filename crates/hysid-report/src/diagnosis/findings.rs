@@ -79,6 +79,8 @@ pub fn meaning(property: Property) -> &'static str {
         Property::Saturation => "the output hardly changes at the ends of the input range",
         Property::Deterioration => "loops shrink when they are repeated",
         Property::LoopClosure => "the output is the same after each period of the input",
+        Property::StrengthLoss => "the force at the largest deformation falls",
+        Property::Pinching => "loops are narrow near zero load, where the stiffness is low",
         Property::Invertible => "after any past, the next input follows from the next output",
     }
 }
