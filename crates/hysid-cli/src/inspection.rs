@@ -8,7 +8,7 @@ use hysid::data::rate::RateMethod;
 use hysid::data::record::ColumnNames;
 use hysid::data::unit;
 use hysid::model::selection::Selection;
-use hysid::model::{Model, Predictor, Provenance, Weights};
+use hysid::model::{Model, ParameterInUnits, Predictor, Provenance, Weights};
 use hysid::options::FitSpec;
 use hysid::significant::Significant;
 use hysid_document::plain::rendered;
@@ -241,14 +241,12 @@ struct LawParameter {
 }
 
 fn law_parameters(model: &Model) -> Vec<LawParameter> {
-    let Some(law) = model.law() else { return Vec::new() };
-    let unit = |parameter: &_| model.unit_of_parameter(parameter);
-    let all = law.parameters().into_iter();
-    all.map(|parameter| LawParameter {
-        unit: unit(&parameter),
+    let all = model.law_parameters().into_iter().flatten();
+    all.map(|ParameterInUnits { parameter, unit, .. }| LawParameter {
         symbol: parameter.symbol,
         meaning: parameter.meaning,
         value: parameter.value,
+        unit,
     })
     .collect()
 }

@@ -253,6 +253,12 @@ pub enum DataProblem {
     /// The input has one value throughout.
     #[error("is constant ({}): there is nothing to identify", Significant(*.0))]
     ConstantInput(f64),
+    /// The input goes one way only.
+    #[error("never turns: one branch does not determine the parameters of {0} (measure a whole loop)")]
+    NeverTurns(&'static str),
+    /// The output falls where the input rises.
+    #[error("falls where the input rises, which no magnetisation does (reverse the sign of one of them)")]
+    Falls,
     /// The output has one value throughout.
     #[error("is constant ({}): there is nothing to identify", Significant(*.0))]
     ConstantOutput(f64),

@@ -182,6 +182,8 @@ impl Dimension {
     pub const OUTPUT: Self = Self { input: 0, output: 1, time: 0 };
     /// The unit of the output divided by that of the input, as of a stiffness.
     pub const SLOPE: Self = Self { input: -1, output: 1, time: 0 };
+    /// The unit of the input divided by that of the output, as of a compliance.
+    pub const COMPLIANCE: Self = Self { input: 1, output: -1, time: 0 };
 
     /// The unit as text, such as `kN/mm`, from the units of the data. Empty for a pure number, and if a unit
     /// that it contains is unknown.

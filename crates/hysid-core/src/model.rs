@@ -32,10 +32,10 @@ use crate::data::initial_state::InitialState;
 use crate::data::metrics::{ErrorSums, Errors};
 use crate::data::rate::RateMethod;
 use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, Likeness, Record};
-use crate::data::unit::of_column;
+use crate::data::unit::{of_column, pure_quotient};
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, OptionError, Result};
-use crate::law::{Classical, Parameter};
+use crate::law::{Classical, Dimension, Parameter};
 use crate::model::history::Run;
 use crate::model::input_transform::InputTransform;
 use crate::model::selection::Selection;
@@ -297,6 +297,18 @@ impl From<Provenance> for Found {
     }
 }
 
+/// A parameter of a model's law in the units of the model's columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParameterInUnits {
+    /// The parameter, value and bounds in this unit.
+    pub parameter: Parameter,
+    /// Empty for a pure number, and if a unit is unknown.
+    pub unit: String,
+    /// Value in this unit over that in the law: not 1 where a quotient, such as a field over a flux density, is shown as a
+    /// pure number.
+    pub factor: f64,
+}
+
 impl Model {
     /// A model with this part that simulates, which was trained on these data after the input transform.
     pub fn new(
@@ -386,13 +398,29 @@ impl Model {
         }
     }
 
-    /// The unit of a parameter of its law, from those of the columns; empty if it has none or one is not known.
-    pub fn unit_of_parameter(&self, parameter: &Parameter) -> String {
+    /// The parameters of its law in the units of the columns; `None` for a network and an ensemble.
+    pub fn law_parameters(&self) -> Option<Vec<ParameterInUnits>> {
         let names = self.names();
         let is_companded = self.input_transform().companding.is_some();
         let input = of_column(&names.inputs[0]).filter(|_| !is_companded);
         let (output, time) = (of_column(&names.output), names.time.as_deref().and_then(of_column));
-        parameter.unit.unit(input.as_deref(), output.as_deref(), time.as_deref())
+        let (input, output, time) = (input.as_deref(), output.as_deref(), time.as_deref());
+        let in_units = |mut parameter: Parameter| {
+            let is_quotient = parameter.unit == Dimension::COMPLIANCE;
+            match input.zip(output).filter(|_| is_quotient).and_then(|(x, y)| pure_quotient(x, y)) {
+                Some(factor) => {
+                    parameter.value *= factor;
+                    parameter.bounds = (parameter.bounds.0 * factor, parameter.bounds.1 * factor);
+                    ParameterInUnits { parameter, factor, unit: String::new() }
+                }
+                None => ParameterInUnits {
+                    unit: parameter.unit.unit(input, output, time),
+                    parameter,
+                    factor: 1.0,
+                },
+            }
+        };
+        Some(self.law()?.parameters().into_iter().map(in_units).collect())
     }
 
     /// The ensemble; `None` for a single model.

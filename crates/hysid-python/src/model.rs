@@ -8,9 +8,8 @@ use hysid::data::record::Excitation;
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
-use hysid::law::Parameter;
 use hysid::model::selection::Selection;
-use hysid::model::{self, BandLevel, Prediction};
+use hysid::model::{self, BandLevel, ParameterInUnits, Prediction};
 use hysid_export::description::RateSource;
 use hysid_export::{FmiVersion, InverseOptions, MANIFEST, Options, Precision, Target, files_of};
 use hysid_files::{Destination, Folder, Kind};
@@ -100,12 +99,10 @@ impl Model {
 
     /// Symbol, value, unit and meaning of each parameter of its law; `None` for another model.
     fn law_parameters(&self) -> Option<Vec<(String, f64, String, &'static str)>> {
-        let parameters = self.model.law()?.parameters().into_iter();
-        let told = |parameter: Parameter| {
-            let unit = self.model.unit_of_parameter(&parameter);
+        let told = |ParameterInUnits { parameter, unit, .. }| {
             (parameter.symbol, parameter.value, unit, parameter.meaning)
         };
-        Some(parameters.map(told).collect())
+        Some(self.model.law_parameters()?.into_iter().map(told).collect())
     }
 
     /// True if it needs time stamps.

@@ -1,7 +1,7 @@
 //! The parameters of a classical law, in the field's symbols and the user's units.
 
 use hysid::fit::intervals::{IntervalStatus, ParameterInterval, ParameterIntervals};
-use hysid::model::Model;
+use hysid::model::{Model, ParameterInUnits};
 use hysid_document::{Cell, Part, Table, count, number};
 
 use crate::{Report, seen_label};
@@ -41,7 +41,7 @@ fn explanation(intervals: &ParameterIntervals) -> Part {
 
 /// The parameters of a law, with their intervals where there are any; `None` for another model.
 pub fn table(model: &Model, intervals: Option<&ParameterIntervals>) -> Option<Table> {
-    let parameters = model.law()?.parameters();
+    let parameters = model.law_parameters()?;
     let bound = |value: f64| match value.abs() >= 1e50 {
         true if value < 0.0 => "−∞".to_string(),
         true => "∞".to_string(),
@@ -52,12 +52,12 @@ pub fn table(model: &Model, intervals: Option<&ParameterIntervals>) -> Option<Ta
         columns.insert(2, INTERVAL);
     }
     let mut table = Table::new(columns);
-    for (index, parameter) in parameters.iter().enumerate().take(MOST_ROWS) {
+    for (index, ParameterInUnits { parameter, unit, .. }) in parameters.iter().enumerate().take(MOST_ROWS) {
         let (low, high) = parameter.bounds;
         let mut row = vec![
             parameter.symbol.as_str().into(),
             Cell::number(parameter.value, 5),
-            model.unit_of_parameter(parameter).into(),
+            unit.as_str().into(),
             parameter.meaning.into(),
             format!("{} to {}", bound(low), bound(high)).into(),
         ];

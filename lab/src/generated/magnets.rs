@@ -81,14 +81,15 @@ struct Core {
 
 fn core(draw: &mut Draw, values: &Core) -> Result<Subject> {
     let a = draw.around(values.a);
+    let saturation = draw.around(values.saturation);
     let law = JilesAtherton {
         offset: 0.0,
         permeability: MU_0,
-        saturation: draw.around(values.saturation),
+        saturation,
         a,
         k: a * draw.around(values.pinning),
         // Not near 3, where the anhysteretic curve would become a step.
-        coupling: a * draw.around(values.coupling).min(2.6),
+        alpha: a * draw.around(values.coupling).min(2.6) / saturation,
         c: draw.around(values.reversible).min(0.9),
         form: values.form,
     };

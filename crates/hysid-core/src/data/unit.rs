@@ -4,7 +4,7 @@ mod derived;
 mod quantity;
 
 use crate::data::column::Part;
-pub use derived::{energy, power, quotient};
+pub use derived::{energy, power, pure_quotient, quotient};
 use quantity::Quantity;
 
 /// Known units that are no multiples of others: a temperature in degrees Celsius has another zero.

@@ -1,21 +1,21 @@
 //! Jiles-Atherton: magnetisation by domain walls that are pinned on their way to the anhysteretic curve.
 //!
 //! ```text
-//! y   = c0 + μ H + M,   H_e = H + α M,   M_an = M_s (coth(H_e/a) - a/H_e)          theory.md (8.22)
-//! dM/dH = δ_M (M_an - M)/{(1 + c)[δk - α(M_an - M)]} + c/(1 + c) dM_an/dH_e   1986   theory.md (8.23)
-//! dM/dH = N/(1 - α N),   N = δ_M (M_an - M)/(δk) + c dM_an/dH_e               1992   theory.md (8.24)
+//! y = c0 + μ H + M,   H_e = H + α M,   M_an = M_s (coth(H_e/a) - a/H_e),   A = dM_an/dH_e    theory.md (8.22)
+//! dM/dH = [(1 - c) δ_M (M_an - M)/(δk - α(M_an - M)) + c A]/(1 - α c A)              1986    theory.md (8.23)
+//! dM/dH = N/(1 - α N),   N = δ_M (M_an - M)/(δk) + c A                               1992    theory.md (8.24)
 //! ```
 //!
 //! `H` is the field, the input; `M` the magnetisation, in the unit of the output; `M_an` the anhysteretic
 //! magnetisation and `H_e` the effective field. `δ` is the sign of `dH`. `δ_M` is 0 where `M_an - M` is
 //! opposed to the direction of the field, else 1, so the susceptibility is never negative.
 //!
-//! Where the feedback `α` would make the susceptibility infinite it is limited: `k - α|M_an - M| >= 0.02 k`
-//! in the form of 1986, `α N <= 0.98` in that of 1992 (theory.md (8.25), our own). The field is integrated in
-//! small parts of `a` and `k`, so the output does not depend on the sampling.
+//! Where the feedback `α` would make the susceptibility infinite it is limited: `k - α|M_an - M| >= 0.02 k` and
+//! `α c A <= 0.98` in the form of 1986, `α N <= 0.98` in that of 1992 (theory.md (8.25), our own). The field is
+//! integrated in small parts of `a` and `k`, so the output does not depend on the sampling.
 //!
-//! Properties: rate-independent; minor loops do not close. Source: Jiles and Atherton 1986; Jiles, Thoelke
-//! and Devine 1992; the form of the first as in the program JAmodel of Szewczyk.
+//! Properties: rate-independent; minor loops do not close. Source: Jiles and Atherton 1986, whose `c/(1 + c)` is `c` here;
+//! Jiles, Thoelke and Devine 1992.
 
 use serde::{Deserialize, Serialize};
 
@@ -48,8 +48,7 @@ pub const C_BOUNDS: (f64, f64) = (0.0, 0.99);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum JilesAthertonForm {
-    /// `dM/dH = δ_M (M_an - M)/{(1 + c)[δk - α(M_an - M)]} + c/(1 + c) dM_an/dH_e`, of 1986 (theory.md
-    /// (8.23)).
+    /// `dM/dH = [(1 - c) δ_M (M_an - M)/(δk - α(M_an - M)) + c A]/(1 - α c A)`, of 1986 (theory.md (8.23)).
     #[default]
     Original,
     /// `dM/dH = N/(1 - α N)` with `N = δ_M (M_an - M)/(δk) + c dM_an/dH_e`, of 1992: reversible and
@@ -66,15 +65,15 @@ pub struct JilesAtherton {
     pub offset: f64,
     /// `μ`: share of the field itself in the output, in the unit of the output divided by that of the input.
     pub permeability: f64,
-    /// `M_s`: saturation magnetisation, in the unit of the output.
+    /// `M_s > 0`: saturation magnetisation, in the unit of the output.
     pub saturation: f64,
     /// `a > 0`: width of the anhysteretic curve, in the unit of the input.
     pub a: f64,
     /// `k > 0`: pinning, close to the coercive field, in the unit of the input.
     pub k: f64,
-    /// `α M_s`, from 0 to `3a`: the field that the saturated magnetisation adds, in the unit of the input.
-    /// From `3a` on the anhysteretic curve itself would have a loop.
-    pub coupling: f64,
+    /// `α`, from 0 to `3a/M_s`: the field that the magnetisation adds, in the unit of the input divided by that of the
+    /// output. From `3a/M_s` on the anhysteretic curve itself would have a loop.
+    pub alpha: f64,
     /// `c`, 0 to 0.99: share of the reversible magnetisation.
     pub c: f64,
     /// Which differential equation.
@@ -89,14 +88,14 @@ pub struct JilesAthertonState {
 }
 
 impl JilesAtherton {
-    /// `α`, in the unit of the input divided by that of the output; infinite or NaN if `M_s` is 0.
-    pub fn alpha(&self) -> f64 {
-        self.coupling / self.saturation
+    /// `α M_s`: the field that the saturated magnetisation adds, in the unit of the input.
+    pub fn coupling(&self) -> f64 {
+        self.alpha * self.saturation
     }
 
     /// Approximate number of elementary operations of [`Self::advance`].
     pub fn operations(&self, state: &JilesAthertonState, h: f64) -> usize {
-        let end = SATURATED * (self.a + self.k + self.coupling);
+        let end = SATURATED * (self.a + self.k + self.coupling());
         let travel = (h - state.h).abs().min(2.0 * end);
         let parts = (travel / (LONGEST_PART * self.a.min(self.k))).min(MOST_PARTS);
         20 + 200 * parts as usize
@@ -105,7 +104,7 @@ impl JilesAtherton {
     /// Advances to the next field and returns `M/M_s`.
     pub fn advance(&self, state: &mut JilesAthertonState, h: f64) -> f64 {
         let direction = (h - state.h).signum();
-        let end = SATURATED * (self.a + self.k + self.coupling);
+        let end = SATURATED * (self.a + self.k + self.coupling());
         let (from, to) = ((direction * state.h).clamp(-end, end), (direction * h).clamp(-end, end));
         state.h = h;
         if to > from {
@@ -132,17 +131,19 @@ impl JilesAtherton {
 
     /// `d(M/M_s)/dH` on the way up; never negative.
     fn slope(&self, h: f64, m: f64) -> f64 {
-        let (langevin, steepness) = langevin((h + self.coupling * m) / self.a);
+        let (langevin, steepness) = langevin((h + self.coupling() * m) / self.a);
         let anhysteretic = steepness / self.a;
         let missing = (langevin - m).max(0.0);
         match self.form {
             JilesAthertonForm::Original => {
-                let pinning = (self.k - self.coupling * missing).max(LEAST_PINNING * self.k);
-                (missing / pinning + self.c * anhysteretic) / (1.0 + self.c)
+                let pinning = (self.k - self.coupling() * missing).max(LEAST_PINNING * self.k);
+                let reversible = self.c * anhysteretic;
+                let feedback = (self.coupling() * reversible).min(LARGEST_FEEDBACK);
+                ((1.0 - self.c) * missing / pinning + reversible) / (1.0 - feedback)
             }
             JilesAthertonForm::Differential => {
                 let n = missing / self.k + self.c * anhysteretic;
-                n / (1.0 - (self.coupling * n).min(LARGEST_FEEDBACK))
+                n / (1.0 - (self.coupling() * n).min(LARGEST_FEEDBACK))
             }
         }
     }
@@ -191,26 +192,26 @@ impl Law for JilesAtherton {
         vec![
             Parameter::new("c0", "level of the output", self.offset, any, Dimension::OUTPUT),
             Parameter::new("μ", "share of the field itself", self.permeability, any, Dimension::SLOPE),
-            Parameter::new("M_s", "saturation magnetisation", self.saturation, any, Dimension::OUTPUT),
+            Parameter::new("M_s", "saturation magnetisation", self.saturation, positive, Dimension::OUTPUT),
             Parameter::new("a", "width of the anhysteretic curve", self.a, positive, Dimension::INPUT),
             Parameter::new("k", "pinning", self.k, positive, Dimension::INPUT),
             Parameter::new(
-                "αM_s",
-                "field of the saturated magnetisation",
-                self.coupling,
-                (0.0, 3.0 * self.a),
-                Dimension::INPUT,
+                "α",
+                "field that the magnetisation adds",
+                self.alpha,
+                (0.0, 3.0 * self.a / self.saturation),
+                Dimension::COMPLIANCE,
             ),
             Parameter::new("c", "reversible share", self.c, C_BOUNDS, Dimension::NONE),
         ]
     }
 
     fn validated(self) -> Result<Self> {
+        if !(self.a > 0.0 && self.k > 0.0 && self.saturation > 0.0) {
+            return Err(Error::Parts("Jiles-Atherton: M_s, a and k must be positive".into()));
+        }
         for parameter in self.parameters() {
             parameter.check("Jiles-Atherton")?;
-        }
-        if !(self.a > 0.0 && self.k > 0.0) {
-            return Err(Error::Parts("Jiles-Atherton: a and k must be positive".into()));
         }
         Ok(self)
     }

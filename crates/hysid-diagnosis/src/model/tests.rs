@@ -180,7 +180,7 @@ fn jiles_atherton_does_not_wipe_out() {
         saturation: 1.0,
         a: 0.2,
         k: 0.4,
-        coupling: 0.3,
+        alpha: 0.3,
         c: 0.1,
         form: JilesAthertonForm::Original,
     };

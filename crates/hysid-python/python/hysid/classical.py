@@ -445,7 +445,7 @@ def jiles_atherton(
     saturation: float,
     a: float,
     k: float,
-    coupling: float = 0.0,
+    alpha: float = 0.0,
     c: float = 0.0,
     permeability: float = 0.0,
     offset: float = 0.0,
@@ -458,11 +458,12 @@ def jiles_atherton(
     x : array of shape (n,)
         The field.
     saturation : float
-        Saturation magnetisation, in the unit of the output.
+        Saturation magnetisation, in the unit of the output, above 0.
     a, k : float
         Width of the anhysteretic curve, and pinning; in the unit of the field, above 0.
-    coupling : float
-        Field added by the saturated magnetisation, 0 to 3 a.
+    alpha : float
+        Field that the magnetisation adds, 0 to 3 a / saturation; in the unit of the field divided by that of the output:
+        a pure number if both are in A/m, and divided by 4e-7 pi if the output is in T.
     c : float
         Share of the reversible magnetisation, 0 to 0.99.
     permeability : float
@@ -485,7 +486,7 @@ def jiles_atherton(
     """
     parts = {
         **_numbers(
-            offset=offset, permeability=permeability, saturation=saturation, a=a, k=k, coupling=coupling, c=c
+            offset=offset, permeability=permeability, saturation=saturation, a=a, k=k, alpha=alpha, c=c
         ),
         "form": "differential" if differential_form else "original",
     }

@@ -30,8 +30,8 @@ use crate::error::{Error, Result};
 use crate::fit::law::linearised as of_law;
 use crate::fit::law::linearised::{FitVariable, Linearised};
 use crate::linear_algebra::{Symmetric, dot};
-use crate::model::Model;
 use crate::model::input_transform::Transformed;
+use crate::model::{Model, ParameterInUnits};
 use crate::options::FitSpec;
 use eigenvectors::Eigenvectors;
 
@@ -136,7 +136,7 @@ impl ParameterIntervals {
         if linearised.variables.len() > MOST_VARIABLES {
             return Ok(None);
         }
-        Ok(Some(intervals(&law.parameters(), &linearised)))
+        Ok(model.law_parameters().map(|parameters| intervals(&parameters, &linearised)))
     }
 }
 
@@ -165,11 +165,13 @@ fn as_begun(model: &Model, data: &Dataset) -> Result<Dataset> {
 }
 
 /// The intervals of parameters.
-fn intervals(parameters: &[crate::law::Parameter], linearised: &Linearised) -> ParameterIntervals {
+fn intervals(parameters: &[ParameterInUnits], linearised: &Linearised) -> ParameterIntervals {
     let spread = Spread::of(linearised);
     let named = parameters.iter().zip(&linearised.gradients);
-    let of_parameter = |(parameter, gradient): (&crate::law::Parameter, &Vec<f64>)| {
+    let of_parameter = |(in_units, gradient): (&ParameterInUnits, &Vec<f64>)| {
+        let parameter = &in_units.parameter;
         let (status, standard_error) = spread.of_parameter(gradient, &linearised.variables);
+        let standard_error = standard_error.map(|error| error * in_units.factor);
         let half = standard_error.map(|error| error * spread.quantile);
         let (lowest, highest) = parameter.bounds;
         ParameterInterval {

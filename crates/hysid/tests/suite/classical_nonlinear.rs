@@ -74,7 +74,7 @@ fn jiles_atherton(form: JilesAthertonForm) -> JilesAtherton {
         saturation: 1.6e6,
         a: 1100.0,
         k: 400.0,
-        coupling: 1.6e-3 * 1.6e6,
+        alpha: 1.6e-3,
         c: 0.2,
         form,
     }
@@ -132,7 +132,7 @@ fn rate_dependent_plays_have_their_regression_values() {
 #[test]
 fn jiles_atherton_has_its_regression_values() {
     let expected = [
-        (JilesAthertonForm::Original, 407.3, 0.3672, 0.8583),
+        (JilesAthertonForm::Original, 392.82, 0.35576, 0.85828),
         (JilesAthertonForm::Differential, 314.2, 0.3103, 0.8601),
     ];
     for (form, coercivity, remanence, tip) in expected {
@@ -335,7 +335,7 @@ fn free_runs_stay_finite_whatever_the_parameters_and_the_input() {
         let material = JilesAtherton {
             a,
             k: extreme(1e-3, 1e3),
-            coupling: extreme(0.0, 3.0 * a),
+            alpha: extreme(0.0, 3.0 * a) / 1.6e6,
             c: extreme(0.0, 0.99),
             ..jiles_atherton(form)
         };
@@ -367,7 +367,7 @@ fn parameters_out_of_bounds_are_refused() {
     assert!(BoucWen { n: 0.5, ..bouc_wen(1.0) }.validated().is_err());
     assert!(BoucWen { b: f64::NAN, ..bouc_wen(1.0) }.validated().is_err());
     let material = jiles_atherton(JilesAthertonForm::Original);
-    assert!(JilesAtherton { coupling: 4.0 * material.a, ..material }.validated().is_err());
+    assert!(JilesAtherton { alpha: 4.0 * material.a / material.saturation, ..material }.validated().is_err());
     assert!(JilesAtherton { k: 0.0, ..material }.validated().is_err());
     let growing = PlayWeights::Exponential { plays: 900, rho: 1.0, tau: -10.0 };
     assert!(GeneralizedPrandtlIshlinskii { weights: growing, ..terfenol_actuator() }.validated().is_err());
@@ -513,6 +513,45 @@ fn jiles_atherton_recovers_itself_in_both_forms() {
         assert!(error_of(&found.law, &data(&law, &unseen), None) < 0.4);
         assert_relative_eq!(found.law.k, 400.0, max_relative = 0.1);
     }
+}
+
+#[test]
+fn jiles_atherton_has_the_symbols_and_numbers_of_the_literature() {
+    let mu_0 = 4e-7 * std::f64::consts::PI;
+    let known = jiles_atherton(JilesAthertonForm::Original);
+    let law = JilesAtherton { permeability: mu_0, saturation: 1.6e6 * mu_0, alpha: 1.6e-3 / mu_0, ..known };
+    let (seen, _) = paths(|u| 5000.0 * u);
+    let records = data(&law, &seen).records().to_vec();
+    let names =
+        ColumnNames { inputs: vec!["H (A/m)".into()], output: "B (T)".into(), ..ColumnNames::plain(1) };
+    let options =
+        FitSpec::Classical(ClassicalOptions { starts: Some(4), ..of(ClassicalModel::JilesAtherton) });
+    let found = identify(&Dataset::new(names, records).unwrap(), &options, &mut |_| {
+        std::ops::ControlFlow::Continue(())
+    })
+    .unwrap();
+    let shown: Vec<_> = found.model.law_parameters().unwrap();
+    for (symbol, expected, unit) in
+        [("M_s", 2.0106, "T"), ("a", 1100.0, "A/m"), ("k", 400.0, "A/m"), ("α", 1.6e-3, ""), ("c", 0.2, "")]
+    {
+        let found = shown.iter().find(|shown| shown.parameter.symbol == symbol).unwrap();
+        assert_relative_eq!(found.parameter.value, expected, max_relative = 0.01);
+        assert_eq!(found.unit.trim_matches(['(', ')']), unit, "{symbol}");
+    }
+}
+
+#[test]
+fn jiles_atherton_is_refused_for_data_that_do_not_determine_it() {
+    let law = jiles_atherton(JilesAthertonForm::Original);
+    let options = ClassicalOptions { starts: Some(2), ..of(ClassicalModel::JilesAtherton) };
+    let branch = samples_of(&through(&[5000.0, -5000.0], 60));
+    let error = JilesAtherton::fit(&data(&law, &[branch]), &options, &mut go_on).unwrap_err().to_string();
+    assert!(error.contains("never turns") && error.contains("whole loop"), "{error}");
+    let (seen, _) = paths(|u| 5000.0 * u);
+    let falling = run(&law, &seen[0]).into_iter().map(|m| -m).collect();
+    let data = Dataset::new(ColumnNames::plain(1), vec![record("r", &seen[0], falling)]).unwrap();
+    let error = JilesAtherton::fit(&data, &options, &mut go_on).unwrap_err().to_string();
+    assert!(error.contains("falls where the input rises"), "{error}");
 }
 
 #[test]

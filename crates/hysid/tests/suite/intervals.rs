@@ -127,18 +127,18 @@ fn bouc_wen() -> Case<BoucWen> {
 }
 
 fn jiles_atherton() -> Case<JilesAtherton> {
-    let (a, k, coupling, c) = (0.15, 0.2, 0.15, 0.2);
+    let (saturation, a, k, alpha, c) = (1.5, 0.15, 0.2, 0.1, 0.2);
     let law = JilesAtherton {
         offset: 0.1,
         permeability: 0.2,
-        saturation: 1.5,
+        saturation,
         a,
         k,
-        coupling,
+        alpha,
         c,
         form: JilesAthertonForm::Original,
     };
-    let near = [a, k, coupling / (3.0 * a), c];
+    let near = [a, k, alpha * saturation / (3.0 * a), c];
     Case { law, options: searched(ClassicalModel::JilesAtherton, &near), share: 0.05 }
 }
 

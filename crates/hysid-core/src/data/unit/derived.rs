@@ -1,6 +1,8 @@
 //! Units of quantities that are made of others: energies, powers and quotients.
 
-use super::quantity::{Dimension, ENERGY, ENERGY_DENSITY, POWER, POWER_DENSITY, Quantity};
+use super::quantity::{
+    Dimension, ENERGY, ENERGY_DENSITY, FIELD, FLUX_DENSITY, POWER, POWER_DENSITY, Quantity,
+};
 
 /// Prefixes and their factors.
 const PREFIXES: [(&str, f64); 5] = [("u", 1e-6), ("m", 1e-3), ("", 1.0), ("k", 1e3), ("M", 1e6)];
@@ -25,6 +27,20 @@ pub fn power(energy: &str, time: &str) -> String {
 /// The unit of a quotient: `kN/mm`, `T/(A/m)`.
 pub fn quotient(above: &str, below: &str) -> String {
     if below.contains(['/', ' ']) { format!("{above}/({below})") } else { format!("{above}/{below}") }
+}
+
+/// Permeability of vacuum, in V s/(A m).
+const VACUUM_PERMEABILITY: f64 = 1.256_637_062e-6;
+
+/// The factor that makes a pure number of an input over an output: of two fields, or of a field over a flux density `μ0 M`.
+/// `None` where the quotient has a unit.
+pub fn pure_quotient(input: &str, output: &str) -> Option<f64> {
+    let (above, below) = (Quantity::of(input)?, Quantity::of(output)?);
+    let factor = above.factor / below.factor;
+    match (above.dimension, below.dimension) {
+        (FIELD, FLUX_DENSITY) => Some(factor * VACUUM_PERMEABILITY),
+        (a, b) => (a == b).then_some(factor),
+    }
 }
 
 /// The name of a unit that is a decimal multiple of an energy or a power. Angles count as numbers.
@@ -60,6 +76,25 @@ mod tests {
         ] {
             assert_eq!(energy(output, input), expected, "{output} {input}");
         }
+    }
+
+    #[test]
+    fn quotients_of_fields_are_pure_numbers() {
+        // α = 1.6e-3 of JAmodel's set, M_s = 1.6e6 A/m or 2.0106 T.
+        for (input, output, alpha) in [
+            ("A/m", "A/m", 1.6e-3),
+            ("kA/m", "A/m", 1.6e-6),
+            ("A/m", "T", 1.6e-3 / 1.256_637_062e-6),
+            ("Oe", "kG", 1.6e-3 / 1e-3),
+        ] {
+            approx::assert_relative_eq!(
+                alpha * pure_quotient(input, output).unwrap(),
+                1.6e-3,
+                max_relative = 1e-6
+            );
+        }
+        assert_eq!(pure_quotient("mm", "kN"), None);
+        assert_eq!(pure_quotient("A", "T"), None);
     }
 
     #[test]

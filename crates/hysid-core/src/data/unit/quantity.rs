@@ -26,8 +26,8 @@ const CHARGE: Dimension = [0, 0, 1, 1, 0, 0];
 const POLARIZATION: Dimension = [-2, 0, 1, 1, 0, 0];
 const RESISTANCE: Dimension = [2, 1, -3, -2, 0, 0];
 const FLUX: Dimension = [2, 1, -2, -1, 0, 0];
-const FLUX_DENSITY: Dimension = [0, 1, -2, -1, 0, 0];
-const FIELD: Dimension = [-1, 0, 0, 1, 0, 0];
+pub(super) const FLUX_DENSITY: Dimension = [0, 1, -2, -1, 0, 0];
+pub(super) const FIELD: Dimension = [-1, 0, 0, 1, 0, 0];
 
 /// A unit as a multiple of SI base units.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -24,7 +24,7 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &JilesAtherton, sampl
     let h = limited(builder, &sample.inputs[0]);
     let before = builder.value(field.at(0_usize));
     let direction = builder.value((&h - &before).signum());
-    let end = SATURATED * (law.a + law.k + law.coupling);
+    let end = SATURATED * (law.a + law.k + law.coupling());
     let from = builder.value(&direction * &before);
     let from = builder.value(from.clamp(-end, end));
     let to = builder.value(&direction * &h);
@@ -67,20 +67,24 @@ fn runge_kutta(builder: &mut Builder, law: &JilesAtherton, h: &Real, m: &Real, b
 
 /// `d(M/M_s)/dH` on the way up (theory.md (8.23) to (8.25)).
 fn slope(builder: &mut Builder, law: &JilesAtherton, h: &Real, m: &Real) -> Real {
-    let effective = builder.value((h + law.coupling * m) / law.a);
+    let effective = builder.value((h + law.coupling() * m) / law.a);
     let (langevin, steepness) = langevin(builder, &effective);
     let anhysteretic = builder.value(steepness / law.a);
     let missing = builder.value(langevin - m);
     let missing = builder.value(missing.max(0.0));
     match law.form {
         JilesAthertonForm::Original => {
-            let pinning = builder.value(law.k - law.coupling * &missing);
+            let pinning = builder.value(law.k - law.coupling() * &missing);
             let pinning = pinning.max(LEAST_PINNING * law.k);
-            builder.value((missing / pinning + law.c * anhysteretic) / (1.0 + law.c))
+            let reversible = builder.value(law.c * anhysteretic);
+            let feedback = builder.value(law.coupling() * &reversible);
+            builder.value(
+                ((1.0 - law.c) * missing / pinning + reversible) / (1.0 - feedback.min(LARGEST_FEEDBACK)),
+            )
         }
         JilesAthertonForm::Differential => {
             let n = builder.value(missing / law.k + law.c * anhysteretic);
-            let feedback = builder.value(law.coupling * &n);
+            let feedback = builder.value(law.coupling() * &n);
             builder.value(n / (1.0 - feedback.min(LARGEST_FEEDBACK)))
         }
     }

@@ -1,9 +1,10 @@
-//! Identification of a Jiles-Atherton law: `a`, `k`, `α M_s` and `c` are found by search, and for each of
+//! Identification of a Jiles-Atherton law: `a`, `k`, `α M_s/(3a)` and `c` are found by search, and for each of
 //! their values saturation, offset and the share of the field by least squares.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
-use crate::error::Result;
+use crate::data::summary::Summary;
+use crate::error::{Channel, DataProblem, Error, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
@@ -22,9 +23,18 @@ impl Identify for JilesAtherton {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
+        let first = &data.records()[0];
+        if Summary::of(data).turning_points() == 0 {
+            let problem = DataProblem::NeverTurns("jiles-atherton");
+            return Err(first.defect(None, Some(Channel::Input(0)), problem));
+        }
         let (family, series) = posed(data, options)?;
         let effort = Effort::of(options);
-        search(&family, &series, effort, observer, stop)
+        search(&family, &series, effort, observer, stop).map_err(|error| match error {
+            // All that a search can leave invalid is M_s = 0.
+            Error::Parts(_) => first.defect(None, Some(Channel::Output), DataProblem::Falls),
+            other => other,
+        })
     }
 
     fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
@@ -65,8 +75,8 @@ impl Materials {
     /// The law of unit saturation.
     fn law(&self, parameters: &[f64]) -> JilesAtherton {
         let &[a, k, share, c] = parameters else { unreachable!("four variables are searched") };
-        let coupling = share * 3.0 * a;
-        JilesAtherton { offset: 0.0, permeability: 0.0, saturation: 1.0, a, k, coupling, c, form: self.form }
+        let alpha = share * 3.0 * a;
+        JilesAtherton { offset: 0.0, permeability: 0.0, saturation: 1.0, a, k, alpha, c, form: self.form }
     }
 }
 
@@ -75,11 +85,12 @@ impl LawFamily for Materials {
 
     fn whole(&self, searched: &[f64], weights: &[f64]) -> JilesAtherton {
         let law = self.law(searched);
-        JilesAtherton { offset: weights[0], permeability: weights[1], saturation: weights[2], ..law }
+        let (offset, permeability, saturation) = (weights[0], weights[1], weights[2]);
+        JilesAtherton { offset, permeability, saturation, alpha: law.alpha / saturation, ..law }
     }
 
     fn searched(&self, law: &JilesAtherton) -> Vec<f64> {
-        vec![law.a, law.k, law.coupling / (3.0 * law.a), law.c]
+        vec![law.a, law.k, law.coupling() / (3.0 * law.a), law.c]
     }
 }
 
@@ -89,7 +100,7 @@ impl Family for Materials {
     }
 
     fn non_negative(&self) -> &[bool] {
-        &[false; 3]
+        &[false, false, true]
     }
 
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {

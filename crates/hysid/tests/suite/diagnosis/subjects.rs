@@ -86,7 +86,7 @@ pub fn jiles_atherton(x: &[f64]) -> Dataset {
         saturation,
         a: 1100.0,
         k: 400.0,
-        coupling: 1.6e-3 * saturation,
+        alpha: 1.6e-3,
         c: 0.2,
         form: JilesAthertonForm::Differential,
     };
