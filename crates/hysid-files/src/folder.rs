@@ -11,6 +11,9 @@ use crate::failure::Failure;
 use crate::{leftovers, temporary};
 use changes::Changes;
 
+/// Files of a manifest with their checksums.
+pub type Listed = Vec<(String, String)>;
+
 /// A folder whose files are written together. One of them, the manifest, lists the others with their checksums.
 #[derive(Debug)]
 pub struct Folder<'a> {
@@ -21,7 +24,7 @@ pub struct Folder<'a> {
     /// Name of the manifest.
     pub manifest: &'static str,
     /// The files that the text of a manifest lists, with their checksums; `None` if Hysid did not write the text.
-    pub listed: fn(&str) -> Option<Vec<(String, String)>>,
+    pub listed: fn(&str) -> Option<Listed>,
     /// The checksum of a file.
     pub checksum: fn(&[u8]) -> String,
     /// Files that the content is made from. A folder with one of them in it is not written to.
@@ -163,7 +166,7 @@ mod tests {
         [("a.txt", b"one"), ("b/c.txt", b"two"), ("list", b"list:a.txt=one b/c.txt=two")];
 
     /// The checksum of a file is here its content.
-    fn listed(manifest: &str) -> Option<Vec<(String, String)>> {
+    fn listed(manifest: &str) -> Option<Listed> {
         let entries = manifest.strip_prefix("list:")?.split(' ');
         entries.map(|entry| entry.split_once('=').map(|(name, sum)| (name.into(), sum.into()))).collect()
     }
