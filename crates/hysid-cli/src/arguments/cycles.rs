@@ -36,7 +36,7 @@ pub struct Cycles {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Field of engineering, which selects the figures: structure, magnet, actuator or general (all) [default: by names and units of the columns]
+    /// Figures of: structure, magnet, actuator or general (all) [default: by names and units]
     #[arg(long, value_name = "FIELD", value_parser = named::<Field>, help_heading = "Method")]
     pub field: Option<Field>,
     /// Where cycles begin: zero, mean, reversals or start [default: as suits the data]
@@ -45,13 +45,15 @@ pub struct Cycles {
     /// at every other turning point.
     #[arg(long, value_name = "WHERE", value_parser = named::<Division>, help_heading = "Method")]
     pub divide: Option<Division>,
-    /// Remove from the output of each record first: slope (a straight background), drift (over the record)
+    /// Remove from the output first: slope, drift
     ///
-    /// The slope is that of the outer 30 % of the input; the drift is the gain of the output from the beginning of the
+    /// The slope is a straight background of each record, the drift what its output gains from beginning to end. The slope is that of the outer 30 % of the input; the drift is the gain of the output from the beginning of the
     /// record to its end, if the input comes back.
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = named::<Correction>, help_heading = "Method")]
     pub subtract: Vec<Correction>,
-    /// Remove the offset of the output: the middle of its values at both ends of the input
+    /// Remove the offset of the output first
+    ///
+    /// The offset is the middle of the output's values at both ends of the input.
     #[arg(long, help_heading = "Method")]
     pub center: bool,
     /// Ignore reversals of the input below this share of its range [default: the noise of the input decides]

@@ -250,7 +250,7 @@ fn the_result_as_json_and_the_table_on_stdout() {
     let names = names.into_iter().map(String::as_str).collect::<Vec<_>>().join(" ");
     assert_eq!(
         names,
-        "drive drive_range errors extrapolated not_reached previews reached records report rows"
+        "drive drive_range errors expected_rmse extrapolated not_reached previews reached records report rows"
     );
     let count = |reach: &str| answer["not_reached"][reach].as_u64().unwrap();
     assert_eq!(answer["reached"].as_u64().unwrap() + count("low-limit") + count("high-limit"), 120);
