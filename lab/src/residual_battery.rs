@@ -53,7 +53,10 @@ pub fn run(request: &Request) -> Result<()> {
     let tables = page::tables(&measured(request.seeds));
     if let Some(out) = &request.out {
         let origin = origin(true, concat!("hysid ", env!("CARGO_PKG_VERSION")));
-        files::write(out, &format!("# Power and false alarms of the tests of the residual\n\n{origin}\n{tables}"))?;
+        files::write(
+            out,
+            &format!("# Power and false alarms of the tests of the residual\n\n{origin}\n{tables}"),
+        )?;
     }
     io::stdout().write_all(tables.as_bytes()).context("cannot write to stdout")
 }

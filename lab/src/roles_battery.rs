@@ -1,5 +1,5 @@
 //! `roles-battery`: what `hysid look` takes for time, input and output in tables with the headers of twelve fields. The
-//! headers and the true role of each column are in `roles_battery/headers.txt`, written apart from the code that guesses.
+//! headers and the true role of each column are in `roles_battery/headers.txt`. The code that guesses was adjusted while they were tried.
 
 mod signals;
 

@@ -31,7 +31,7 @@ const LOWEST: f64 = 0.05;
 const LOWEST_IN_NOISE: f64 = 10.0;
 
 /// An input whose noise is below this share of its range does not jitter.
-const JITTERS: f64 = 2e-4;
+pub(crate) const JITTERS: f64 = 2e-4;
 
 /// Points on either side of one over which its slope is taken.
 const BESIDE: usize = 3;

@@ -165,7 +165,9 @@ pub(crate) mod tests {
     /// a millimetre of travel in hundred, each with and without noise.
     #[test]
     fn lost_strength_is_found_with_its_share_and_kept_strength_is_not_lost() {
-        let strength: [(&str, Verdict, Option<f64>, fn(f64, f64) -> f64); 4] = [
+        /// The strength after a largest deformation and a travel.
+        type Strength = fn(f64, f64) -> f64;
+        let strength: [(&str, Verdict, Option<f64>, Strength); 4] = [
             ("whole", Verdict::No, None, |_, _| 10.0),
             ("soft", Verdict::Yes, Some(0.30), |largest, _| 10.0 * (1.0 - 0.02 * (largest - 10.0).max(0.0))),
             ("broken", Verdict::Yes, Some(0.70), |_, travel| if travel < 400.0 { 10.0 } else { 3.0 }),

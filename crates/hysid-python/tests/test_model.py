@@ -273,7 +273,7 @@ def test_members_share_out_the_whole(quick_ensemble):
     assert {one.name for one in members} <= set(told)
     assert f"auto of {len(members)}" in repr(quick_ensemble)
     assert "ensemble of" in quick_ensemble._repr_html_()
-    assert "cross-validation error" in quick_ensemble._repr_html_()
+    assert "error on the rows held out" in quick_ensemble._repr_html_()
 
 
 def test_a_single_model_has_no_members_and_no_band(quick_model, spring_and_slider):

@@ -107,7 +107,8 @@ def test_columns_are_given_by_their_names(known, library):
     found = by_name.evaluate(table, "B [T]", time="t [s]", records="test")
     assert found == by_column.evaluate(x, {"B [T]": y}, records=labels)
     diagnosis = hysid.diagnose(table, "B [T]", time="t [s]", records="test")
-    assert str(diagnosis) == str(hysid.diagnose(x, y, time, labels))
+    named = ({"H [A/m]": x}, {"B [T]": y}, {"t [s]": time})
+    assert str(diagnosis) == str(hysid.diagnose(*named, records=labels))
     with pytest.raises(ValueError, match="y: x has no column 'force'"):
         hysid.fit(table, "force")
     with pytest.raises(ValueError, match="time 't': a name is that of a column of x, and x is no table"):

@@ -17,16 +17,27 @@ pub fn tables(cells: &[Cell]) -> String {
                 Some(share) if *share > most.1 => (*test, *share),
                 _ => most,
             });
-            let most = if most > 0.0 { format!("{} ({})", percent(Some(most)), test.name()) } else { "0 %".into() };
+            let most =
+                if most > 0.0 { format!("{} ({})", percent(Some(most)), test.name()) } else { "0 %".into() };
             alarms.push(row(noise.name(), &[cell.drive.into(), percent(Some(cell.any)), most]));
         }
     }
     let sizes = SIZES.map(|size| format!("found, {size} times the noise"));
-    let mut power = vec![row("planted", &["drive".into(), sizes[0].clone(), sizes[1].clone(), sizes[2].clone(), "rate found (largest)".into()])];
+    let mut power = vec![row(
+        "planted",
+        &[
+            "drive".into(),
+            sizes[0].clone(),
+            sizes[1].clone(),
+            sizes[2].clone(),
+            "rate found (largest)".into(),
+        ],
+    )];
     for dependence in Dependence::ALL {
         for drive in &DRIVES {
             let of_size = |size: f64, test: ResidualTest| {
-                let is_it = |cell: &&Cell| cell.drive == drive.name && cell.planted == Some((dependence, size));
+                let is_it =
+                    |cell: &&Cell| cell.drive == drive.name && cell.planted == Some((dependence, size));
                 let cell = cells.iter().find(is_it).expect("every cell was measured");
                 cell.found.iter().find(|(found, _)| *found == test).and_then(|(_, share)| *share)
             };

@@ -49,13 +49,19 @@ pub fn rows(columns: &[Column]) -> String {
             'g' => return if k < ROWS / 2 { "a" } else { "b" }.into(),
             'm' => {
                 let minutes = 15 * k;
-                return format!("2023-03-{:02} {:02}:{:02}", 1 + minutes / 1440, minutes / 60 % 24, minutes % 60);
+                return format!(
+                    "2023-03-{:02} {:02}:{:02}",
+                    1 + minutes / 1440,
+                    minutes / 60 % 24,
+                    minutes % 60
+                );
             }
             unknown => panic!("no signal {unknown}"),
         };
         format!("{number:.6}")
     };
-    let row = |k: usize| columns.iter().enumerate().map(|column| cell(k, column)).collect::<Vec<_>>().join(",");
+    let row =
+        |k: usize| columns.iter().enumerate().map(|column| cell(k, column)).collect::<Vec<_>>().join(",");
     (0..ROWS).map(|k| row(k) + "\n").collect()
 }
 

@@ -456,7 +456,7 @@ impl Dataset {
 
     /// A data set of this record alone, which has the same columns.
     pub fn of_record(&self, record: Record) -> Dataset {
-        Dataset { names: self.names.clone(), records: vec![record] }
+        self.of_records(vec![record])
     }
 
     /// Divides the data into training and validation data. Of several protocols some are held out; the runs of a

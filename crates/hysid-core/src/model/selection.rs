@@ -13,7 +13,7 @@ pub struct Selection {
     /// Name of the held-out data of each fold.
     pub folds: Vec<String>,
     /// Held-out error of the ensemble: RMSE over all rows that were held out, in percent of their standard deviation, with
-    /// weights that were found on the other folds. It is the validation error of the model.
+    /// weights that were found on the other folds. It is the validation error of an ensemble.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held_out_percent: Option<f64>,
     /// Error by which candidates are weighted, in percent of the standard deviation, inside and outside the trained range:
@@ -80,7 +80,6 @@ impl Selection {
             Some(error) => format!("{:.3} %", Significant(error)),
             None => "unknown".into(),
         };
-        let ensemble = format!("ensemble {}", percent(self.held_out_percent));
         let (errors, reason) = match &self.single {
             Some(SingleModel { distilled, distilled_percent, plain_percent, .. }) => {
                 let of_distilled =
@@ -115,11 +114,12 @@ impl Selection {
                     (true, _) => "",
                     (false, true) => "; one loop does not tell how well smaller loops are predicted",
                     (false, false) => {
-                        "; a candidate is preferred to the ensemble only if it is clearly better on each fold"
+                        "; a candidate is preferred only if its error is lower by 10 %, and lower in the mean of the folds"
                     }
                 };
                 let bests: Vec<String> = bests.iter().map(alone).collect();
-                (format!("{ensemble}; best of each kind alone: {}", bests.join(", ")), reason)
+                let ensemble = percent(self.held_out_percent);
+                (format!("ensemble {ensemble}; best of each kind alone: {}", bests.join(", ")), reason)
             }
         };
         format!("error on the rows held out (RMSE in % of std): {errors}{reason}")

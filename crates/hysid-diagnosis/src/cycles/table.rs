@@ -18,7 +18,7 @@ use super::path::{Closure, Path, area, at, range, weights, width};
 use super::reading::{Widest, output_at_end, secant, widest};
 use super::row::CycleRow;
 use super::strand::Strand;
-use crate::branch::{Branch, BranchSet, ReversalRule};
+use crate::branch::{Branch, BranchSet, JITTERS, ReversalRule};
 use crate::smoothing::{Parabola, Place};
 use crate::{DiagnosisOptions, FEWEST_ROWS};
 
@@ -33,9 +33,6 @@ const FAR_APART: f64 = 0.1;
 
 /// Share of a swing that is rounding.
 const ROUNDING: f64 = 1e-12;
-
-/// An input has noise above this share of its range.
-const NOISY: f64 = 2e-4;
 
 /// Fewest rows of a parabola at an end of a branch.
 const FEWEST_AT_AN_END: usize = 8;
@@ -340,7 +337,7 @@ impl Reader<'_> {
 
     /// Smallest and largest input of a noisy loop, as the smoothed branches have them.
     fn without_noise(&self, path: &Path, tips: &Tips) -> Option<(f64, f64)> {
-        if self.survey.input_noise.deviation() <= NOISY * self.survey.width() {
+        if self.survey.input_noise.deviation() <= JITTERS * self.survey.width() {
             return None;
         }
         let x = &self.record.inputs()[0];
@@ -655,7 +652,7 @@ fn notes(survey: &BranchSet, cycles: &[CycleRow], (field, division): (Field, Div
         notes.push("no whole cycle: the input does not come back to where a cycle began".to_string());
     }
     let hidden = survey.smallest_reversal;
-    if hidden > HIDDEN * survey.width() && survey.input_noise.deviation() > NOISY * survey.width() {
+    if hidden > HIDDEN * survey.width() && survey.input_noise.deviation() > JITTERS * survey.width() {
         notes.push(format!(
             "reversals of the input below {:.2}, {:.1} % of its range, are not told from its noise",
             Significant(hidden),

@@ -182,39 +182,65 @@ struct Chosen<'w, 'o, 'a> {
     found: Option<FoundStates>,
 }
 
+/// An ensemble, and what is known of it from the folds.
+struct Assembled {
+    combination: Combination,
+    /// The rows held out of each fold with their errors.
+    rows: Vec<Vec<HeldOutRow>>,
+    /// What is predicted for them.
+    predicted: Vec<Vec<f64>>,
+    selection: Selection,
+    model: Model,
+}
+
 impl Chosen<'_, '_, '_> {
     /// The ensemble, or the single model that was requested; `alone` where nothing was tried in time.
     fn fit(mut self, alone: Model) -> Result<Fitted> {
         let Bench { work, .. } = self.bench;
         let fit = |model| Ok(Fitted::of(model, work.done()));
-        self.drop_misfits()?;
-        let Some(all) = self.combination(|_| true) else {
+        let mut assembled = self.assembled()?;
+        for step in misfits::STEPS {
+            match &assembled {
+                Some(ensemble) if self.drops_misfits(ensemble, step) => assembled = self.assembled()?,
+                _ => break,
+            }
+        }
+        let Some(Assembled { combination, rows, predicted, selection, model }) = assembled else {
             let model = self.without_validation(alone);
+            if self.combination(|_| true).is_some() {
+                return fit(model);
+            }
             let provenance = provenance_of(&model, None, None, work);
             return fit(model.with_provenance(provenance));
         };
+        if self.options.members == 1
+            && let Some((model, predicted)) = self.single(&combination, &model, selection)?
+        {
+            return Ok(fit(model)?.with_held_out(self.held_out(&predicted)?));
+        }
+        let band = self.band(&rows);
+        let held_out = self.held_out(&predicted)?;
+        Ok(fit(model.with_band_over(band, self.data)?)?.with_held_out(held_out))
+    }
+
+    /// The ensemble of all candidates that are left, whose members are fitted here; `None` if none could be fitted in
+    /// time.
+    fn assembled(&mut self) -> Result<Option<Assembled>> {
+        let Bench { work, .. } = self.bench;
+        let Some(all) = self.combination(|_| true) else { return Ok(None) };
         let wanted: Vec<(usize, usize)> = all.leaves().iter().map(|leaf| (leaf.place, leaf.start)).collect();
         fit_members(&mut self.trials, &wanted, self.bench.data, work);
         // Those that there was no time for are left out.
         let is_fitted = |leaf: Leaf| self.trials[leaf.place].members.contains_key(&leaf.start);
-        let Some(combination) = all.only(is_fitted).or_else(|| self.of_fitted()) else {
-            return fit(self.without_validation(alone));
-        };
+        let Some(combination) = all.only(is_fitted).or_else(|| self.of_fitted()) else { return Ok(None) };
         let rows = self.rows_held_out(&combination);
         let predicted = self.predicted(&rows);
         let validation = self.errors_held_out(&predicted);
         let selection = self.selection(&combination, validation.as_ref());
         let members = |place: usize, start: usize| self.trials[place].members.get(&start).cloned();
         let body = Predictor::Ensemble(combination.ensemble(members, self.data.input_range(0))?);
-        let ensemble = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
-        if self.options.members == 1
-            && let Some((model, predicted)) = self.single(&combination, &ensemble, selection)?
-        {
-            return Ok(fit(model)?.with_held_out(self.held_out(&predicted)?));
-        }
-        let band = self.band(&rows);
-        let held_out = self.held_out(&predicted)?;
-        Ok(fit(ensemble.with_band_over(band, self.data)?)?.with_held_out(held_out))
+        let model = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
+        Ok(Some(Assembled { combination, rows, predicted, selection, model }))
     }
 
     /// The outputs that were predicted for the scored rows of each fold.

@@ -19,7 +19,7 @@ const SMALLEST_REVERSALS: [f64; 3] = [0.03, 0.05, 0.08];
 const FEWEST_OF_A_PART: usize = 3;
 
 /// Times of two runs of one protocol differ by less than this factor. Designed.
-const AS_FAST: f64 = 1.3;
+const AS_FAST: f64 = 1.1;
 
 /// Inputs whose root mean square difference is at most this share of the range are at the same places.
 const SAME_PLACE: f64 = 0.005;
@@ -93,17 +93,21 @@ enum Agreement {
 /// The path of a record's inputs.
 struct Path<'r> {
     record: &'r Record,
-    range: f64,
+    /// Range of each input.
+    ranges: Vec<f64>,
+    /// The row of the largest value of the first input.
+    largest: usize,
     /// The rows at which the first input reverses, for each smallest reversal.
     turning: Vec<Vec<usize>>,
 }
 
 impl<'r> Path<'r> {
     fn of(record: &'r Record) -> Self {
-        let (low, high) = range(record.inputs[0].iter());
-        let turning =
-            SMALLEST_REVERSALS.iter().map(|share| turning_points(&record.inputs[0], share * (high - low)));
-        Self { record, range: high - low, turning: turning.collect() }
+        let ranges: Vec<f64> = record.inputs.iter().map(|input| extent(input)).collect();
+        let x = &record.inputs[0];
+        let turning = SMALLEST_REVERSALS.iter().map(|share| turning_points(x, share * ranges[0])).collect();
+        let largest = (0..x.len()).max_by(|&i, &j| x[i].total_cmp(&x[j])).unwrap_or(0);
+        Self { record, ranges, largest, turning }
     }
 
     fn agrees(&self, long: &Path<'_>) -> Option<Agreement> {
@@ -111,15 +115,25 @@ impl<'r> Path<'r> {
         {
             return None;
         }
-        let near = NEAR * self.range.max(long.range);
-        if self.by_rows(long, near) || self.by_turns(long, near) {
+        let near = self.near(long);
+        if self.by_rows(long, &near) || self.by_turns(long, &near) {
             return Some(Agreement::Whole);
         }
-        self.is_part_of(long, near).then_some(Agreement::Part)
+        self.is_part_of(long, &near).then_some(Agreement::Part)
+    }
+
+    /// Differences of each input that are none; of further inputs, which may be constant, also a share of their value.
+    fn near(&self, long: &Path<'_>) -> Vec<f64> {
+        let ranges = self.ranges.iter().zip(&long.ranges).map(|(a, b)| a.max(*b)).enumerate();
+        let near = ranges.map(|(index, range)| match index {
+            0 => NEAR * range,
+            further => NEAR * range.max(self.record.inputs[further][0].abs()),
+        });
+        near.collect()
     }
 
     /// True if both records reverse alike, from the first row to the last.
-    fn by_turns(&self, long: &Path<'_>, near: f64) -> bool {
+    fn by_turns(&self, long: &Path<'_>, near: &[f64]) -> bool {
         let ends = |path: &Path<'_>, turning: &[usize]| -> Vec<usize> {
             let last = path.record.len() - 1;
             std::iter::once(0).chain(turning.iter().copied()).chain([last]).collect()
@@ -131,7 +145,7 @@ impl<'r> Path<'r> {
     }
 
     /// True if the turning points are those of a part of the other record.
-    fn is_part_of(&self, long: &Path<'_>, near: f64) -> bool {
+    fn is_part_of(&self, long: &Path<'_>, near: &[f64]) -> bool {
         self.turning.iter().zip(&long.turning).any(|(short, of_long)| {
             short.len() >= FEWEST_OF_A_PART
                 && of_long.windows(short.len()).any(|part| self.is_alike(short, long, part, near))
@@ -139,13 +153,10 @@ impl<'r> Path<'r> {
     }
 
     /// True if all inputs agree at these rows, and the time between them.
-    fn is_alike(&self, rows: &[usize], other: &Path<'_>, other_rows: &[usize], near: f64) -> bool {
+    fn is_alike(&self, rows: &[usize], other: &Path<'_>, other_rows: &[usize], near: &[f64]) -> bool {
         let is_near = |(&row, &other_row): (&usize, &usize)| {
-            let inputs = self.record.inputs.iter().zip(&other.record.inputs).enumerate();
-            inputs.into_iter().all(|(index, (a, b))| {
-                let near = if index == 0 { near } else { NEAR * extent(a).max(extent(b)).max(a[row].abs()) };
-                (a[row] - b[other_row]).abs() <= near
-            })
+            let mut inputs = self.record.inputs.iter().zip(&other.record.inputs).zip(near);
+            inputs.all(|((a, b), near)| (a[row] - b[other_row]).abs() <= *near)
         };
         rows.iter().zip(other_rows).all(is_near) && {
             let time = |path: &Path<'_>, rows: &[usize]| {
@@ -157,7 +168,7 @@ impl<'r> Path<'r> {
     }
 
     /// True if the inputs agree row by row, after a shift that brings the largest values together.
-    fn by_rows(&self, long: &Path<'_>, near: f64) -> bool {
+    fn by_rows(&self, long: &Path<'_>, near: &[f64]) -> bool {
         let (a, b) = (self.record, long.record);
         let (rows, others) = (a.len(), b.len());
         if rows.abs_diff(others) as f64 > AS_LONG * others as f64 {
@@ -167,19 +178,20 @@ impl<'r> Path<'r> {
         if total(a).zip(total(b)).is_some_and(|(a, b)| !is_as_fast(a, b)) {
             return false;
         }
-        let largest = |x: &[f64]| (0..x.len()).max_by(|&i, &j| x[i].total_cmp(&x[j])).unwrap_or(0);
-        let (first, second) = (largest(&a.inputs[0]), largest(&b.inputs[0]));
+        let (first, second) = (self.largest, long.largest);
         let shift = second.abs_diff(first);
         if shift as f64 > AS_LONG * others as f64 {
             return false;
         }
         let (skip_a, skip_b) = (first - first.min(second), second - first.min(second));
-        a.inputs.iter().zip(&b.inputs).enumerate().all(|(index, (a, b))| {
-            let near = if index == 0 { near } else { NEAR * extent(a).max(extent(b)).max(a[0].abs()) };
-            let pairs = || a[skip_a..].iter().zip(&b[skip_b..]);
-            let square: f64 = pairs().map(|(a, b)| (a - b).powi(2)).sum();
+        a.inputs.iter().zip(&b.inputs).zip(near).all(|((a, b), near)| {
+            let pairs = a[skip_a..].iter().zip(&b[skip_b..]);
             // A root mean square difference is smaller than single ones.
-            square <= 0.25 * near * near * pairs().count() as f64
+            let mut left = 0.25 * near * near * pairs.len() as f64;
+            pairs.into_iter().all(|(a, b)| {
+                left -= (a - b).powi(2);
+                left >= 0.0
+            })
         })
     }
 }

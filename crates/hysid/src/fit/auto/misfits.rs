@@ -4,12 +4,8 @@
 //! training error at most [`FITS`] times that of the candidate that fits best, unless the ensemble predicts held-out
 //! rows better than that candidate. Otherwise the candidates that are worse are dropped, in two steps.
 
-use super::{Chosen, Trial, errors_held_out};
-use crate::error::Result;
-use crate::fit::auto::combination::Leaf;
+use super::{Assembled, Chosen, Trial, errors_held_out};
 use crate::fit::auto::score::Score;
-use crate::fit::auto::trial::fit_members;
-use crate::model::Predictor;
 
 /// Training error of an ensemble, relative to that of the candidate that fits best. Designed.
 const FITS: f64 = 1.3;
@@ -22,8 +18,20 @@ const SLACK_OF_ONE_LOOP: f64 = 0.5;
 /// many errors is low by chance. Designed.
 const CLEARLY_BETTER: f64 = 0.9;
 
-/// Held-out errors of candidates that stay beside the preferred one, relative to its own, in the first and second step.
-const ABOUT_AS_GOOD: [f64; 2] = [1.2, 1.0];
+/// A step in which misfits are dropped.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step {
+    /// Held-out errors of candidates that stay beside the preferred one, relative to its own. Designed.
+    about_as_good: f64,
+    /// True if a candidate that does not fit well stays where it predicts better than the one that fits best.
+    keeps_better_predictors: bool,
+}
+
+/// The steps, until the ensemble is no misfit.
+pub(super) const STEPS: [Step; 2] = [
+    Step { about_as_good: 1.2, keeps_better_predictors: true },
+    Step { about_as_good: 1.0, keeps_better_predictors: false },
+];
 
 /// Errors of a candidate or an ensemble, in percent of the standard deviation.
 #[derive(Debug, Clone, Copy)]
@@ -35,45 +43,37 @@ struct Fitness {
 }
 
 impl Chosen<'_, '_, '_> {
-    /// Drops candidates until the ensemble of the others is no misfit.
-    ///
-    /// # Errors
-    /// As a free run over the data.
-    pub(super) fn drop_misfits(&mut self) -> Result<()> {
-        if self.options.only.is_some() {
-            return Ok(());
+    /// Drops candidates that make the ensemble worse than one of them; false if there are none, or the user decided.
+    pub(super) fn drops_misfits(&mut self, ensemble: &Assembled, step: Step) -> bool {
+        let all: Vec<Option<Fitness>> = self.trials.iter().map(|trial| self.fitness(trial)).collect();
+        let least = |figure: fn(&Fitness) -> f64| {
+            all.iter().flatten().copied().min_by(|a, b| figure(a).total_cmp(&figure(b)))
+        };
+        let best = least(|one| one.training).zip(least(|one| one.held_out));
+        let Some(((fits, predicts), ensemble)) = best.zip(self.fitness_of_ensemble(ensemble)) else {
+            return false;
+        };
+        let is_one_loop = self.evidence.is_one_loop();
+        let most = FITS * fits.training + if is_one_loop { SLACK_OF_ONE_LOOP } else { 0.0 };
+        let is_misfit = ensemble.training > most && ensemble.score >= fits.score;
+        // For one loop, held-out rows are not what candidates are chosen by.
+        let is_beaten = !is_one_loop
+            && predicts.held_out < CLEARLY_BETTER * ensemble.held_out
+            && predicts.score < ensemble.score;
+        let is_kept = |one: &Fitness| {
+            let fits_well = one.training <= most || step.keeps_better_predictors && one.score < fits.score;
+            let predicts_well = one.held_out <= step.about_as_good * predicts.held_out;
+            (!is_misfit || fits_well) && (!is_beaten || predicts_well)
+        };
+        let keeps: Vec<bool> = all.iter().map(|one| one.as_ref().is_some_and(is_kept)).collect();
+        if self.options.only.is_some() || !is_misfit && !is_beaten || !keeps.contains(&true) {
+            return false;
         }
-        for (step, about_as_good) in ABOUT_AS_GOOD.into_iter().enumerate() {
-            let Some(ensemble) = self.fitness_of_ensemble()? else { return Ok(()) };
-            let all: Vec<Option<Fitness>> = self.trials.iter().map(|trial| self.fitness(trial)).collect();
-            let least = |figure: fn(&Fitness) -> f64| {
-                all.iter().flatten().copied().min_by(|a, b| figure(a).total_cmp(&figure(b)))
-            };
-            let Some((fits, predicts)) = least(|one| one.training).zip(least(|one| one.held_out)) else {
-                return Ok(());
-            };
-            let most =
-                FITS * fits.training + if self.evidence.is_one_loop() { SLACK_OF_ONE_LOOP } else { 0.0 };
-            let is_misfit = ensemble.training > most && ensemble.score >= fits.score;
-            // For one loop, held-out rows are not what candidates are chosen by.
-            let is_beaten = !self.evidence.is_one_loop()
-                && predicts.held_out < CLEARLY_BETTER * ensemble.held_out
-                && predicts.score < ensemble.score;
-            let is_kept = |one: &Fitness| {
-                let fits_well = one.training <= most || step == 0 && one.score < fits.score;
-                let predicts_well = one.held_out <= about_as_good * predicts.held_out;
-                (!is_misfit || fits_well) && (!is_beaten || predicts_well)
-            };
-            let keeps: Vec<bool> = all.iter().map(|one| one.as_ref().is_some_and(is_kept)).collect();
-            if !is_misfit && !is_beaten || !keeps.contains(&true) {
-                return Ok(());
-            }
-            let (kept, left): (Vec<_>, Vec<_>) =
-                std::mem::take(&mut self.trials).into_iter().zip(keeps).partition(|(_, keep)| *keep);
-            self.trials = kept.into_iter().map(|(trial, _)| trial).collect();
-            self.left_out.extend(left.into_iter().map(|(trial, _)| trial));
-        }
-        Ok(())
+        let (kept, left): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.trials).into_iter().zip(keeps).partition(|(_, keep)| *keep);
+        self.trials = kept.into_iter().map(|(trial, _)| trial).collect();
+        self.left_out.extend(left.into_iter().map(|(trial, _)| trial));
+        true
     }
 
     fn fitness(&self, trial: &Trial) -> Option<Fitness> {
@@ -88,20 +88,12 @@ impl Chosen<'_, '_, '_> {
         })
     }
 
-    /// Fits the members of the ensemble of all candidates, and judges it; `None` if there is none.
-    fn fitness_of_ensemble(&mut self) -> Result<Option<Fitness>> {
-        let Some(all) = self.combination(|_| true) else { return Ok(None) };
-        let wanted: Vec<(usize, usize)> = all.leaves().iter().map(|leaf| (leaf.place, leaf.start)).collect();
-        fit_members(&mut self.trials, &wanted, self.bench.data, self.bench.work);
-        let is_fitted = |leaf: Leaf| self.trials[leaf.place].members.contains_key(&leaf.start);
-        let Some(combination) = all.only(is_fitted) else { return Ok(None) };
-        let members = |place: usize, start: usize| self.trials[place].members.get(&start).cloned();
-        let body = Predictor::Ensemble(combination.ensemble(members, self.data.input_range(0))?);
-        let model = super::ensemble(body, self.bench.data, self.options, None, None, self.bench.work)?;
-        let predicted = self.predicted(&self.rows_held_out(&combination));
-        let held_out = self.errors_held_out(&predicted).and_then(|errors| errors.nrmse_std_percent);
-        let training = model.provenance().trained_error().nrmse_std_percent;
-        let score = combination.score(&self.trials, self.bench.folds).mean_percent();
-        Ok(held_out.zip(training).map(|(held_out, training)| Fitness { training, held_out, score }))
+    fn fitness_of_ensemble(&self, ensemble: &Assembled) -> Option<Fitness> {
+        let provenance = ensemble.model.provenance();
+        Some(Fitness {
+            training: provenance.trained_error().nrmse_std_percent?,
+            held_out: provenance.validation.as_ref()?.nrmse_std_percent?,
+            score: ensemble.combination.score(&self.trials, self.bench.folds).mean_percent(),
+        })
     }
 }
