@@ -161,7 +161,7 @@ class Stepper:
 
 def cycles(
     data: Dataset,
-    smallest_reversal: float,
+    smallest_reversal: float | None,
     smoothing: bool,
     division: str | None,
     field: str | None,
