@@ -104,9 +104,6 @@ impl Destination {
         if !self.kind.recognises(target).map_err(Failure::refused(&self.path))? {
             return Err(Failure::NotOurs { path: self.path.clone(), expected: self.kind.words() });
         }
-        if self.keep {
-            backup::check(target, &self.kind)?;
-        }
         Ok(true)
     }
 
