@@ -162,7 +162,7 @@ pub struct Demo {
 /// Which files may be replaced.
 #[derive(Debug, Clone, Args)]
 pub struct Overwriting {
-    /// Replace a file even if Hysid did not write it
+    /// Replace also files that Hysid did not write; kept as NAME.bak
     #[arg(long)]
     pub force: bool,
 }

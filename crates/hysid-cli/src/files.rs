@@ -99,6 +99,18 @@ pub fn explained(failure: Failure) -> anyhow::Error {
     }
 }
 
+/// A failure of a folder in the program's words.
+pub fn explained_folder(failure: Failure) -> anyhow::Error {
+    let advice = match failure {
+        Failure::NotOurs { .. } | Failure::Changed(_) => {
+            "name another folder with --out, or add --force, which keeps what it replaces as NAME.bak"
+        }
+        Failure::HoldsInput { .. } | Failure::NotPlain(_) => "name another folder with --out",
+        failure => return anyhow!("{failure}"),
+    };
+    Usage(format!("{failure}: {advice}")).into()
+}
+
 /// Refuses, before the work begins, files that cannot be written, that Hysid did not write, or that are read too.
 pub fn check_outputs(outputs: &[&Destination], inputs: &[&Path]) -> Result<()> {
     for (place, output) in outputs.iter().enumerate() {

@@ -42,8 +42,19 @@ enum Outcome {
     Interrupted,
 }
 
+/// Says nothing of panics in libraries that read files: they become errors of the file.
+fn quieten_readers() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if std::thread::current().name() != Some(hysid_tables::CONTAINER_THREAD) {
+            usual(panic);
+        }
+    }));
+}
+
 /// Does what the command line says, and gives the exit status.
 pub fn run() -> ExitCode {
+    quieten_readers();
     let arguments = match Arguments::typed() {
         Ok(arguments) => arguments,
         Err(error) => return refuse(error),

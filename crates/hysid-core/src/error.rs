@@ -468,7 +468,17 @@ impl std::error::Error for OptionError {}
 
 /// The text with visible signs in the place of control characters, which names in files may have.
 fn one_line(text: &str) -> Cow<'_, str> {
-    escaped(text, char::is_control)
+    escaped(text, is_hidden)
+}
+
+/// True for characters that are not displayed as such: control characters, separators of lines, those that change the
+/// direction of text or have no width, and those that are none.
+pub fn is_hidden(letter: char) -> bool {
+    letter.is_control()
+        || matches!(letter, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')
+        || matches!(letter, '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fdd0}'..='\u{fdef}' | '\u{fff9}'..='\u{fffb}')
+        || matches!(letter, '\u{e0000}'..='\u{e007f}')
+        || u32::from(letter) & 0xfffe == 0xfffe
 }
 
 /// The text with visible signs, such as `\n` and `\x1b`, in the place of the letters that are hidden.

@@ -24,7 +24,7 @@ library they are arguments of `fit`.
 | option | meaning | default |
 |---|---|---|
 | `--out` (`-o`) | model file; the report has the same name with `.html` | name of the first table with `.json` |
-| `--force` | replace a file even if Hysid did not write it | off |
+| `--force` | replace files even if Hysid did not write them; each is kept as `NAME.bak` | off |
 | `--no-report` | write no report | off |
 | `--json` | print the result as one JSON object | off |
 | `--quiet` (`-q`) | only warnings and errors on stderr | off |

@@ -17,7 +17,7 @@ pub fn escape(text: &str) -> String {
     escaped
 }
 
-/// Control characters have no place in XML.
+/// Control characters, and the two that are none, have no place in XML.
 pub fn is_not_xml(letter: char) -> bool {
-    letter.is_control() && !"\n\t".contains(letter)
+    matches!(letter, '\u{fffe}' | '\u{ffff}') || (letter.is_control() && !"\n\t".contains(letter))
 }

@@ -16,8 +16,11 @@ pub fn json(value: &impl Serialize) -> serde_json::Result<String> {
         match letter {
             // Outside of strings JSON has no other white space, and inside it is escaped already.
             '\n' => shown.push('\n'),
-            // All of them are in the plane where four digits are enough.
-            hidden if is_hidden(hidden) => shown.push_str(&format!("\\u{:04x}", hidden as u32)),
+            hidden if is_hidden(hidden) => {
+                for half in hidden.encode_utf16(&mut [0; 2]) {
+                    shown.push_str(&format!("\\u{half:04x}"));
+                }
+            }
             plain => shown.push(plain),
         }
     }
@@ -30,7 +33,7 @@ mod tests {
 
     #[test]
     fn json_reads_back_as_the_same_and_hides_nothing() {
-        let value = vec!["a\n\u{9b}2J\u{7f}\u{202e}\"é".to_string()];
+        let value = vec!["a\n\u{9b}2J\u{7f}\u{202e}\u{e0041}\"é".to_string()];
         let text = json(&value).unwrap();
         assert!(!text.chars().any(|letter| letter != '\n' && is_hidden(letter)), "{text:?}");
         assert_eq!(serde_json::from_str::<Vec<String>>(&text).unwrap(), value);

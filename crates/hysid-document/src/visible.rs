@@ -3,20 +3,13 @@
 use std::borrow::Cow;
 
 use hysid_core::error::escaped;
+pub use hysid_core::error::is_hidden;
 
 /// Largest number of characters of a name or a cell.
 const MOST_LETTERS: usize = 60;
 
 /// Names that are shown of many.
 const MOST_NAMES: usize = 6;
-
-/// True for characters that a terminal does not display as such: control characters, and those that change
-/// the direction of text or have no width.
-pub fn is_hidden(letter: char) -> bool {
-    letter.is_control()
-        || matches!(letter, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')
-        || matches!(letter, '\u{2060}'..='\u{206f}' | '\u{feff}')
-}
 
 /// The text with visible symbols instead of control characters, such as `\n` and `\x1b`: always one line.
 pub fn visible(text: &str) -> Cow<'_, str> {

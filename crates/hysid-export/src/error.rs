@@ -7,7 +7,9 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum Error {
     /// A name that is no identifier of the target's language.
-    #[error("the name {0:?} is no identifier: letters, digits and underscores, and it begins with a letter")]
+    #[error(
+        "the name {0:?} is no identifier: at most 50 letters, digits and underscores, and it begins with a letter"
+    )]
     Name(String),
     /// A name that has another meaning in the target's language.
     #[error("{name:?} has another meaning in exports to {target}: choose another name")]

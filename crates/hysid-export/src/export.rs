@@ -7,6 +7,7 @@ use crate::manifest::{MANIFEST, manifest};
 use crate::options::Options;
 use crate::program::Precision;
 use crate::readme::readme;
+use crate::reserved;
 use crate::subject::{File, Subject};
 use crate::target::{Target, Written};
 
@@ -32,10 +33,9 @@ pub fn export(model: &Model, to: Target, options: &Options) -> Result<Export, Er
     if options.inverse.is_some() && !back_end.has_inverse {
         return Err(Error::NoInverse(back_end.name));
     }
-    if back_end.reserved.contains(&options.name.as_str()) {
-        return Err(Error::Reserved { name: options.name.clone(), target: back_end.name });
-    }
+    reserved::check(&options.name, back_end.reserved, back_end.name)?;
     let subject = Subject::of(model, options)?;
+    reserved::check_arrays(&options.name, subject.tangent(), back_end.name)?;
     let Written { mut files, note } = (back_end.write)(&subject)?;
     // A unit of the inverse has no steps of the model itself.
     if subject.inverse().is_none() || to != Target::Fmu {

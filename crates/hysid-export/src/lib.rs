@@ -16,13 +16,15 @@ mod manifest;
 mod options;
 pub mod program;
 mod readme;
+mod reserved;
 mod subject;
 mod target;
+mod text;
 pub mod vectors;
 
 pub use error::Error;
 pub use export::{Export, export};
-pub use manifest::{MANIFEST, files_of};
+pub use manifest::{MANIFEST, checksum, files_of};
 pub use options::{FmiVersion, InverseOptions, Options};
 pub use program::Precision;
 pub use subject::File;

@@ -10,21 +10,35 @@ pub const MANIFEST: &str = "manifest.json";
 
 const FORMAT: &str = "hysid-export";
 
-/// The files of an export, from the text of its manifest; `None` if it is none.
-pub fn files_of(manifest: &str) -> Option<Vec<String>> {
-    let manifest: serde_json::Value = serde_json::from_str(manifest).ok()?;
-    if manifest["format"] != FORMAT {
+/// Name of the field with the checksum of the manifest itself, over its text with [`NO_SUM`] in this place.
+const OWN_SUM: &str = "manifest_sha256";
+
+const NO_SUM: &str = "";
+
+/// The files of an export with their checksums, from the text of its manifest; `None` if Hysid did not write it so.
+pub fn files_of(manifest: &str) -> Option<Vec<(String, String)>> {
+    let value: serde_json::Value = serde_json::from_str(manifest).ok()?;
+    let own = value[OWN_SUM].as_str()?;
+    let without = manifest.replacen(&field(own), &field(NO_SUM), 1);
+    if value["format"] != FORMAT || checksum(without.as_bytes()) != own {
         return None;
     }
-    let paths =
-        manifest["files"].as_array()?.iter().filter_map(|file| file["path"].as_str().map(String::from));
-    Some(paths.collect())
+    let entry = |file: &serde_json::Value| {
+        Some((file["path"].as_str()?.to_string(), file["sha256"].as_str()?.to_string()))
+    };
+    value["files"].as_array()?.iter().map(entry).collect()
+}
+
+/// The field as it stands in the text.
+fn field(sum: &str) -> String {
+    format!("\"{OWN_SUM}\": \"{sum}\"")
 }
 
 #[derive(Serialize)]
 struct Manifest<'a> {
     format: &'static str,
     version: u32,
+    manifest_sha256: &'static str,
     name: &'a str,
     target: &'static str,
     precision: &'static str,
@@ -51,14 +65,16 @@ pub(crate) fn manifest(subject: &Subject<'_>, to: &'static str, files: &[File]) 
     let manifest = Manifest {
         format: FORMAT,
         version: 1,
+        manifest_sha256: NO_SUM,
         name: subject.name(),
         target: to,
         precision: subject.precision().name(),
         model: facts.iter().map(|(fact, value)| Fact { fact, value }).collect(),
         files: files.iter().map(Entry::of).collect(),
     };
-    let text = serde_json::to_string_pretty(&manifest).unwrap_or_default();
-    text + "\n"
+    let text = serde_json::to_string_pretty(&manifest).unwrap_or_default() + "\n";
+    let sum = checksum(text.as_bytes());
+    text.replacen(&field(NO_SUM), &field(&sum), 1)
 }
 
 impl<'a> Entry<'a> {
@@ -68,6 +84,28 @@ impl<'a> Entry<'a> {
 }
 
 /// The SHA-256 checksum in hexadecimal digits.
-pub(crate) fn checksum(content: &[u8]) -> String {
+pub fn checksum(content: &[u8]) -> String {
     format!("{:x}", Sha256::digest(content))
+}
+
+/// A number that tells a model from others, of the source code of its step.
+pub(crate) fn token_of(source: &str) -> u32 {
+    u32::from_str_radix(&checksum(source.as_bytes())[..8], 16).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_manifest_made_by_hand_or_changed_is_none() {
+        let text = format!(
+            "{{\n  \"format\": \"hysid-export\",\n  {},\n  \"files\": [{{\"path\": \"a.c\", \"sha256\": \"1\"}}]\n}}\n",
+            field(NO_SUM)
+        );
+        assert_eq!(files_of(&text), None);
+        let ours = text.replacen(&field(NO_SUM), &field(&checksum(text.as_bytes())), 1);
+        assert_eq!(files_of(&ours), Some(vec![("a.c".into(), "1".into())]));
+        assert_eq!(files_of(&ours.replace("a.c", "b.c")), None);
+    }
 }

@@ -266,6 +266,14 @@ impl Builder {
         self.add(Statement::Assign(variable, value.into()));
     }
 
+    /// A whole number of the state within bounds: a state that was restored may have any number there, also none.
+    pub fn counter(&mut self, array: Array, index: impl Into<Whole>, low: f64, high: f64) -> WholeVariable {
+        let kept = self.value(array.at(index));
+        let kept = self.value(kept.above(low).choose(&kept, low));
+        let kept = self.value(kept.min(high));
+        self.whole_variable(kept.to_whole())
+    }
+
     /// As [`Builder::variable`], for a whole number.
     pub fn whole_variable(&mut self, value: impl Into<Whole>) -> WholeVariable {
         let variable = self.next_whole();

@@ -3,6 +3,7 @@
 use crate::program::interpreter::Machine;
 use crate::subject::{File, Subject};
 use crate::target::Target;
+use crate::text::in_markdown;
 use crate::vectors::Action;
 
 /// The text of `README.md`.
@@ -10,7 +11,7 @@ pub(crate) fn readme(subject: &Subject<'_>, to: Target, files: &[File]) -> Strin
     let facts: String = subject
         .facts()
         .iter()
-        .map(|(fact, text)| format!("| {fact} | {} |\n", text.replace('|', "\\|")))
+        .map(|(fact, text)| format!("| {} | {} |\n", in_markdown(fact), in_markdown(text)))
         .collect();
     let list: String = files.iter().map(|file| format!("- `{}`\n", file.path)).collect();
     let (states, constants) = (subject.program().state_len(), subject.program().constants_len());

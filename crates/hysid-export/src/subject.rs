@@ -1,5 +1,6 @@
 //! A model with all that targets write of it.
 
+use hysid_core::data::record::ColumnNames;
 use hysid_core::model::{BandLevel, Model};
 use hysid_core::significant::Significant;
 
@@ -11,6 +12,7 @@ use crate::program::interpreter::Machine;
 use crate::program::tangent::with_tangent;
 use crate::program::unused::without_unused;
 use crate::program::{Precision, Program};
+use crate::text::{harmless, harmless_names};
 use crate::vectors::{Action, Vector, vectors};
 
 /// A file of an export.
@@ -32,6 +34,8 @@ impl File {
 pub(crate) struct Subject<'m> {
     model: &'m Model,
     options: &'m Options,
+    /// Names of the columns, as they may stand in every file.
+    names: ColumnNames,
     description: Description,
     tangent: Program,
     vectors: Vec<Vector>,
@@ -40,11 +44,6 @@ pub(crate) struct Subject<'m> {
 
 impl<'m> Subject<'m> {
     pub fn of(model: &'m Model, options: &'m Options) -> Result<Self, Error> {
-        let is_identifier = options.name.starts_with(|first: char| first.is_ascii_alphabetic())
-            && options.name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-        if !is_identifier {
-            return Err(Error::Name(options.name.clone()));
-        }
         let band = match options.band {
             None => None,
             Some(level) => {
@@ -60,7 +59,8 @@ impl<'m> Subject<'m> {
         let vectors = vectors(&description, &tangent, &ranges.inputs, rate);
         let inverse = options.inverse.map(|asked| Inverse::of(model, asked, &description, options.precision));
         let inverse = inverse.transpose()?;
-        Ok(Self { model, options, description, tangent, vectors, inverse })
+        let names = harmless_names(model.names());
+        Ok(Self { model, options, names, description, tangent, vectors, inverse })
     }
 
     pub fn model(&self) -> &Model {
@@ -69,6 +69,11 @@ impl<'m> Subject<'m> {
 
     pub fn name(&self) -> &str {
         &self.options.name
+    }
+
+    /// Names of the columns, as they may stand in every file.
+    pub fn names(&self) -> &ColumnNames {
+        &self.names
     }
 
     pub fn precision(&self) -> Precision {
@@ -142,12 +147,13 @@ impl<'m> Subject<'m> {
         Some(steps.map(difference).fold(0.0, f64::max))
     }
 
-    /// Facts about the model, for the head of a file: each a name and a text.
+    /// Facts about the model, for the head of a file: each a name and a text. Both are [harmless](crate::text) in every
+    /// target.
     pub fn facts(&self) -> Vec<(String, String)> {
         let mut facts = vec![("model".to_string(), self.model.name().name().to_string())];
-        facts.extend(self.options.source.iter().cloned());
+        facts.extend(self.options.source.iter().map(|(fact, text)| (harmless(fact), harmless(text))));
         facts.push(("model's checksum".into(), checksum_of(self.model)));
-        let names = self.model.names();
+        let names = &self.names;
         let ranges = self.model.trained_ranges();
         for (index, argument) in self.description.arguments.iter().enumerate() {
             let text = match *argument {

@@ -73,7 +73,7 @@ pub(crate) struct BackEnd {
     pub has_single_precision: bool,
     /// True if it can have the inverse of a model too.
     pub has_inverse: bool,
-    /// Names that a model cannot have there.
+    /// Lists of names that a model cannot have there.
     pub reserved: &'static [&'static str],
     /// Writes the files, without those that every export has.
     pub write: fn(&Subject<'_>) -> Result<Written, Error>,

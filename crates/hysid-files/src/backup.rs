@@ -49,6 +49,25 @@ pub(crate) fn keep(target: &Path) -> io::Result<PathBuf> {
     Ok(path)
 }
 
+/// A copy of a file under a name beside it that is free: `NAME.bak`, `NAME.bak2` and so on.
+pub(crate) fn copied_aside(target: &Path) -> io::Result<PathBuf> {
+    let endings = std::iter::once(".bak".to_string()).chain((2..).map(|number| format!(".bak{number}")));
+    for ending in endings {
+        let copy = with_ending(target, &ending);
+        match File::create_new(&copy) {
+            Ok(mut file) => {
+                io::copy(&mut File::open(target)?, &mut file)?;
+                file.set_permissions(fs::metadata(target)?.permissions())?;
+                file.sync_all()?;
+                return Ok(copy);
+            }
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+    unreachable!("there is always a further name")
+}
+
 /// True if both files have the same content.
 pub(crate) fn are_same(a: &Path, b: &Path) -> io::Result<bool> {
     Ok(fs::metadata(a)?.len() == fs::metadata(b)?.len() && fs::read(a)? == fs::read(b)?)

@@ -22,8 +22,20 @@ pub struct Destination {
     keep: bool,
 }
 
+/// How a file that is replaced is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Copy {
+    /// Not at all.
+    None,
+    /// As `NAME.bak`, in the place of the one before.
+    Replacing,
+    /// As `NAME.bak`, or as `NAME.bak2` and so on if that is there.
+    Aside,
+}
+
 impl Destination {
-    /// A destination for a file of this kind. With `force`, any regular file there is replaced.
+    /// A destination for a file of this kind. With `force`, any regular file there is replaced; one
+    /// that Hysid did not write is kept as `NAME.bak`.
     pub fn new(path: impl Into<PathBuf>, kind: Kind, force: bool) -> Self {
         let keep = kind.is_kept();
         Self { path: path.into(), kind, force, keep }
@@ -92,14 +104,16 @@ impl Destination {
         if !self.kind.recognises(target).map_err(Failure::refused(&self.path))? {
             return Err(Failure::NotOurs { path: self.path.clone(), expected: self.kind.words() });
         }
-        if self.keep {
-            backup::check(target, &self.kind)?;
-        }
         Ok(true)
     }
 
-    /// True if a copy is kept of what is at the target: an empty file, or one that is replaced by force, is not worth it.
-    pub(crate) fn keeps_the_old(&self, target: &Path) -> io::Result<bool> {
-        Ok(self.keep && fs::metadata(target)?.len() > 0 && self.kind.recognises(target)?)
+    /// How what is at the target is kept: what Hysid did not write in any case, under a name of its own.
+    pub(crate) fn copy_of_the_old(&self, target: &Path) -> io::Result<Copy> {
+        Ok(match (self.kind.recognises(target)?, self.keep) {
+            _ if fs::metadata(target)?.len() == 0 => Copy::None,
+            (true, false) => Copy::None,
+            (true, true) if backup::check(target, &self.kind).is_ok() => Copy::Replacing,
+            _ => Copy::Aside,
+        })
     }
 }

@@ -14,6 +14,17 @@ pub enum Failure {
         /// What was expected there, such as "model of Hysid".
         expected: &'static str,
     },
+    /// A file of a folder is not as Hysid wrote it.
+    Changed(PathBuf),
+    /// A link, a device or a folder is in the place of a file.
+    NotPlain(PathBuf),
+    /// A folder has an input in it.
+    HoldsInput {
+        /// The folder.
+        folder: PathBuf,
+        /// The input.
+        input: PathBuf,
+    },
     /// Another process holds the lock of the file.
     InUse(PathBuf),
     /// The system refused.
@@ -38,6 +49,16 @@ impl fmt::Display for Failure {
             Self::NotOurs { path, expected } => {
                 write!(f, "{}: a file is there already and is no {expected}", path.display())
             }
+            Self::Changed(path) => {
+                write!(f, "{}: this file is not as Hysid wrote it", path.display())
+            }
+            Self::NotPlain(path) => {
+                write!(f, "{}: a link, a folder or a device is in the place of this file", path.display())
+            }
+            Self::HoldsInput { folder, input } => {
+                let (folder, input) = (folder.display(), input.display());
+                write!(f, "{folder}: holds {input}, which is read: results go to a folder of their own")
+            }
             Self::InUse(path) => write!(f, "{}: another process is writing this file", path.display()),
             Self::Refused { path, error } => {
                 write!(f, "{}: cannot be written: {}", path.display(), reason(error))
@@ -60,7 +81,9 @@ pub fn reason(error: &io::Error) -> String {
         _ => {
             let text = error.to_string();
             let end = text.find(" (os error").unwrap_or(text.len());
-            text[..end].to_lowercase()
+            let mut letters = text[..end].chars();
+            let first = letters.next().map(|first| first.to_lowercase().to_string());
+            first.unwrap_or_default() + letters.as_str()
         }
     }
 }

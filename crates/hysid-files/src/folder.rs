@@ -1,13 +1,20 @@
-//! Writing a folder whole or not at all.
+//! Writing the files of a folder together or not at all.
 
+mod changes;
+
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use crate::failure::Failure;
-use crate::temporary;
+use crate::{leftovers, temporary};
+use changes::Changes;
 
-/// A folder that is written at once. One of its files, the manifest, lists the others.
+/// Files of a manifest with their checksums.
+pub type Listed = Vec<(String, String)>;
+
+/// A folder whose files are written together. One of them, the manifest, lists the others with their checksums.
 #[derive(Debug)]
 pub struct Folder<'a> {
     /// Where it is to be.
@@ -16,96 +23,139 @@ pub struct Folder<'a> {
     pub what: &'static str,
     /// Name of the manifest.
     pub manifest: &'static str,
-    /// The files that the text of a manifest lists; `None` if the text is no manifest.
-    pub listed: fn(&str) -> Option<Vec<String>>,
-    /// Replace a folder that Hysid did not write, with all that is in it.
+    /// The files that the text of a manifest lists, with their checksums; `None` if Hysid did not write the text.
+    pub listed: fn(&str) -> Option<Listed>,
+    /// The checksum of a file.
+    pub checksum: fn(&[u8]) -> String,
+    /// Files that the content is made from. A folder with one of them in it is not written to.
+    pub inputs: &'a [&'a Path],
+    /// Write also into a folder of others, and over files that are no longer as Hysid wrote them. Each is kept as
+    /// `NAME.bak`.
     pub force: bool,
 }
 
 impl Folder<'_> {
-    /// Writes the files, each with its path in the folder. A folder that is there already is replaced if it is empty, or
-    /// holds nothing but what its own manifest lists.
-    ///
-    /// The files are written into a folder beside it, which is then renamed.
+    /// Writes the files, each with its path in the folder; the manifest comes last. Files that an earlier manifest lists
+    /// are replaced or removed if they are as Hysid wrote them; all others stay. Gives the copies of files that were
+    /// replaced by force.
     ///
     /// # Errors
-    /// A file or somebody else's folder at the path; what the system refuses. Nothing is then changed.
-    pub fn write(&self, files: &[(&str, &[u8])]) -> Result<(), Failure> {
+    /// A path that is no folder; a folder of others; a file there that is not as Hysid wrote it, or that is a link or no
+    /// plain file; a folder with an input in it; what the system refuses. Everything is then as it was.
+    pub fn write(&self, files: &[(&str, &[u8])]) -> Result<Vec<PathBuf>, Failure> {
         let refused = || Failure::refused(self.path);
-        let exists = self.check_old()?;
+        let found = match fs::symlink_metadata(self.path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            found => Some(found.map_err(refused())?),
+        };
+        match found {
+            Some(found) if !found.is_dir() => {
+                Err(Failure::NotOurs { path: self.path.to_path_buf(), expected: self.what })
+            }
+            Some(_) => self.write_into(&fs::canonicalize(self.path).map_err(refused())?, files),
+            None => self.write_new(files).map(|()| Vec::new()),
+        }
+    }
+
+    /// Writes into a new folder, which appears whole.
+    fn write_new(&self, files: &[(&str, &[u8])]) -> Result<(), Failure> {
+        let refused = || Failure::refused(self.path);
         let beside = temporary::folder_of(self.path);
         fs::create_dir_all(beside).map_err(refused())?;
-        let beginning = temporary::beginning(self.path);
-        let mut builder = temporary::builder(&beginning);
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(fs::Permissions::from_mode(0o777));
+        // From here on the working folder no longer matters.
+        let path =
+            fs::canonicalize(beside).map_err(refused())?.join(self.path.file_name().unwrap_or_default());
+        leftovers::clean(&path);
+        let waiting = temporary::create_folder(&path).map_err(refused())?;
+        for (name, content) in files {
+            temporary::write_synced(&waiting.path().join(name), content).map_err(refused())?;
         }
-        let new = builder.tempdir_in(beside).map_err(refused())?;
-        for (path, content) in files {
-            let file = new.path().join(path);
-            fs::create_dir_all(temporary::folder_of(&file)).map_err(refused())?;
-            fs::write(&file, content).map_err(refused())?;
-        }
-        if exists {
-            let old = builder.tempdir_in(beside).map_err(refused())?;
-            let old = old.path().join("old");
-            fs::rename(self.path, &old).map_err(refused())?;
-            if let Err(error) = fs::rename(new.path(), self.path) {
-                fs::rename(&old, self.path).map_err(refused())?;
-                return Err(refused()(error));
-            }
-        } else {
-            fs::rename(new.path(), self.path).map_err(refused())?;
-        }
+        temporary::publish(waiting.path()).map_err(refused())?;
+        fs::rename(waiting.path(), &path).map_err(refused())?;
+        temporary::sync_folder(temporary::folder_of(&path));
         Ok(())
     }
 
-    /// Refuses to replace what is at the path, if anything; tells if there is a folder.
-    fn check_old(&self) -> Result<bool, Failure> {
+    /// Writes into a folder that is there. `root` is its path whatever the working folder is.
+    fn write_into(&self, root: &Path, files: &[(&str, &[u8])]) -> Result<Vec<PathBuf>, Failure> {
         let refused = || Failure::refused(self.path);
-        let not_ours = || Failure::NotOurs { path: self.path.to_path_buf(), expected: self.what };
-        match fs::symlink_metadata(self.path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
-            Err(error) => return Err(refused()(error)),
-            Ok(found) if !found.is_dir() => return Err(not_ours()),
-            Ok(_) => {}
+        let holds = |input: &&&Path| fs::canonicalize(input).is_ok_and(|input| input.starts_with(root));
+        if let Some(input) = self.inputs.iter().find(holds) {
+            return Err(Failure::HoldsInput { folder: self.path.into(), input: input.to_path_buf() });
         }
-        let is_empty = fs::read_dir(self.path).map_err(refused())?.next().is_none();
-        if is_empty || self.force || self.holds_only_listed_files().map_err(refused())? {
-            return Ok(true);
+        let mut changes = Changes::begin(root, self.manifest).map_err(refused())?;
+        let listed = self.listed_in(root);
+        let is_empty = fs::read_dir(root).map_err(refused())?.flatten().all(|entry| changes.is_own(&entry));
+        if listed.is_none() && !is_empty && !self.force {
+            return Err(Failure::NotOurs { path: self.path.into(), expected: self.what });
         }
-        Err(not_ours())
+        let listed = listed.unwrap_or_default();
+        for (name, content) in files {
+            let is_kept = self.check_old(root, name, content, &listed)?;
+            changes.add(name, content, is_kept).map_err(refused())?;
+        }
+        for (name, sum) in &listed {
+            let is_new = files.iter().any(|(new, _)| new == name);
+            if !is_new && is_plain(root, name) && self.has_sum(&root.join(name), sum) {
+                changes.remove(name);
+            }
+        }
+        changes.commit().map_err(refused())
     }
 
-    fn holds_only_listed_files(&self) -> io::Result<bool> {
-        let Ok(manifest) = fs::read_to_string(self.path.join(self.manifest)) else { return Ok(false) };
-        let Some(listed) = (self.listed)(&manifest) else { return Ok(false) };
-        let is_known = |file: &PathBuf| {
-            file == Path::new(self.manifest) || listed.iter().any(|known| Path::new(known) == file)
-        };
-        Ok(files_in(self.path)?.iter().all(is_known))
+    /// Files of the manifest that is there, with their checksums; `None` if it is none of Hysid. It lists itself.
+    fn listed_in(&self, root: &Path) -> Option<BTreeMap<String, String>> {
+        if !is_plain(root, self.manifest) {
+            return None;
+        }
+        let text = fs::read_to_string(root.join(self.manifest)).ok()?;
+        let mut listed: BTreeMap<String, String> = (self.listed)(&text)?.into_iter().collect();
+        listed.insert(self.manifest.into(), (self.checksum)(text.as_bytes()));
+        Some(listed)
+    }
+
+    /// Refuses to replace what is there under this name unless Hysid wrote it; with force, tells if it is to be kept.
+    fn check_old(
+        &self,
+        root: &Path,
+        name: &str,
+        content: &[u8],
+        listed: &BTreeMap<String, String>,
+    ) -> Result<bool, Failure> {
+        let path = root.join(name);
+        let shown = self.path.join(name);
+        match fs::symlink_metadata(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
+            Err(error) => return Err(Failure::refused(&shown)(error)),
+            Ok(_) if !is_plain(root, name) => return Err(Failure::NotPlain(shown)),
+            Ok(_) => {}
+        }
+        let is_ours = listed.get(name).is_some_and(|sum| self.has_sum(&path, sum));
+        if is_ours || fs::read(&path).is_ok_and(|old| old == content) {
+            return Ok(false);
+        }
+        if self.force { Ok(true) } else { Err(Failure::Changed(shown)) }
+    }
+
+    fn has_sum(&self, path: &Path, sum: &str) -> bool {
+        fs::read(path).is_ok_and(|content| (self.checksum)(&content) == sum)
     }
 }
 
-/// All files in a folder and the folders in it, by their paths in it, sorted.
-fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    let mut waiting = vec![folder.to_path_buf()];
-    while let Some(next) = waiting.pop() {
-        for entry in fs::read_dir(next)? {
-            let entry = entry?;
-            match entry.file_type()?.is_dir() {
-                true => waiting.push(entry.path()),
-                false => {
-                    files.push(entry.path().strip_prefix(folder).map_or(entry.path(), Path::to_path_buf))
-                }
-            }
+/// True for a plain file in the folder, whose path leads through plain folders.
+fn is_plain(root: &Path, name: &str) -> bool {
+    let mut path = root.to_path_buf();
+    let mut last = false;
+    for part in Path::new(name).components() {
+        let Component::Normal(part) = part else { return false };
+        path.push(part);
+        let Ok(found) = fs::symlink_metadata(&path) else { return false };
+        last = found.is_file();
+        if !last && !found.is_dir() {
+            return false;
         }
     }
-    files.sort();
-    Ok(files)
+    last
 }
 
 #[cfg(test)]
@@ -113,38 +163,157 @@ mod tests {
     use super::*;
 
     const FILES: [(&str, &[u8]); 3] =
-        [("list", b"list:a.txt b/c.txt"), ("a.txt", b"one"), ("b/c.txt", b"two")];
+        [("a.txt", b"one"), ("b/c.txt", b"two"), ("list", b"list:a.txt=one b/c.txt=two")];
 
-    fn listed(manifest: &str) -> Option<Vec<String>> {
-        Some(manifest.strip_prefix("list:")?.split(' ').map(String::from).collect())
+    /// The checksum of a file is here its content.
+    fn listed(manifest: &str) -> Option<Listed> {
+        let entries = manifest.strip_prefix("list:")?.split(' ');
+        entries.map(|entry| entry.split_once('=').map(|(name, sum)| (name.into(), sum.into()))).collect()
+    }
+
+    fn checksum(content: &[u8]) -> String {
+        String::from_utf8_lossy(content).into_owned()
     }
 
     fn folder(path: &Path, force: bool) -> Folder<'_> {
-        Folder { path, what: "export", manifest: "list", listed, force }
+        Folder { path, what: "export", manifest: "list", listed, checksum, inputs: &[], force }
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
     }
 
     #[test]
-    fn a_folder_appears_whole_and_replaces_only_its_own() {
+    fn a_folder_appears_whole_and_its_own_files_are_replaced() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("new/export");
         folder(&path, false).write(&FILES).unwrap();
         assert_eq!(fs::read(path.join("b/c.txt")).unwrap(), b"two");
-        folder(&path, false).write(&FILES[..2]).unwrap();
-        assert_eq!(files_in(&path).unwrap(), [Path::new("a.txt"), Path::new("list")]);
         fs::write(path.join("mine.txt"), "mine").unwrap();
-        assert!(matches!(folder(&path, false).write(&FILES), Err(Failure::NotOurs { .. })));
-        assert_eq!(fs::read(path.join("mine.txt")).unwrap(), b"mine");
-        folder(&path, true).write(&FILES).unwrap();
-        assert_eq!(files_in(&path).unwrap().len(), 3);
-        assert_eq!(fs::read_dir(place.path().join("new")).unwrap().count(), 1, "nothing is left beside it");
+        let next: [(&str, &[u8]); 2] = [("a.txt", b"new"), ("list", b"list:a.txt=new")];
+        assert!(folder(&path, false).write(&next).unwrap().is_empty());
+        // The file that is no longer of the export is gone, and that of others is there.
+        assert_eq!(names(&path), ["a.txt", "b", "list", "mine.txt"]);
+        assert_eq!(names(&path.join("b")), [""; 0]);
+        assert_eq!(fs::read(path.join("a.txt")).unwrap(), b"new");
+        assert_eq!(names(&place.path().join("new")), ["export"], "nothing is left beside it");
     }
 
     #[test]
-    fn files_are_not_replaced() {
+    fn files_that_were_changed_are_kept() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("export");
+        folder(&path, false).write(&FILES).unwrap();
+        fs::write(path.join("b/c.txt"), "edited").unwrap();
+        let next: [(&str, &[u8]); 3] =
+            [("a.txt", b"new"), ("b/c.txt", b"three"), ("list", b"list:a.txt=new b/c.txt=three")];
+        let refused = folder(&path, false).write(&next);
+        assert!(matches!(&refused, Err(Failure::Changed(file)) if file.ends_with("b/c.txt")), "{refused:?}");
+        assert_eq!(fs::read(path.join("a.txt")).unwrap(), b"one", "nothing was changed");
+        let kept = folder(&path, true).write(&next).unwrap();
+        assert_eq!(fs::read(&kept[0]).unwrap(), b"edited");
+        assert!(kept[0].ends_with("b/c.txt.bak"), "{kept:?}");
+        // A second one does not replace the first.
+        fs::write(path.join("b/c.txt"), "edited again").unwrap();
+        let kept = folder(&path, true).write(&FILES).unwrap();
+        assert!(kept[0].ends_with("b/c.txt.bak2"), "{kept:?}");
+        assert_eq!(fs::read(path.join("b/c.txt.bak")).unwrap(), b"edited");
+        // One that the export no longer has stays if it was changed.
+        fs::write(path.join("b/c.txt"), "mine").unwrap();
+        folder(&path, false).write(&[("list", b"list:")]).unwrap();
+        assert_eq!(fs::read(path.join("b/c.txt")).unwrap(), b"mine");
+    }
+
+    #[test]
+    fn folders_of_others_lose_nothing_even_by_force() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("mine");
+        fs::create_dir_all(path.join("notes")).unwrap();
+        fs::write(path.join("notes/t"), "thesis").unwrap();
+        fs::write(path.join("a.txt"), "mine").unwrap();
+        fs::write(path.join("list"), "shopping").unwrap();
+        assert!(matches!(folder(&path, false).write(&FILES), Err(Failure::NotOurs { .. })));
+        let kept = folder(&path, true).write(&FILES).unwrap();
+        assert_eq!(kept.len(), 2, "{kept:?}");
+        assert_eq!(fs::read(path.join("a.txt.bak")).unwrap(), b"mine");
+        assert_eq!(fs::read(path.join("list.bak")).unwrap(), b"shopping");
+        assert_eq!(fs::read(path.join("notes/t")).unwrap(), b"thesis");
+        assert_eq!(names(&path), ["a.txt", "a.txt.bak", "b", "list", "list.bak", "notes"]);
+        let inputs = [path.join("notes/t")];
+        let inputs = [inputs[0].as_path()];
+        let refused = Folder { inputs: &inputs, ..folder(&path, true) }.write(&FILES);
+        assert!(matches!(refused, Err(Failure::HoldsInput { .. })), "{refused:?}");
+    }
+
+    #[test]
+    fn a_manifest_that_names_files_elsewhere_removes_none() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("export");
+        fs::create_dir(&path).unwrap();
+        fs::write(place.path().join("mine"), "mine").unwrap();
+        fs::write(path.join("list"), "list:../mine=mine").unwrap();
+        folder(&path, false).write(&FILES).unwrap();
+        assert_eq!(fs::read(place.path().join("mine")).unwrap(), b"mine");
+    }
+
+    #[test]
+    fn a_failure_leaves_what_was_there() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("export");
+        folder(&path, false).write(&FILES).unwrap();
+        fs::create_dir(path.join("d")).unwrap();
+        // The last of the files has the name of a folder.
+        let next: [(&str, &[u8]); 3] = [("a.txt", b"new"), ("b/c.txt", b"new"), ("d", b"new")];
+        for force in [false, true] {
+            assert!(matches!(folder(&path, force).write(&next), Err(Failure::NotPlain(_))));
+        }
+        assert_eq!(names(&path), ["a.txt", "b", "d", "list"]);
+        assert_eq!(fs::read(path.join("a.txt")).unwrap(), b"one");
+        // The same when it only shows while the files are put in their places.
+        let mut changes = Changes::begin(&path, "list").unwrap();
+        changes.add("a.txt", b"new", true).unwrap();
+        changes.remove("b/c.txt");
+        changes.add("d", b"new", false).unwrap();
+        fs::write(path.join("d/full"), "").unwrap();
+        assert!(changes.commit().is_err());
+        assert_eq!(names(&path), ["a.txt", "b", "d", "list"]);
+        assert_eq!(fs::read(path.join("a.txt")).unwrap(), b"one");
+        assert_eq!(fs::read(path.join("b/c.txt")).unwrap(), b"two");
+    }
+
+    #[test]
+    fn links_and_files_in_the_place_of_a_folder_are_refused() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("export");
         fs::write(&path, "mine").unwrap();
         assert!(matches!(folder(&path, true).write(&FILES), Err(Failure::NotOurs { .. })));
         assert_eq!(fs::read(&path).unwrap(), b"mine");
+        #[cfg(unix)]
+        {
+            let other = place.path().join("other");
+            folder(&other, false).write(&FILES).unwrap();
+            fs::remove_file(other.join("a.txt")).unwrap();
+            std::os::unix::fs::symlink(&path, other.join("a.txt")).unwrap();
+            assert!(matches!(folder(&other, true).write(&FILES), Err(Failure::NotPlain(_))));
+            assert_eq!(fs::read(&path).unwrap(), b"mine");
+        }
+    }
+
+    #[test]
+    fn temporary_folders_of_killed_processes_go() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("export");
+        folder(&path, false).write(&FILES).unwrap();
+        fs::create_dir(path.join(".list.AbCdEf12.hysid-partial")).unwrap();
+        fs::create_dir(place.path().join(".next.AbCdEf12.hysid-partial")).unwrap();
+        folder(&path, false).write(&FILES).unwrap();
+        folder(&place.path().join("next"), false).write(&FILES).unwrap();
+        assert_eq!(names(&path), ["a.txt", "b", "list"]);
+        assert_eq!(names(place.path()), ["export", "next"]);
     }
 }

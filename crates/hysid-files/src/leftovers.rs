@@ -1,4 +1,4 @@
-//! Temporary files of processes that were killed.
+//! Temporary files and folders of processes that were killed.
 
 use std::fs::{self, File, OpenOptions};
 use std::io;
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::temporary::{ENDING, RANDOM_LETTERS, beginning, folder_of, is_linked};
 
-/// Removes the temporary files of a target whose processes are dead. What cannot be removed stays: it does no harm.
+/// Removes the temporary files and folders of a target whose processes are dead. What cannot be removed stays: it does no harm.
 pub(crate) fn clean(target: &Path) {
     let beginning = beginning(target);
     let Ok(entries) = fs::read_dir(folder_of(target)) else { return };
@@ -26,12 +26,13 @@ fn is_temporary(name: &str, beginning: &str) -> bool {
 
 /// A living process holds a lock on its file.
 fn remove_if_abandoned(path: &Path) -> io::Result<()> {
-    if !fs::symlink_metadata(path)?.is_file() {
+    let found = fs::symlink_metadata(path)?.file_type();
+    if !found.is_file() && !found.is_dir() {
         return Ok(());
     }
     let file = open_without_following(path)?;
     if file.try_lock().is_ok() && is_linked(&file, path) {
-        fs::remove_file(path)?;
+        return if found.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
     }
     Ok(())
 }

@@ -2,10 +2,10 @@
 
 use std::ffi::OsString;
 use std::fs::{File, TryLockError};
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempDir};
 
 /// Random letters in a name.
 pub(crate) const RANDOM_LETTERS: usize = 8;
@@ -94,4 +94,57 @@ pub(crate) fn is_linked(file: &File, path: &Path) -> bool {
 #[cfg(not(unix))]
 pub(crate) fn is_linked(_: &File, path: &Path) -> bool {
     path.exists()
+}
+
+/// A temporary folder, removed unless it is renamed. A lock tells that its process lives.
+pub(crate) struct TemporaryFolder {
+    folder: TempDir,
+    /// Elsewhere than on Unix a folder cannot be opened, and leftovers stay.
+    _lock: Option<File>,
+}
+
+impl TemporaryFolder {
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+}
+
+/// Creates a temporary folder beside a target.
+pub(crate) fn create_folder(target: &Path) -> io::Result<TemporaryFolder> {
+    let folder = builder(&beginning(target)).tempdir_in(folder_of(target)).map_err(plain)?;
+    let lock = File::open(folder.path()).ok().filter(|lock| lock.try_lock().is_ok());
+    Ok(TemporaryFolder { folder, _lock: lock })
+}
+
+/// Gives a temporary folder the permissions that the user's mask leaves for new ones.
+pub(crate) fn publish(folder: &Path) -> io::Result<()> {
+    #[cfg(unix)]
+    {
+        // That of a folder that is made there in the usual way.
+        let probe = folder.join(".mode");
+        std::fs::create_dir(&probe)?;
+        let permissions = std::fs::metadata(&probe)?.permissions();
+        std::fs::remove_dir(&probe)?;
+        std::fs::set_permissions(folder, permissions)?;
+    }
+    #[cfg(not(unix))]
+    let _ = folder;
+    Ok(())
+}
+
+/// Writes a new file to the disk, with the folders that it is in.
+pub(crate) fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
+    std::fs::create_dir_all(folder_of(path))?;
+    let mut file = File::create_new(path)?;
+    file.write_all(content)?;
+    file.sync_all()
+}
+
+/// After a power failure a renamed file is where it was put only if its folder is on the disk too.
+pub(crate) fn sync_folder(folder: &Path) {
+    #[cfg(unix)]
+    // Some file systems cannot, and the file is written all the same.
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    #[cfg(not(unix))]
+    let _ = folder;
 }

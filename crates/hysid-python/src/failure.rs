@@ -15,10 +15,10 @@ pub fn refused<E: Display>(error: E) -> PyErr {
 /// reason, such as `FileNotFoundError`.
 pub fn not_written(failure: Failure) -> PyErr {
     match &failure {
-        Failure::NotOurs { .. } => {
+        Failure::NotOurs { .. } | Failure::Changed(_) => {
             PyFileExistsError::new_err(format!("{failure}: name another file, or replace it with force=True"))
         }
         Failure::Refused { error, .. } => std::io::Error::new(error.kind(), failure.to_string()).into(),
-        Failure::InUse(_) => PyOSError::new_err(failure.to_string()),
+        Failure::InUse(_) | Failure::NotPlain(_) | Failure::HoldsInput { .. } => PyOSError::new_err(failure.to_string()),
     }
 }

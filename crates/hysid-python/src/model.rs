@@ -86,8 +86,16 @@ impl Model {
         let files = exported.files;
         let contents: Vec<(&str, &[u8])> =
             files.iter().map(|file| (file.path.as_str(), file.content.as_slice())).collect();
-        let destination =
-            Folder { path: &folder, what: "export of Hysid", manifest: MANIFEST, listed: files_of, force };
+        // The model is in memory, and the folder may hold the file that it was read from.
+        let destination = Folder {
+            path: &folder,
+            what: "export of Hysid",
+            manifest: MANIFEST,
+            listed: files_of,
+            checksum: hysid_export::checksum,
+            inputs: &[],
+            force,
+        };
         destination.write(&contents).map_err(not_written)?;
         Ok((files.into_iter().map(|file| file.path).collect(), exported.note))
     }

@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 
 use anyhow::{Context, Result, bail};
+use hysid::Model;
 use hysid::fit::{identify, memory_need};
 use hysid::options::FitSpec;
 use hysid_records::Data;
@@ -59,9 +60,12 @@ pub struct Work {
     pub file: u64,
     /// Seconds after which the fit ends.
     pub time_limit: Option<f64>,
-    /// Where the best model so far is kept.
-    pub best: std::path::PathBuf,
+    /// Keeps the best model so far.
+    pub keep: Keep,
 }
+
+/// Keeps the best model so far in a file.
+pub type Keep = Box<dyn Fn(&Model) + Send + Sync>;
 
 /// Takes what a fit has found, and gives the number of its model.
 pub type Finish = Box<dyn FnOnce(Identified, &Data) -> Result<u64> + Send>;
@@ -159,11 +163,11 @@ impl Course {
 
 /// The number of the model that was found.
 fn run(course: &Arc<Course>, work: Work, pool: &rayon::ThreadPool, finish: Finish) -> Result<u64> {
-    let Work { request, data, beforehand, file, time_limit, best, .. } = work;
+    let Work { request, data, beforehand, file, time_limit, keep, .. } = work;
     let models = Latest::default();
     std::thread::scope(|scope| {
         let (drawn, of_data) = (&models, &*data);
-        scope.spawn(move || preview::draw(drawn, course, of_data, file, &best));
+        scope.spawn(move || preview::draw(drawn, course, of_data, file, &keep));
         let mut watch = Watch::new(course, drawn, request.starts(), time_limit);
         let fitted = pool.install(|| identify(&data.set, &request, &mut |progress| watch.observe(progress)));
         let seconds = watch.finish();

@@ -22,6 +22,30 @@ const BEGINNING: &[u8] = b"{\n  \"format\": \"hysid-project\"";
 /// Longest name of a file that is kept.
 const LONGEST_NAME: usize = 120;
 
+/// The best model so far of a fit that is under way.
+const BEST_SO_FAR: &str = ".best-so-far.json";
+
+/// Begins the names of files on their way. 16 random digits follow.
+pub const UPLOAD: &str = ".upload-";
+
+/// A folder in that of a project.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Inner {
+    /// Files with data.
+    Data,
+    /// Models and their reports.
+    Models,
+}
+
+impl Inner {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Data => "data",
+            Self::Models => "models",
+        }
+    }
+}
+
 /// The folder of a project, locked for this process.
 #[derive(Debug)]
 pub struct Folder {
@@ -57,15 +81,19 @@ impl Folder {
     fn locked(asked: &Path) -> Result<Option<Self>> {
         let shown = asked.display();
         check_ours(asked)?;
-        for inner in ["data", "models"] {
-            let inner = asked.join(inner);
+        for inner in [Inner::Data, Inner::Models] {
+            let inner = asked.join(inner.name());
             fs::create_dir_all(&inner).map_err(|error| {
                 anyhow!("{}: cannot be made: {}", inner.display(), hysid_files::reason(&error))
             })?;
+            check_folder(&inner)?;
         }
         let root = fs::canonicalize(asked).with_context(|| shown.to_string())?;
         match Lock::acquire(&root.join(PROJECT)) {
-            Ok(lock) => Ok(Some(Self { root, _lock: lock })),
+            Ok(lock) => {
+                remove_uploads(&root.join(Inner::Data.name()));
+                Ok(Some(Self { root, _lock: lock }))
+            }
             Err(Failure::InUse(_)) => Ok(None),
             Err(failure) => Err(anyhow!("{failure}")),
         }
@@ -83,17 +111,69 @@ impl Folder {
 
     /// The path of a file of data.
     pub fn data(&self, file: &str) -> PathBuf {
-        self.root.join("data").join(plain(file))
+        self.root.join(Inner::Data.name()).join(plain(file))
     }
 
     /// The path of a file of a model.
     pub fn models(&self, file: &str) -> PathBuf {
-        self.root.join("models").join(plain(file))
+        self.root.join(Inner::Models.name()).join(plain(file))
     }
 
     /// The path of the best model so far of a fit that is under way.
     pub fn best_so_far(&self) -> PathBuf {
-        self.root.join("models").join("best-so-far.json")
+        self.root.join(Inner::Models.name()).join(BEST_SO_FAR)
+    }
+
+    /// A name, made of the one that it is given, that no file of this folder has.
+    ///
+    /// # Errors
+    /// A folder that is a link or cannot be read.
+    pub fn free_name(&self, inner: Inner, given: &str) -> Result<String> {
+        let folder = self.root.join(inner.name());
+        check_folder(&folder)?;
+        let entries = fs::read_dir(&folder).map_err(|error| cannot_read(&folder, &error))?;
+        let taken: Vec<String> =
+            entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+        Ok(safe_name(given, &taken.iter().map(String::as_str).collect::<Vec<&str>>()))
+    }
+
+    /// The content of a file of the project.
+    ///
+    /// # Errors
+    /// A link or a device in its place, and a file that cannot be read.
+    pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        self.check_file(path)?;
+        fs::read(path).map_err(|error| cannot_read(path, &error))
+    }
+
+    /// Removes a file of the project; one that is not there, or not plain, stays as it is.
+    pub fn remove(&self, path: &Path) {
+        if self.check_file(path).is_ok() {
+            let _ = fs::remove_file(path);
+        }
+    }
+
+    /// Refuses what is no plain file, or is in a folder that is a link: it may be anywhere.
+    fn check_file(&self, path: &Path) -> Result<()> {
+        check_folder(path.parent().unwrap_or(&self.root))?;
+        let found = fs::symlink_metadata(path).map_err(|error| cannot_read(path, &error))?;
+        if !found.is_file() {
+            bail!("{}: is no plain file, and a project holds only those", path.display());
+        }
+        Ok(())
+    }
+
+    /// Writes a file of the project as a whole or not at all. Only what the project wrote before is replaced.
+    ///
+    /// # Errors
+    /// A file of others in its place; a folder that cannot be written to.
+    pub fn write(&self, path: &Path, kind: Kind, content: &[u8]) -> Result<()> {
+        if fs::symlink_metadata(path).is_ok() {
+            self.check_file(path)?;
+        }
+        check_folder(path.parent().unwrap_or(&self.root))?;
+        let destination = Destination::new(path, kind, false).keeping_the_old(false);
+        destination.write(content).map(|_| ()).map_err(|failure| anyhow!("{failure}"))
     }
 
     /// What was chosen and made, if anything.
@@ -102,11 +182,11 @@ impl Folder {
     /// A file that cannot be read.
     pub fn read_project(&self) -> Result<Option<String>> {
         let path = self.root.join(PROJECT);
-        match fs::read_to_string(&path) {
-            Ok(text) => Ok(Some(text)),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(cannot_read(&path, &error)),
+        if fs::symlink_metadata(&path).is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
+            return Ok(None);
         }
+        let text = String::from_utf8(self.read(&path)?);
+        text.map(Some).map_err(|_| anyhow!("{}: is no text", path.display()))
     }
 
     /// Writes what was chosen and made, as a whole or not at all.
@@ -114,7 +194,7 @@ impl Folder {
     /// # Errors
     /// A folder that cannot be written to.
     pub fn write_project(&self, text: &str) -> Result<()> {
-        write(&self.root.join(PROJECT), Kind::Beginning(BEGINNING.to_vec()), text.as_bytes())
+        self.write(&self.root.join(PROJECT), Kind::Beginning(BEGINNING.to_vec()), text.as_bytes())
     }
 }
 
@@ -123,13 +203,28 @@ pub fn cannot_read(path: &Path, error: &std::io::Error) -> anyhow::Error {
     anyhow!(hysid_files::unreadable(&path.display().to_string(), error))
 }
 
-/// Writes a file of the project. What the project wrote before is replaced.
-///
-/// # Errors
-/// A folder that cannot be written to.
-pub fn write(path: &Path, kind: Kind, content: &[u8]) -> Result<()> {
-    let destination = Destination::new(path, kind, true).keeping_the_old(false);
-    destination.write(content).map(|_| ()).map_err(|failure| anyhow!("{failure}"))
+/// Refuses a link in the place of a folder of the project.
+fn check_folder(folder: &Path) -> Result<()> {
+    match fs::symlink_metadata(folder) {
+        Ok(found) if found.is_dir() => Ok(()),
+        Ok(_) => bail!("{}: is no folder, and a project holds no links", folder.display()),
+        Err(error) => Err(cannot_read(folder, &error)),
+    }
+}
+
+/// Removes uploads of a studio that was killed.
+fn remove_uploads(data: &Path) {
+    let is_upload = |name: &str| {
+        let digits = name.strip_prefix(UPLOAD);
+        digits
+            .is_some_and(|digits| digits.len() == 16 && digits.bytes().all(|digit| digit.is_ascii_hexdigit()))
+    };
+    for entry in fs::read_dir(data).into_iter().flatten().flatten() {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_file && entry.file_name().to_str().is_some_and(is_upload) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Refuses a folder with other things in it.
@@ -156,7 +251,7 @@ fn is_of_lock(entry: &fs::DirEntry) -> bool {
 }
 
 /// The last part of a name: no path leaves the folder.
-fn plain(file: &str) -> &str {
+pub fn plain(file: &str) -> &str {
     let name = file.rsplit(['/', '\\']).next().unwrap_or_default();
     if name.is_empty() || name == "." || name == ".." { "_" } else { name }
 }
@@ -218,6 +313,45 @@ mod tests {
         assert_eq!(safe_name("con.csv", &[]), "datacon.csv");
         assert_eq!(safe_name("../..", &[]), "_");
         assert!(safe_name(&"x".repeat(500), &[]).len() <= LONGEST_NAME);
+    }
+
+    #[test]
+    fn files_of_others_stay_and_uploads_of_killed_studios_go() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("p");
+        fs::create_dir_all(path.join("data")).unwrap();
+        let upload = path.join("data/.upload-0123456789abcdef");
+        fs::write(&upload, "half").unwrap();
+        fs::write(path.join("data/.upload-mine"), "mine").unwrap();
+        let folder = Folder::open(Some(&path)).unwrap();
+        assert!(!upload.exists() && path.join("data/.upload-mine").exists());
+        fs::write(folder.models("3-pnn.json"), "mine").unwrap();
+        assert_eq!(folder.free_name(Inner::Models, "3-pnn.json").unwrap(), "3-pnn (2).json");
+        assert!(folder.write(&folder.models("3-pnn.json"), Kind::Model, b"{}").is_err());
+        assert_eq!(fs::read(folder.models("3-pnn.json")).unwrap(), b"mine");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_lead_nowhere() {
+        use std::os::unix::fs::symlink;
+        let place = tempfile::tempdir().unwrap();
+        let other = place.path().join("other");
+        fs::create_dir(&other).unwrap();
+        fs::write(other.join("thesis.doc"), "mine").unwrap();
+        let path = place.path().join("p");
+        let folder = Folder::open(Some(&path)).unwrap();
+        symlink(other.join("thesis.doc"), folder.data("a.csv")).unwrap();
+        assert!(folder.read(&folder.data("a.csv")).unwrap_err().to_string().contains("is no plain file"));
+        assert!(folder.write(&folder.data("a.csv"), Kind::Model, b"{}").is_err());
+        fs::remove_dir_all(path.join("data")).unwrap();
+        symlink(&other, path.join("data")).unwrap();
+        let thesis = folder.data("thesis.doc");
+        folder.remove(&thesis);
+        assert!(folder.read(&thesis).is_err() && thesis.exists());
+        assert!(folder.free_name(Inner::Data, "b.csv").is_err());
+        drop(folder);
+        assert!(Folder::open(Some(&path)).unwrap_err().to_string().contains("holds no links"));
     }
 
     #[test]

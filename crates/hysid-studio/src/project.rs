@@ -7,7 +7,7 @@ use hysid_records::{ColumnChoice, RateOption, ReadingChoice, Roles, Usage};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::folder::Folder;
+use crate::folder::{Folder, plain};
 
 /// Version of the project's file.
 const VERSION: u32 = 1;
@@ -186,7 +186,35 @@ impl Project {
             (Some("hysid-project"), _) => bail!(wrong("was written by a later version of Hysid".into())),
             _ => bail!(wrong("is not a Hysid project".into())),
         }
-        serde_json::from_value(value).map_err(|error| wrong(format!("is damaged: {error}")))
+        let project: Self =
+            serde_json::from_value(value).map_err(|error| wrong(format!("is damaged: {error}")))?;
+        project.checked().map_err(|error| wrong(format!("is damaged: {error}")))
+    }
+
+    /// The same with a next number that is free. Numbers and names tell which files are written and removed, so each is
+    /// there once, and names lead nowhere else.
+    fn checked(mut self) -> Result<Self> {
+        let of_models = self.models.iter().map(|model| model.begun.id);
+        let mut ids: Vec<u64> = self.files.iter().map(|file| file.id).chain(of_models).collect();
+        ids.sort_unstable();
+        if let Some(twice) = ids.windows(2).find(|pair| pair[0] == pair[1]) {
+            bail!("the number {} is there twice", twice[0]);
+        }
+        let last = ids.into_iter().chain(self.unfinished.iter().map(|begun| begun.id)).max().unwrap_or(0);
+        self.next = self.next.max(last.checked_add(1).ok_or_else(|| anyhow!("a number is too large"))?);
+        let of_data = self.files.iter().map(|file| file.name.as_str());
+        let of_models =
+            self.models.iter().flat_map(|model| std::iter::once(&model.file).chain(&model.report));
+        for mut names in [of_data.collect::<Vec<&str>>(), of_models.map(String::as_str).collect()] {
+            if let Some(other) = names.iter().find(|name| plain(name) != **name) {
+                bail!("{other:?} is no name of a file in the project");
+            }
+            names.sort_unstable();
+            if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+                bail!("the file {:?} is there twice", twice[0]);
+            }
+        }
+        Ok(self)
     }
 
     /// Its text.
@@ -281,6 +309,22 @@ mod tests {
         assert_eq!(texts.with_values().unwrap(), values);
         let error = request(r#"{"thresholds": "0.1; x"}"#).with_values().unwrap_err().to_string();
         assert!(error.starts_with("--thresholds: numbers above 0"), "{error}");
+    }
+
+    #[test]
+    fn forged_numbers_and_names_are_refused() {
+        let file = |id, name: &str| ProjectFile { id, name: name.into(), bytes: 1, usage: Use::Training };
+        let with = |files: Vec<ProjectFile>| Project { files, ..Project::default() }.checked();
+        assert_eq!(with(vec![file(7, "a.csv")]).unwrap().next, 8, "a number is never given twice");
+        for (files, said) in [
+            (vec![file(1, "a.csv"), file(1, "b.csv")], "the number 1 is there twice"),
+            (vec![file(1, "a.csv"), file(2, "a.csv")], "the file \"a.csv\" is there twice"),
+            (vec![file(1, "../a.csv")], "is no name of a file"),
+            (vec![file(u64::MAX, "a.csv")], "a number is too large"),
+        ] {
+            let error = with(files).unwrap_err().to_string();
+            assert!(error.contains(said), "{error}");
+        }
     }
 
     #[test]

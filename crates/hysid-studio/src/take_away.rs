@@ -79,7 +79,7 @@ fn shell(stored: &ProjectModel, folder: &Path) -> String {
     let mut words = vec!["hysid fit".to_string()];
     words.extend(begun.files.iter().map(|file| quoted(&format!("data/{file}"))));
     words.extend(columns.choice().options());
-    words.extend(begun.rate_method().map(|method| format!("--rate {method}")));
+    words.extend(begun.rate_method().map(|method| format!("--rate {}", quoted(method))));
     words.extend(of_reading(&begun.understanding.reading));
     for (name, value) in chosen(begun) {
         words.extend(word(name, value));
@@ -89,9 +89,10 @@ fn shell(stored: &ProjectModel, folder: &Path) -> String {
     format!("cd {}\n{}", shown(folder), words.join(" "))
 }
 
-/// The options that were chosen, the model first.
+/// The options that were chosen, the model first. A project from elsewhere may name others, which would be read as code.
 fn chosen(begun: &Begun) -> Vec<(&String, &Value)> {
-    let mut options: Vec<(&String, &Value)> = begun.request.options.iter().collect();
+    let is_option = |(name, _): &(&String, &Value)| OPTIONS.iter().any(|option| option.name == name.as_str());
+    let mut options: Vec<(&String, &Value)> = begun.request.options.iter().filter(is_option).collect();
     options.sort_by_key(|(name, _)| *name != "model");
     options
 }
@@ -148,6 +149,7 @@ fn python(begun: &Begun, file: &str) -> Option<String> {
             Value::Null => continue,
             Value::Bool(true) => "True".to_string(),
             Value::Bool(false) => "False".to_string(),
+            // Values of options are numbers, texts and lists of them, which Python reads as JSON does.
             other => other.to_string(),
         };
         arguments.push(format!("{name}={value}"));
@@ -159,4 +161,39 @@ fn python(begun: &Begun, file: &str) -> Option<String> {
         arguments.join(", "),
         text(file),
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A fit as a project from elsewhere may have it.
+    fn begun(fields: &str) -> Begun {
+        let nothing = r#"{"record": null, "time": null, "inputs": ["x"], "rate": null, "output": "y"}"#;
+        let text = format!(
+            r#"{{"id": 1, "files": ["a.csv"], "understanding": {{}}, "columns": {nothing}, "request": {fields}}}"#
+        );
+        serde_json::from_str(&text).unwrap()
+    }
+
+    #[test]
+    fn no_word_of_a_project_is_read_by_a_shell_or_by_python() {
+        let fields = r#"{"rate": "central; touch X #", "options": {"model": "auto; touch X",
+                         "seed; touch X #": true, "seed); touch(": 3}}"#;
+        let stored = ProjectModel {
+            begun: begun(fields),
+            file: "m; touch X.json".into(),
+            report: None,
+            made: String::new(),
+            seconds: 0.0,
+            was_interrupted: false,
+        };
+        let lines = shell(&stored, Path::new("p;q"));
+        let expected = "cd 'p;q'\nhysid fit data/a.csv --output y --input x --rate 'central; touch X #' \
+                        --model 'auto; touch X' -o 'm; touch X.json'";
+        assert_eq!(lines, expected);
+        let code = python(&stored.begun, &stored.file).unwrap();
+        assert!(!code.contains("touch("), "{code}");
+        assert!(code.contains(r#"rate="central; touch X #", model="auto; touch X""#), "{code}");
+    }
 }

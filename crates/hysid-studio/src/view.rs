@@ -1,6 +1,5 @@
 //! The files of a project as they are read: tables, columns, records.
 
-use std::fs;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
@@ -8,7 +7,7 @@ use anyhow::{Result, anyhow, bail};
 use hysid_records::{Data, Looked, Roles};
 use hysid_tables::{Reading, Table};
 
-use crate::folder::{Folder, cannot_read};
+use crate::folder::Folder;
 use crate::project::{Project, ProjectFile, Understanding, Use};
 
 /// The files of a project as they are read.
@@ -177,7 +176,6 @@ impl FileView {
 /// # Errors
 /// A file that cannot be read or is no table.
 pub fn read(name: &str, folder: &Folder, reading: &Reading) -> Result<Table> {
-    let path = folder.data(name);
-    let content = fs::read(&path).map_err(|error| cannot_read(&path, &error))?;
+    let content = folder.read(&folder.data(name))?;
     Table::from_bytes(Path::new(name), content, reading)
 }

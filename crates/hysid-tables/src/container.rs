@@ -1,6 +1,7 @@
 //! Where the text of a table comes from: a file or standard input, compressed or not, in any encoding, a spreadsheet, or
 //! a MATLAB file. Whatever it is, a stream of UTF-8 text comes out.
 
+mod budget;
 mod encoding;
 mod matlab;
 mod spreadsheet;
@@ -14,6 +15,8 @@ use flate2::read::MultiGzDecoder;
 use hysid_files::unreadable;
 
 use crate::reading::Reading;
+pub use budget::THREAD;
+use budget::Unpacking;
 
 /// Bytes that tell what a file is.
 const FIRST: usize = 1 << 16;
@@ -53,20 +56,20 @@ impl Text {
         let mut packed = "";
         if first.starts_with(b"\x1f\x8b") {
             packed = ", gzip";
-            (reader, first) = peeked(&file, Box::new(MultiGzDecoder::new(reader)))?;
+            (reader, first) = peeked(&file, Box::new(Unpacking::of(reader, MultiGzDecoder::new)))?;
         }
         let failed =
             |what: &str, problem: String| anyhow!("{file}: is {what} that cannot be read: {problem}");
-        if first.starts_with(b"PK\x03\x04") || first.starts_with(b"\xd0\xcf\x11\xe0") {
+        if first.starts_with(b"PK\x03\x04") || first.starts_with(spreadsheet::COMPOUND) {
             let bytes = all(&file, reader)?;
-            let (text, sheet, other_sheets) = spreadsheet::text(&bytes, reading.sheet.as_deref())
+            let (text, sheet, other_sheets) = spreadsheet::text(bytes, reading.sheet.clone())
                 .map_err(|problem| failed("a spreadsheet or an archive", problem))?;
             let stored = format!("spreadsheet, sheet {sheet}{packed}");
             return Ok(Self { file, reader: Box::new(Cursor::new(text)), stored, other_sheets });
         }
         if matlab::is_one(&first) {
             let bytes = all(&file, reader)?;
-            let (text, kind) = matlab::text(bytes, reading.sheet.as_deref())
+            let (text, kind) = matlab::text(bytes, reading.sheet.clone())
                 .map_err(|problem| failed("a MATLAB file", problem))?;
             let stored = format!("{kind}{packed}");
             return Ok(Self { file, reader: Box::new(Cursor::new(text)), stored, other_sheets: Vec::new() });

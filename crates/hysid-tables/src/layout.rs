@@ -59,6 +59,9 @@ pub struct Layout {
     pub line: u64,
 }
 
+/// Largest number of bytes of a column's name, which models and reports repeat.
+const LONGEST_NAME: usize = 10_000;
+
 impl Layout {
     /// The layout of a text of which the beginning is known; `is_all` if that is all.
     ///
@@ -96,6 +99,12 @@ impl Layout {
             line: first.number,
         };
         layout.name_units();
+        if let Some(name) = layout.names.iter().find(|name| name.len() > LONGEST_NAME) {
+            let (line, letters) = (layout.line, name.chars().count());
+            bail!(
+                "{file}, above line {line}: the name of a column has {letters} characters, and {LONGEST_NAME} are allowed"
+            );
+        }
         Ok(layout)
     }
 
@@ -201,6 +210,21 @@ mod tests {
 
     fn names(text: &str) -> Vec<String> {
         layout(text).names
+    }
+
+    #[test]
+    fn names_of_any_length_are_not_taken() {
+        let text = |length: usize| format!("{},y\n1,2\n3,4\n5,6\n", "x".repeat(length));
+        assert_eq!(names(&text(LONGEST_NAME))[0].len(), LONGEST_NAME);
+        let error =
+            Layout::find("f", &text(LONGEST_NAME + 1), true, &Reading::default()).unwrap_err().to_string();
+        assert!(error.starts_with("f, above line 2: the name of a column has 10001 characters"), "{error}");
+    }
+
+    #[test]
+    fn row_numbers_of_any_size_are_numbers() {
+        let text = "n,x,y\n-9223372036854775808,1,2\n9223372036854775807,2,3\n-9223372036854775808,3,5\n";
+        assert_eq!(names(text), ["n", "x", "y"]);
     }
 
     #[test]

@@ -23,7 +23,7 @@ mod table;
 mod time;
 
 pub use column::ColumnReader;
-pub use container::is_json;
+pub use container::{THREAD as CONTAINER_THREAD, is_json};
 pub use head::Head;
 pub use layout::{Layout, is_record};
 pub use number::{CellReader, DecimalSign, NumberFormat, is_missing, push_shortest, shortest};

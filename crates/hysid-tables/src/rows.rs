@@ -347,8 +347,10 @@ fn beginning(file: &str, reader: &mut dyn Read) -> Result<(Vec<u8>, bool)> {
         let more = (wanted - first.len()) as u64;
         let read = reader.take(more).read_to_end(&mut first);
         read.map_err(|error| Error::msg(unreadable(file, &error)))?;
-        let lines = first.iter().filter(|&&byte| byte == b'\n' || byte == b'\r').count();
-        if first.len() < wanted || lines >= FEWEST_LINES || wanted >= LONGEST_ROW {
+        let mut lines = first.split(|&byte| byte == b'\n' || byte == b'\r');
+        let is_comment = |line: &[u8]| std::str::from_utf8(line).is_ok_and(is_comment);
+        let has_enough = lines.by_ref().filter(|line| !is_comment(line)).nth(FEWEST_LINES).is_some();
+        if first.len() < wanted || has_enough || wanted >= LONGEST_ROW {
             let is_all = first.len() < wanted;
             return Ok((first, is_all));
         }
@@ -363,6 +365,15 @@ fn grow<T: Default + Clone>(room: &mut Vec<T>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_table_behind_long_comments_is_read() {
+        let comments = format!("# {}\n", "x".repeat(98)).repeat(6_000);
+        let text = format!("{comments}t,x\n1,2\n3,4\n5,6\n");
+        let rows = read(text.as_bytes(), 4_096).unwrap();
+        assert_eq!(rows.len(), 4, "{rows:?}");
+        assert_eq!(rows[1], (6_002, vec!["1".to_string(), "2".into()]));
+    }
 
     /// Gives a text in pieces of so many bytes.
     struct Dripping(Vec<u8>, usize);

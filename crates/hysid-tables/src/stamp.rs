@@ -107,6 +107,9 @@ fn clock_of(text: &str, needs_seconds: bool) -> Option<f64> {
 fn offset_of(text: &str) -> Option<f64> {
     let (sign, digits) = text.split_at(1);
     let digits: String = digits.chars().filter(|&c| c != ':').collect();
+    if !digits.bytes().all(|digit| digit.is_ascii_digit()) {
+        return None;
+    }
     let number = |part: &str| part.parse::<u32>().ok().map(f64::from);
     let seconds = match digits.len() {
         2 => 3600.0 * number(&digits)?,
@@ -242,6 +245,13 @@ mod tests {
     fn seconds(cells: &[&str]) -> Vec<f64> {
         let mut reader = StampReader::default();
         cells.iter().map(|cell| reader.seconds(Stamp::of(cell).unwrap_or_else(|| panic!("{cell}")))).collect()
+    }
+
+    #[test]
+    fn letters_in_the_place_of_digits_are_no_clock() {
+        for cell in ["12:00:09+€1", "12:00:09-é1", "2024-02-29 23:59:59+µ:1", "12:00:0€"] {
+            assert!(Stamp::of(cell).is_none(), "{cell}");
+        }
     }
 
     #[test]

@@ -27,6 +27,9 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         None => identifier(&arguments.model)?,
     };
     let folder = arguments.out.clone().unwrap_or_else(|| format!("{name}_{}", arguments.to.name()).into());
+    if folder == Path::new("-") {
+        return Err(Usage("-o -: an export is a folder, which stdout cannot be: name one".into()).into());
+    }
     if arguments.fmi.is_some() && arguments.to != Target::Fmu {
         return Err(Usage("--fmi is a version of --to fmu".into()).into());
     }
@@ -64,12 +67,17 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         what: "export of Hysid",
         manifest: MANIFEST,
         listed: files_of,
+        checksum: hysid_export::checksum,
+        inputs: &[&arguments.model],
         force: arguments.overwriting.force,
     };
-    destination.write(&contents).map_err(files::explained)?;
+    let kept = destination.write(&contents).map_err(files::explained_folder)?;
     match arguments.json {
         true => json_results(&Printed::of(&folder, arguments, &options, &exported))?,
         false => {
+            for kept in &kept {
+                note(format_args!("a file that was replaced is kept as {}", files::shown(kept)));
+            }
             let (shown, files) = (files::shown(&folder), count(exported.files.len(), "file"));
             note(format_args!("wrote {shown}: {files}; {shown}/README.md says how to use them"));
             if let Some(more) = &exported.note {

@@ -51,7 +51,7 @@ def test_a_fit_that_was_killed_before_it_had_a_model_says_so(start, visit):  # n
     studio.specimen("terfenol-rod")
     studio.begin(model="auto", members=50)
     studio.end(signal.SIGKILL)
-    had_model = (studio.project / "models" / "best-so-far.json").exists()
+    had_model = (studio.project / "models" / ".best-so-far.json").exists()
     again = start("--project", "hysid-project")
     state = again.state()
     assert state["fit"]["was_interrupted"] and len(state["models"]) == int(had_model)

@@ -39,7 +39,7 @@ fn files_that_are_no_table() {
         empty => : is empty (expected a header line and rows of numbers)
         blank lines => : is empty (expected a header line and rows of numbers)
         truncated gzip => : cannot be read: incomplete deflate stream
-        spreadsheet => : is a spreadsheet or an archive that cannot be read: it is of an unknown kind
+        spreadsheet => : is a spreadsheet or an archive that cannot be read: it is damaged or cut off
         binary => : is a binary file, not a table of numbers
         JSON => : is JSON, not CSV (a model file in the place of data?)
         header only => : has a header but no rows

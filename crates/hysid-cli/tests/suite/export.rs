@@ -39,15 +39,59 @@ fn a_folder_appears_with_all_that_its_manifest_lists() {
         assert!(header.contains(fact), "{header}");
     }
 
-    // The same again replaces it; a file that was added does not vanish.
-    assert_eq!(bench.run("export stage-2.json --to c --json").status, Some(0));
+    // The same again replaces it; a file that was added stays.
     fs::write(folder.join("mine.c"), "mine").unwrap();
-    let ran = bench.run("export stage-2.json --to c");
-    assert_eq!(ran.status, Some(2));
-    assert!(ran.stderr.contains("stage_2_c: a file is there already and is no export of Hysid"), "{ran}");
+    assert_eq!(bench.run("export stage-2.json --to c --json").status, Some(0));
     assert_eq!(fs::read_to_string(folder.join("mine.c")).unwrap(), "mine");
-    assert_eq!(bench.run("export stage-2.json --to c --force").status, Some(0));
-    assert!(!folder.join("mine.c").exists());
+}
+
+#[test]
+fn nothing_that_others_wrote_or_changed_is_lost() {
+    let bench = with_model();
+    assert_eq!(bench.run("export stage-2.json --to c -o q").status, Some(0));
+    let source = bench.path("q").join("stage_2.c");
+    let edited = fs::read_to_string(&source).unwrap() + "/* mine */\n";
+    fs::write(&source, &edited).unwrap();
+    let ran = bench.run("export stage-2.json --to c -o q");
+    assert_eq!(ran.status, Some(2));
+    assert!(
+        ran.stderr.contains("q/stage_2.c: this file is not as Hysid wrote it: name another folder"),
+        "{ran}"
+    );
+    let ran = bench.run("export stage-2.json --to c -o q --force");
+    assert_eq!(ran.status, Some(0));
+    assert!(ran.stderr.contains("kept as") && ran.stderr.contains("stage_2.c.bak"), "{ran}");
+    assert_eq!(fs::read_to_string(bench.path("q").join("stage_2.c.bak")).unwrap(), edited);
+
+    // A folder of others, and one with the model in it.
+    fs::create_dir_all(bench.path("p").join("notes")).unwrap();
+    fs::write(bench.path("p").join("notes").join("t"), "thesis").unwrap();
+    assert_eq!(bench.run("export stage-2.json --to c -o p").status, Some(2));
+    fs::copy(bench.path("stage-2.json"), bench.path("p").join("m.json")).unwrap();
+    let ran = bench.run("export p/m.json --to c -o p --force");
+    assert_eq!(ran.status, Some(2));
+    assert!(ran.stderr.contains("p: holds p/m.json, which is read"), "{ran}");
+    assert_eq!(bench.run("export stage-2.json --to c -o p --force").status, Some(0));
+    assert_eq!(fs::read_to_string(bench.path("p").join("notes").join("t")).unwrap(), "thesis");
+    assert!(bench.path("p").join("m.json").exists() && bench.path("p").join("stage_2.h").exists());
+}
+
+#[test]
+fn a_folder_is_found_whatever_the_working_folder_is() {
+    let bench = with_model();
+    assert_eq!(bench.run("export stage-2.json --to c -o own").status, Some(0));
+    let ran = bench
+        .command("export ../stage-2.json --to c -o ../own")
+        .current_dir(bench.path("own"))
+        .output()
+        .unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    assert!(bench.path("own").join("stage_2.c").exists());
+    let names: Vec<String> = fs::read_dir(bench.path(""))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    assert!(!names.iter().any(|name| name.contains("partial")), "{names:?}");
 }
 
 #[test]
@@ -86,6 +130,7 @@ fn bad_requests_are_one_line_and_leave_nothing() {
         2 --to c --inverse --slew -1 => '-1' for '--slew <RATE>': a number above 0 is needed
         2 --to c --inverse --precision f32 --limits 1:1.00000001 => --limits: the limits of the input are 1
         2 --to c -o file => file: a file is there already
+        2 --to c -o - => -o -: an export is a folder
         1 --to c -o train.csv/new => train.csv/new: cannot be written
     "#,
     ) {

@@ -101,8 +101,9 @@ fn errors_are_one_short_line_whatever_the_file_or_the_arguments_hold() {
     let tables = [
         (cell("\"a\nb\x1b[2J\""), r#"line 2, column "y": "a\nb\x1b[2J" is not a number"#.to_string()),
         (cell(&long), format!("\"{}… (200000 characters)\" is not a number", &long[..60])),
-        (format!("t,x,{long}\n0,1,w\n"), format!("column \"{}… (200000 characters)\"", &long[..60])),
-        (format!("{long}:x\n1:2\n"), "there is only one column, \"zzz".into()),
+        (format!("t,x,{long}\n0,1,w\n"), "the name of a column has 200000 characters, and 10000 are".into()),
+        (format!("t,x,{}\n0,1,w\n", &long[..9000]), format!("column \"{}… (9000 characters)\"", &long[..60])),
+        (format!("{}:x\n1:2\n", &long[..9000]), "there is only one column, \"zzz".into()),
         (
             format!("t,x,{}\n0,1,w\n1,2,3\n", quoted("a\u{7}")),
             r#"column "a\x07": "w" is not a number"#.into(),

@@ -7,11 +7,18 @@ mod self_test;
 mod source;
 
 use crate::error::Error;
+use crate::reserved;
 use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written};
 
-pub(super) const BACK_END: BackEnd =
-    BackEnd { name: "c", has_single_precision: true, has_inverse: true, reserved: &[], write, usage };
+pub(super) const BACK_END: BackEnd = BackEnd {
+    name: "c",
+    has_single_precision: true,
+    has_inverse: true,
+    reserved: &[reserved::C],
+    write,
+    usage,
+};
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let mut files = sources(subject);

@@ -13,14 +13,16 @@ use zip::write::SimpleFileOptions;
 use crate::error::Error;
 use crate::manifest::checksum;
 use crate::options::FmiVersion;
+use crate::reserved;
 use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written, c};
+use crate::text::in_markdown;
 
 pub(super) const BACK_END: BackEnd = BackEnd {
     name: "fmu",
     has_single_precision: false,
     has_inverse: true,
-    reserved: &["fmi2", "fmi3"],
+    reserved: &[reserved::C, reserved::FMU],
     write,
     usage,
 };
@@ -71,8 +73,7 @@ fn zipped(files: &[File]) -> zip::result::ZipResult<Vec<u8>> {
 fn usage(subject: &Subject<'_>) -> String {
     let name = subject.name();
     let (inputs, outputs) = description::variable_names(subject);
-    let listed =
-        |names: &[String]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let listed = |names: &[String]| names.iter().map(|name| in_markdown(name)).collect::<Vec<_>>().join(", ");
     let (what, more) = match subject.inverse() {
         None => (
             "a unit",

@@ -4,14 +4,16 @@ mod material;
 mod native;
 
 use crate::error::Error;
+use crate::reserved;
 use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written, c};
+use crate::text::in_markdown;
 
 pub(super) const BACK_END: BackEnd = BackEnd {
     name: "opensees",
     has_single_precision: false,
     has_inverse: false,
-    reserved: &[],
+    reserved: &[reserved::C, reserved::OPENSEES],
     write,
     usage,
 };
@@ -20,7 +22,7 @@ pub(super) const BACK_END: BackEnd = BackEnd {
 const MATERIAL: &str = "a uniaxialMaterial of OpenSees";
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
-    let inputs = subject.model().names().inputs.len();
+    let inputs = subject.names().inputs.len();
     if inputs > 1 {
         return Err(Error::Inputs { target: MATERIAL, inputs });
     }
@@ -42,7 +44,8 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
 fn usage(subject: &Subject<'_>) -> String {
     let name = subject.name();
     let model = subject.model();
-    let (x, y) = (&model.names().inputs[0], &model.names().output);
+    let names = subject.names();
+    let (x, y) = (in_markdown(&names.inputs[0]), in_markdown(&names.output));
     let native = match native::Native::of(model) {
         Ok(native) => format!(
             "`{name}.tcl` and `{name}.py` define the material with OpenSees' own `{}`, for any OpenSees. Its law is the \

@@ -5,9 +5,11 @@ use std::fmt::Write as _;
 
 use crate::description::{Argument, HALF_WIDTH};
 use crate::error::Error;
+use crate::manifest::token_of;
 use crate::program::expression::{Binary, Unary};
 use crate::program::unused::used_arrays;
 use crate::program::{Array, Declaration, Program, Storage};
+use crate::reserved;
 use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
 use crate::target::{BackEnd, Written};
@@ -16,18 +18,10 @@ pub(super) const BACK_END: BackEnd = BackEnd {
     name: "python",
     has_single_precision: false,
     has_inverse: false,
-    reserved: RESERVED,
+    reserved: &[reserved::PYTHON],
     write,
     usage,
 };
-
-/// Words of the language, and modules that the files import.
-const RESERVED: &[&str] = &[
-    "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue", "csv",
-    "def", "del", "elif", "else", "except", "finally", "for", "from", "global", "if", "import", "in", "is",
-    "lambda", "math", "nonlocal", "not", "numpy", "or", "pass", "pathlib", "raise", "return", "struct",
-    "sys", "try", "while", "with", "yield",
-];
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let name = subject.name();
@@ -74,11 +68,8 @@ fn whole_record(subject: &Subject<'_>) -> Vec<&'static str> {
 fn module(subject: &Subject<'_>) -> String {
     let python = Python { arguments: subject.argument_names() };
     let (step, tangent) = (subject.program(), subject.tangent());
-    let facts: String = subject
-        .facts()
-        .iter()
-        .map(|(fact, text)| format!("{fact}: {}\n", text.replace('\\', "\\\\").replace('"', "'")))
-        .collect();
+    let facts: String =
+        subject.facts().iter().map(|(fact, text)| format!("{fact}: {}\n", text.replace('"', "'"))).collect();
     let mut text = format!(
         "\"\"\"A model of hysteresis, written by Hysid.
 
@@ -88,17 +79,24 @@ Values are in the units of the columns above. Inputs must be finite.
 
 import math
 import struct
+import zlib
 
 import numpy as np
 
 {FUNCTIONS}"
     );
+    let head = text.len();
     text += &constants(&python, &[step, tangent]);
     let states: Vec<String> =
         tangent.states().map(|(_, _, values)| format!("({})", listed(&python, values))).collect();
     let _ = writeln!(text, "_INITIAL_STATE = (\n    {},\n)\n\n", states.join(",\n    "));
     text += &function(&python, step, "_advance", false);
     text += &function(&python, tangent, "_advance_with_tangent", true);
+    let _ = writeln!(
+        text,
+        "# Tells saved states of this model from those of others.\n_TOKEN = {}\n\n",
+        token_of(&text[head..])
+    );
     text += &class(subject);
     text
 }
@@ -287,10 +285,14 @@ fn class(subject: &Subject<'_>) -> String {
 
     def save(self):
         \"\"\"Give the committed state as bytes.\"\"\"
-        return struct.pack(\"<{numbers}d\", *(value for values in self._committed for value in values))
+        state = struct.pack(\"<{numbers}d\", *(value for values in self._committed for value in values))
+        return state + struct.pack(\"<II\", _TOKEN, zlib.crc32(state))
 
     def restore(self, state):
-        \"\"\"Go back to a saved state.\"\"\"
+        \"\"\"Go back to a saved state of this model; other bytes raise a ValueError.\"\"\"
+        state, tail = state[:-8], state[-8:]
+        if len(state) != 8 * {numbers} or tail != struct.pack(\"<II\", _TOKEN, zlib.crc32(state)):
+            raise ValueError(\"the state is damaged or that of another model\")
         numbers = iter(struct.unpack(\"<{numbers}d\", state))
         self._committed = [[next(numbers) for _ in values] for values in _INITIAL_STATE]
         self._trial = None

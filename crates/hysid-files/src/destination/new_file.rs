@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use crate::destination::Destination;
+use crate::destination::{Copy, Destination};
 use crate::failure::Failure;
 use crate::target::Target;
 use crate::{backup, temporary};
@@ -63,15 +63,16 @@ impl<'d> NewFile<'d> {
         if destination.check_old(&target)? {
             take_over(file.as_file(), &target).map_err(refused())?;
             file.as_file().sync_all().map_err(refused())?;
-            let is_kept = destination.keeps_the_old(&target).map_err(refused())?;
-            if is_kept && !backup::are_same(file.path(), &target).map_err(refused())? {
-                kept = Some(backup::keep(&target).map_err(refused())?);
+            let copy = destination.copy_of_the_old(&target).map_err(refused())?;
+            if copy != Copy::None && !backup::are_same(file.path(), &target).map_err(refused())? {
+                let keep = if copy == Copy::Replacing { backup::keep } else { backup::copied_aside };
+                kept = Some(keep(&target).map_err(refused())?);
             }
         } else {
             file.as_file().sync_all().map_err(refused())?;
         }
         file.persist(&target).map_err(|error| refused()(error.error))?;
-        sync_folder(temporary::folder_of(&target));
+        temporary::sync_folder(temporary::folder_of(&target));
         Ok(kept)
     }
 }
@@ -97,15 +98,6 @@ fn take_over(file: &File, old: &Path) -> io::Result<()> {
     }
     #[cfg(not(unix))]
     file.set_permissions(old.permissions())
-}
-
-/// After a power failure a renamed file is where it was put only if its folder is on the disk too.
-fn sync_folder(folder: &Path) {
-    #[cfg(unix)]
-    // Some file systems cannot, and the file is written all the same.
-    let _ = File::open(folder).and_then(|folder| folder.sync_all());
-    #[cfg(not(unix))]
-    let _ = folder;
 }
 
 impl Write for NewFile<'_> {

@@ -1,18 +1,15 @@
 //! The best model so far, drawn over the data and kept in a file.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use hysid::data::record::Record;
 use hysid::model::Model;
-use hysid_files::Kind;
 use hysid_records::Data;
 
-use super::Course;
 use super::latest::Latest;
 use super::watch::SoFar;
-use crate::folder::write;
+use super::{Course, Keep};
 
 /// Rows that are simulated: the first of the data.
 const MOST_ROWS: usize = 20_000;
@@ -32,14 +29,14 @@ pub struct Preview {
 }
 
 /// Draws models as they come, until there are no more.
-pub fn draw(models: &Latest<SoFar>, course: &Course, data: &Data, file: u64, best: &Path) {
+pub fn draw(models: &Latest<SoFar>, course: &Course, data: &Data, file: u64, keep: &Keep) {
     let rows: Vec<Record> = first_rows(data);
     let mut due = Instant::now();
     while let Some(so_far) = models.take() {
         let SoFar { name, model } = so_far;
         if Instant::now() >= due {
             // A disk that is full is told when the model itself is written.
-            let _ = write(best, Kind::Model, model.to_json().as_bytes());
+            keep(&model);
             due = Instant::now() + BETWEEN_FILES;
         }
         let Some(output) = simulated(&model, &rows) else { continue };

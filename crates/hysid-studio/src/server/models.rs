@@ -1,7 +1,5 @@
 //! Fits and models.
 
-use std::fs;
-
 use axum::Json;
 use axum::body::Bytes;
 use axum::extract::{Path, Query, State};
@@ -114,7 +112,7 @@ pub async fn remove(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer
 /// The file of a model.
 pub async fn file(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
     computed(shared, move |studio| {
-        let content = fs::read(studio.model_file(id)?)?;
+        let content = studio.folder().read(&studio.model_file(id)?)?;
         Ok(download(&studio.stored_model(id)?.file, "application/json", content))
     })
     .await

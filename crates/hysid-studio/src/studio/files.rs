@@ -16,7 +16,7 @@ use hysid_report::diagnosis::DataDiagnosis;
 use serde::Serialize;
 
 use super::Studio;
-use crate::folder::{cannot_read, safe_name};
+use crate::folder::{Inner, UPLOAD, cannot_read};
 use crate::project::{ChosenColumns, ProjectFile, Use};
 use crate::view::read;
 
@@ -40,7 +40,7 @@ impl Studio {
         }
         let mut random = [0; 8];
         getrandom::fill(&mut random).map_err(|error| anyhow!("no random name: {error}"))?;
-        Ok(self.folder.data(&format!(".upload-{:016x}", u64::from_le_bytes(random))))
+        Ok(self.folder.data(&format!("{UPLOAD}{:016x}", u64::from_le_bytes(random))))
     }
 
     /// Takes a file that lies at a place of an upload.
@@ -50,8 +50,7 @@ impl Studio {
     pub fn take_file(&self, given: &str, place: &Path, usage: Use) -> Result<u64> {
         let bytes = fs::metadata(place).map_or(0, |metadata| metadata.len());
         self.change(|project| {
-            let taken: Vec<&str> = project.files.iter().map(|file| file.name.as_str()).collect();
-            let name = safe_name(given, &taken);
+            let name = self.folder.free_name(Inner::Data, given)?;
             fs::rename(place, self.folder.data(&name))
                 .map_err(|error| anyhow!("{name}: cannot be stored: {}", hysid_files::reason(&error)))?;
             let id = project.next_id();
@@ -79,7 +78,8 @@ impl Studio {
         let content = fs::read(path).map_err(|error| cannot_read(path, &error))?;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let is_known = |file: &ProjectFile| {
-            file.name == name && fs::read(self.folder.data(&file.name)).is_ok_and(|known| known == content)
+            file.name == name
+                && self.folder.read(&self.folder.data(&file.name)).is_ok_and(|known| known == content)
         };
         if self.project().files.iter().any(is_known) {
             return Ok(());
@@ -98,13 +98,17 @@ impl Studio {
     /// # Errors
     /// There is none of this number.
     pub fn remove_file(&self, id: u64) -> Result<()> {
-        self.change(|project| {
-            let name = project.file(id)?.name.clone();
+        let removed = self.change(|project| {
+            let removed = project.file(id)?.clone();
             project.files.retain(|file| file.id != id);
-            // A model that was made of it keeps its line; the file itself is the user's copy.
-            let _ = fs::remove_file(self.folder.data(&name));
-            Ok(())
-        })
+            Ok(removed)
+        })?;
+        // A model that was made of it keeps its line. A file that is no longer the one that came stays.
+        let path = self.folder.data(&removed.name);
+        if fs::symlink_metadata(&path).is_ok_and(|found| found.len() == removed.bytes) {
+            self.folder.remove(&path);
+        }
+        Ok(())
     }
 
     /// Says what a file is for.

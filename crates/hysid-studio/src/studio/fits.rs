@@ -1,10 +1,9 @@
 //! Fits to the training data, and what is kept of them.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, anyhow, bail};
 use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::options::chosen::NamedOptions;
@@ -14,7 +13,7 @@ use hysid_report::{Beforehand, Identified, date, origin, page_text};
 
 use super::Studio;
 use crate::fitting::{FitState, Preview, Work};
-use crate::folder::write;
+use crate::folder::Inner;
 use crate::project::{Begun, ChosenColumns, FitRequest, ProjectModel, Use};
 
 impl Studio {
@@ -38,7 +37,7 @@ impl Studio {
         // What can be refused is refused before anything is stored.
         let beforehand = Beforehand::of(&data, &spec)?;
         let best = self.folder.best_so_far();
-        let _ = fs::remove_file(&best);
+        self.folder.remove(&best);
         let begun = self.change(|project| {
             let id = project.next_id();
             let files = project.files_for(Use::Training).map(|file| file.name.clone()).collect();
@@ -51,8 +50,12 @@ impl Studio {
         let id = begun.id;
         let file = self.project().files_for(Use::Training).next().map_or(0, |file| file.id);
         let time_limit = begun.request.time_limit;
-        let work = Work { id, request: spec, data, beforehand, file, time_limit, best };
-        let (finishing, telling) = (Arc::clone(self), Arc::clone(self));
+        let (finishing, telling, keeping) = (Arc::clone(self), Arc::clone(self), Arc::clone(self));
+        let keep = Box::new(move |model: &Model| {
+            let folder = &keeping.folder;
+            drop(folder.write(&folder.best_so_far(), Kind::Model, model.to_json().as_bytes()));
+        });
+        let work = Work { id, request: spec, data, beforehand, file, time_limit, keep };
         let finish = Box::new(move |identified: Identified, data: &Data| {
             finishing.take_model(begun, &identified, data).map(|()| id)
         });
@@ -90,11 +93,28 @@ impl Studio {
         self.fits.end();
     }
 
-    /// Saves what a fit has found.
+    /// Saves what a fit has found. If that fails, the model is put elsewhere, and the error says where.
     fn take_model(&self, begun: Begun, identified: &Identified, data: &Data) -> Result<()> {
+        let text = identified.model.to_json();
+        // From here on a studio that is killed finds this model, and not an earlier one.
+        let best = self.folder.best_so_far();
+        let _ = self.folder.write(&best, Kind::Model, text.as_bytes());
+        self.store_model(begun, identified, data, &text).map_err(|error| {
+            let named = self.folder.models(&format!("{}.json", identified.model.name().name()));
+            match hysid_files::rescue(&named, text.as_bytes()) {
+                Some(place) => anyhow!("{error:#}; the model is in {}", place.display()),
+                None => error,
+            }
+        })?;
+        self.folder.remove(&best);
+        Ok(())
+    }
+
+    fn store_model(&self, begun: Begun, identified: &Identified, data: &Data, text: &str) -> Result<()> {
         let stem = format!("{}-{}", begun.id, identified.model.name().name());
-        let (file, report) = (format!("{stem}.json"), format!("{stem}.html"));
-        write(&self.folder.models(&file), Kind::Model, identified.model.to_json().as_bytes())?;
+        let file = self.folder.free_name(Inner::Models, &format!("{stem}.json"))?;
+        let report = self.folder.free_name(Inner::Models, &format!("{stem}.html"))?;
+        self.folder.write(&self.folder.models(&file), Kind::Model, text.as_bytes())?;
         // A model is worth more than its report.
         let report = self.write_report(&report, &file, identified, data, &begun).is_ok().then_some(report);
         let stored = ProjectModel {
@@ -105,9 +125,7 @@ impl Studio {
             seconds: identified.seconds,
             was_interrupted: false,
         };
-        self.keep(stored)?;
-        let _ = fs::remove_file(self.folder.best_so_far());
-        Ok(())
+        self.keep(stored)
     }
 
     /// Stores a model, with which its fit is no longer unfinished.
@@ -132,7 +150,7 @@ impl Studio {
         let inputs: Vec<PathBuf> = begun.files.iter().map(|file| self.folder.data(file)).collect();
         let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
         page.parts.push(origin::section("hysid studio", &inputs));
-        write(&self.folder.models(report), Kind::Page, page_text(&page).as_bytes())
+        self.folder.write(&self.folder.models(report), Kind::Page, page_text(&page).as_bytes())
     }
 
     fn forget_the_unfinished(&self) {
@@ -149,7 +167,8 @@ impl Studio {
         let Some(begun) = self.project().unfinished.clone() else { return Ok(()) };
         let chosen = NamedOptions::of(begun.request.options.clone()).unwrap_or_default();
         let best = self.folder.best_so_far();
-        let model = fs::read_to_string(&best).ok().and_then(|text| Model::from_json(&text).ok());
+        let text = self.folder.read(&best).ok().and_then(|content| String::from_utf8(content).ok());
+        let model = text.as_ref().and_then(|text| Model::from_json(text).ok());
         let mut state = FitState::begun(begun.id, &FitSpec::of(chosen.model(), None, 1));
         state.is_running = false;
         state.was_interrupted = true;
@@ -158,8 +177,12 @@ impl Studio {
             Some(model) => {
                 let id = begun.id;
                 let file = format!("{id}-{}.json", model.name().name());
-                fs::rename(&best, self.folder.models(&file))
-                    .context("the best model so far cannot be kept")?;
+                let file = self.folder.free_name(Inner::Models, &file)?;
+                self.folder.write(
+                    &self.folder.models(&file),
+                    Kind::Model,
+                    text.unwrap_or_default().as_bytes(),
+                )?;
                 let stored = ProjectModel {
                     begun,
                     file,
@@ -169,6 +192,7 @@ impl Studio {
                     was_interrupted: true,
                 };
                 self.keep(stored)?;
+                self.folder.remove(&best);
                 state.made = Some(id);
                 state.problem = Some(format!("{words} during this fit; the best model so far was kept"));
             }

@@ -1,7 +1,6 @@
 //! Models of a project, and their runs over its files.
 
-use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Result, anyhow};
@@ -11,7 +10,6 @@ use hysid_records::{ColumnChoice, Data};
 use hysid_report::diagnosis::DiagnosedModel;
 
 use super::Studio;
-use crate::folder::cannot_read;
 use crate::judgement::Run;
 use crate::project::ProjectModel;
 use crate::take_away::Lines;
@@ -31,7 +29,7 @@ impl Studio {
             return Ok(Arc::clone(known));
         }
         let path = self.model_file(id)?;
-        let text = fs::read_to_string(&path).map_err(|error| cannot_read(&path, &error))?;
+        let text = self.text(&path)?;
         let model = Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display()))?;
         let model = Arc::new(model);
         let mut kept = kept();
@@ -68,7 +66,11 @@ impl Studio {
             anyhow!("this model has no report: the fit was interrupted, or the report could not be written")
         })?;
         let path = self.folder.models(&report);
-        fs::read_to_string(&path).map_err(|error| cannot_read(&path, &error))
+        self.text(&path)
+    }
+
+    fn text(&self, path: &Path) -> Result<String> {
+        String::from_utf8(self.folder.read(path)?).map_err(|_| anyhow!("{}: is no text", path.display()))
     }
 
     /// Removes a model.
@@ -76,14 +78,14 @@ impl Studio {
     /// # Errors
     /// There is none of this number.
     pub fn remove_model(&self, id: u64) -> Result<()> {
-        self.change(|project| {
-            let stored = project.model(id)?.clone();
+        let removed = self.change(|project| {
+            let removed = project.model(id)?.clone();
             project.models.retain(|model| model.begun.id != id);
-            for file in std::iter::once(&stored.file).chain(&stored.report) {
-                let _ = fs::remove_file(self.folder.models(file));
-            }
-            Ok(())
+            Ok(removed)
         })?;
+        for file in std::iter::once(&removed.file).chain(&removed.report) {
+            self.folder.remove(&self.folder.models(file));
+        }
         self.models.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).remove(&id);
         self.runs.clear();
         Ok(())

@@ -5,6 +5,7 @@ mod version_5;
 use hdf5_reader::group::Group;
 use hdf5_reader::{Dataset, Datatype, Hdf5File, OpenOptions};
 
+use super::budget::Budget;
 use crate::number::shortest;
 
 /// Longest nesting of structures that is looked into.
@@ -47,10 +48,15 @@ impl Variable {
 ///
 /// # Errors
 /// No file that can be read, no numbers in it, no such variable, in words.
-pub fn text(bytes: Vec<u8>, chosen: Option<&str>) -> Result<(String, String), String> {
+pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<(String, String), String> {
+    let budget = Budget::of(bytes.len());
+    budget.run(move || text_within(budget, bytes, chosen.as_deref()))
+}
+
+fn text_within(budget: Budget, bytes: Vec<u8>, chosen: Option<&str>) -> Result<(String, String), String> {
     let (mut variables, kind) = match is_hdf5(&bytes) {
-        true => (of_hdf5(bytes)?, "MATLAB file 7.3"),
-        false => (version_5::variables(&bytes)?, "MATLAB file 5"),
+        true => (of_hdf5(bytes, budget)?, "MATLAB file 7.3"),
+        false => (version_5::variables(&bytes, budget)?, "MATLAB file 5"),
     };
     let names: Vec<String> = variables.iter().map(|variable| variable.name.clone()).collect();
     if let Some(chosen) = chosen {
@@ -120,14 +126,16 @@ fn columns_of(variable: &Variable) -> Vec<(String, &Vec<f64>)> {
     }
 }
 
-/// Largest variable that is read, in bytes: a small file may claim any size.
-const MOST_BYTES: usize = 1 << 32;
+/// Numbers that a group counts as.
+const NUMBERS_PER_GROUP: u64 = 1000;
 
-fn of_hdf5(bytes: Vec<u8>) -> Result<Vec<Variable>, String> {
-    let options = OpenOptions::default().with_max_read_bytes(MOST_BYTES);
+fn of_hdf5(bytes: Vec<u8>, budget: Budget) -> Result<Vec<Variable>, String> {
+    let most = usize::try_from(8 * budget.numbers()).unwrap_or(usize::MAX);
+    let options = OpenOptions::default().with_max_read_bytes(most);
     let file = Hdf5File::from_vec_with_options(bytes, options).map_err(words)?;
     let mut variables = Vec::new();
-    collect_group("", &file.root_group().map_err(words)?, DEEPEST, &mut variables)?;
+    let mut left = budget.numbers();
+    collect_group("", &file.root_group().map_err(words)?, DEEPEST, &mut left, &mut variables)?;
     Ok(variables)
 }
 
@@ -135,9 +143,21 @@ fn words(error: hdf5_reader::error::Error) -> String {
     error.to_string()
 }
 
-fn collect_group(path: &str, group: &Group, depth: usize, found: &mut Vec<Variable>) -> Result<(), String> {
+fn collect_group(
+    path: &str,
+    group: &Group,
+    depth: usize,
+    left: &mut u64,
+    found: &mut Vec<Variable>,
+) -> Result<(), String> {
     let (groups, datasets) = group.members().map_err(words)?;
+    // Groups may lie in each other.
+    *left = left.checked_sub(NUMBERS_PER_GROUP).ok_or("its groups go round in a circle, or are too many")?;
     for dataset in datasets {
+        let size = dataset.shape().iter().fold(1_u64, |size, &length| size.saturating_mul(length));
+        *left = left
+            .checked_sub(size)
+            .ok_or_else(|| format!("{path}{} claims more numbers than the file can hold", dataset.name()))?;
         if let Some(values) = numbers(&dataset)? {
             // MATLAB writes its columns as the rows of HDF5.
             let mut sizes: Vec<usize> = dataset.shape().iter().map(|&size| size as usize).collect();
@@ -147,7 +167,7 @@ fn collect_group(path: &str, group: &Group, depth: usize, found: &mut Vec<Variab
     }
     // What MATLAB needs for itself begins with a number sign.
     for inner in groups.into_iter().filter(|group| !group.name().starts_with('#') && depth > 0) {
-        collect_group(&format!("{path}{}.", inner.name()), &inner, depth - 1, found)?;
+        collect_group(&format!("{path}{}.", inner.name()), &inner, depth - 1, left, found)?;
     }
     Ok(())
 }

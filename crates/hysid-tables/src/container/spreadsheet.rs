@@ -1,18 +1,49 @@
 //! A sheet of a spreadsheet as text: a line for each row, cells separated by tabs.
 
+mod archive;
+mod compound;
+#[cfg(test)]
+mod tests;
+
 use std::io::Cursor;
 
-use calamine::{Data, ExcelDateTime, Range, Reader, open_workbook_auto_from_rs};
+use calamine::{Data, ExcelDateTime, Ods, Range, Reader, Xls, Xlsx};
 
+use super::budget::Budget;
 use crate::number::shortest;
+
+/// How compound files begin, such as `.xls`.
+pub const COMPOUND: &[u8] = b"\xd0\xcf\x11\xe0";
 
 /// The text of a sheet, its name, and the names of the others; the first that is not empty if none is chosen. Line `n` is row `n` of the sheet.
 ///
 /// # Errors
 /// No spreadsheet, no such sheet, in words.
-pub fn text(bytes: &[u8], chosen: Option<&str>) -> Result<(String, String, Vec<String>), String> {
-    let mut book =
-        open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(|_| "it is of an unknown kind".to_string())?;
+pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<Sheet, String> {
+    let budget = Budget::of(bytes.len());
+    budget.run(move || {
+        if bytes.starts_with(COMPOUND) {
+            compound::check(&bytes)?;
+            return sheet::<Xls<_>, _>(bytes, chosen.as_deref());
+        }
+        let (bytes, kind) = archive::checked(&bytes)?;
+        match kind {
+            archive::Kind::Excel => sheet::<Xlsx<_>, _>(bytes, chosen.as_deref()),
+            archive::Kind::OpenDocument => sheet::<Ods<_>, _>(bytes, chosen.as_deref()),
+        }
+    })
+}
+
+/// The text of a sheet, its name, and the names of the others.
+pub type Sheet = (String, String, Vec<String>);
+
+/// As [`text`], of a file that asks for no more than it holds.
+fn sheet<R, E>(bytes: Vec<u8>, chosen: Option<&str>) -> Result<Sheet, String>
+where
+    R: Reader<Cursor<Vec<u8>>, Error = E>,
+    E: std::fmt::Debug + std::fmt::Display + From<std::io::Error>,
+{
+    let mut book = R::new(Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let names = book.sheet_names();
     let listed = || names.join(", ");
     let mut sheet = |name: &str| book.worksheet_range(name).map_err(|error| format!("sheet {name}: {error}"));

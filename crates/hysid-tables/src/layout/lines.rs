@@ -49,8 +49,9 @@ pub fn is_comment(line: &str) -> bool {
 /// all there is.
 pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<Line<'_>> {
     let mut physical = Vec::new();
-    let (mut start, mut number) = (0, 1);
-    while start < text.len() && physical.len() < MOST_LINES + skip + LONGEST_QUOTE {
+    // Comments may be of any length, and the table comes behind them.
+    let (mut start, mut number, mut others) = (0, 1, 0);
+    while start < text.len() && others < MOST_LINES + skip + LONGEST_QUOTE {
         let rest = &text[start..];
         let end = rest.find(['\n', '\r']);
         if end.is_none() && !is_all {
@@ -60,6 +61,7 @@ pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<Line<'_>> {
         let both = usize::from(rest[length..].starts_with("\r\n"));
         let next = start + length + both + usize::from(end.is_some());
         physical.push((start, start + length, next, number));
+        others += usize::from(!is_comment(&rest[..length]));
         start = next;
         number += 1;
     }

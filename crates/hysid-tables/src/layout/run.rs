@@ -234,5 +234,7 @@ fn columns<'r>(rows: impl Iterator<Item = (&'r Vec<Kind>, &'r Vec<Cell<'r>>)>, w
 /// True if the first cells are whole numbers, each one more than that before.
 fn counts<'r>(rows: impl Iterator<Item = &'r Vec<Cell<'r>>>) -> bool {
     let first: Option<Vec<i64>> = rows.map(|cells| cells.first()?.text.trim().parse().ok()).collect();
-    first.is_some_and(|first| first.len() > 1 && first.windows(2).all(|pair| pair[1] - pair[0] == 1))
+    first.is_some_and(|first| {
+        first.len() > 1 && first.windows(2).all(|pair| pair[0].checked_add(1) == Some(pair[1]))
+    })
 }

@@ -90,7 +90,7 @@ impl State {
 
     /// The number of branches of a direction, and the place of the first.
     fn branches(&self, builder: &mut Builder, direction: &Whole) -> (Whole, Whole) {
-        let count = builder.whole_variable(self.count.at(direction).to_whole());
+        let count = builder.counter(self.count, direction, 0.0, MOST_BRANCHES as f64);
         let first = builder.whole_variable(direction * MOST_BRANCHES);
         (count.into(), first.into())
     }
@@ -116,7 +116,7 @@ impl State {
         let roundness = builder.variable(law.roundness);
         builder.when(self.direction.at(0_usize).at_least(0.0), |builder| {
             let (d, q) = (builder.value(self.d.at(0_usize)), builder.value(self.q.at(0_usize)));
-            let before = Whole::from(builder.whole_variable(self.direction.at(0_usize).to_whole()));
+            let before = Whole::from(builder.counter(self.direction, 0_usize, 0.0, 1.0));
             let sign = sign_of(builder, &before);
             let (count, first) = self.branches(builder, &before);
             builder.when(count.above(0_usize), |builder| {

@@ -24,7 +24,7 @@ const GAUSS_WEIGHTS: [f64; 5] = [
 pub(super) fn step(builder: &mut Builder, name: &str, law: &PeakOriented, sample: &Sample) -> Real {
     let member = Member::new(builder, name, law);
     let x = limited(builder, &sample.inputs[0]);
-    let side = builder.whole_variable(member.side.at(0_usize).to_whole());
+    let side = builder.counter(member.side, 0_usize, -1.0, 1.0);
     builder.when(Whole::from(side).below(0_usize), |builder| {
         builder.assign_whole(side, 0_usize);
         builder.when(x.below(0.0), |builder| builder.assign_whole(side, 1));

@@ -34,7 +34,7 @@ impl TurningPoints {
 
     /// Advances to the next input: as `TurningPointStack::advance` of the library. Returns the number of points.
     pub fn advance(&self, builder: &mut Builder, x: &Real) -> WholeVariable {
-        let depth = builder.whole_variable(self.depth.at(0_usize).to_whole());
+        let depth = builder.counter(self.depth, 0_usize, 0.0, MOST as f64);
         let n = Whole::from(depth);
         let moved = self.has_present.at(0_usize).above(0.0).and(x.equals(self.present.at(0_usize)).negated());
         builder.when(moved, |builder| {

@@ -11,11 +11,7 @@ pub(super) fn header(subject: &Subject<'_>) -> String {
         Precision::Double => "double",
         Precision::Single => "float",
     };
-    let facts: String = subject
-        .facts()
-        .iter()
-        .map(|(fact, text)| format!(" * {fact}: {}\n", text.replace("*/", "* /")))
-        .collect();
+    let facts: String = subject.facts().iter().map(|(fact, text)| format!(" * {fact}: {text}\n")).collect();
     let state: String = subject
         .program()
         .states()
@@ -59,8 +55,8 @@ typedef struct {{
     int has_trial;
 }} {name}_model;
 
-/* Bytes of a saved state. */
-#define {upper}_STATE_BYTES sizeof({name}_state)
+/* Bytes of a saved state: the state, what tells it from those of other models, and a checksum. */
+#define {upper}_STATE_BYTES (sizeof({name}_state) + 2 * sizeof(double))
 
 /* To the initial state. Call it once before anything else. */
 void {name}_reset({name}_model *model);
@@ -83,8 +79,8 @@ void {name}_revert({name}_model *model);
 {half_width}/* Saves the committed state as {upper}_STATE_BYTES bytes, for the same program on the same kind of machine. */
 void {name}_save(const {name}_model *model, unsigned char *bytes);
 
-/* Restores a saved state. */
-void {name}_restore({name}_model *model, const unsigned char *bytes);
+/* Restores a saved state and returns 1. Bytes that are no saved state of this model change nothing and give 0. */
+int {name}_restore({name}_model *model, const unsigned char *bytes);
 
 #ifdef __cplusplus
 }}

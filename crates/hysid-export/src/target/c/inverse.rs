@@ -30,11 +30,7 @@ pub(super) fn header_and_source(subject: &Subject<'_>, inverse: &Inverse) -> [St
     let number = |value: f64| literal(subject.precision(), value);
     let each = |write: &dyn Fn(&str) -> String| names.iter().map(|name| write(name)).collect::<String>();
 
-    let facts: String = subject
-        .facts()
-        .iter()
-        .map(|(fact, text)| format!(" * {fact}: {}\n", text.replace("*/", "* /")))
-        .collect();
+    let facts: String = subject.facts().iter().map(|(fact, text)| format!(" * {fact}: {text}\n")).collect();
     let slew = inverse.slew.map_or(String::new(), |slew| {
         format!(
             "/* Largest change of the input in a unit of time. The first sample is free. */\n\

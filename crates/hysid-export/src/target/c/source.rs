@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use crate::description::HALF_WIDTH;
+use crate::manifest::token_of;
 use crate::program::expression::{Binary, Unary};
 use crate::program::functions::Functions;
 use crate::program::unused::used_arrays;
@@ -25,15 +26,15 @@ pub(super) fn source(subject: &Subject<'_>) -> String {
     if functions.unary.contains(&Unary::PowerOfTwo) {
         text += "#include <stdint.h>\n";
     }
-    text += &format!("#include \"{name}.h\"\n\n");
-    text += "#ifdef __FAST_MATH__\n#error \"-ffast-math changes the results of this file\"\n#endif\n\n";
+    text += &format!("#include <string.h>\n\n#include \"{name}.h\"\n\n");
+    text += "#if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__\n#error \"-ffast-math and its parts change the results of this file\"\n#endif\n\n";
     text += &format!("typedef {name}_real real;\n\n");
     text += &prelude(&functions, subject.precision());
     text += &constants(&c, &[step, tangent]);
     text += &initial_state(&c, name, step);
     text += &function(&c, name, step, "advance", false);
     text += &function(&c, name, tangent, "advance_with_tangent", true);
-    text += &around(&c, name);
+    text += &around(&c, name, token_of(&text));
     if subject.half_width().is_some() {
         text += &format!(
             "
@@ -100,11 +101,24 @@ fn function(c: &C, name: &str, program: &Program, function: &str, with_tangent: 
 }
 
 /// The public functions.
-fn around(c: &C, name: &str) -> String {
+fn around(c: &C, name: &str, token: u32) -> String {
     let parameters: String = c.arguments.iter().map(|argument| format!(", real {argument}")).collect();
     let arguments: String = c.arguments.iter().map(|argument| format!(", {argument}")).collect();
     format!(
-        "void {name}_reset({name}_model *model)
+        "/* Tells saved states of this model from those of others. */
+static const double token = {token}.0;
+
+/* A checksum of a saved state (FNV-1a). */
+static double checksum(const unsigned char *bytes)
+{{
+    unsigned long sum = 2166136261UL;
+    size_t i;
+    for (i = 0; i < sizeof({name}_state); i++)
+        sum = ((sum ^ bytes[i]) * 16777619UL) & 0xffffffffUL;
+    return (double)sum;
+}}
+
+void {name}_reset({name}_model *model)
 {{
     model->committed = first_values;
     model->has_trial = 0;
@@ -145,22 +159,24 @@ real {name}_step({name}_model *model{parameters})
 
 void {name}_save(const {name}_model *model, unsigned char *bytes)
 {{
-    const unsigned char *from = (const unsigned char *)&model->committed;
-    size_t i;
-    for (i = 0; i < {upper}_STATE_BYTES; i++)
-        bytes[i] = from[i];
+    double tail[2];
+    memcpy(bytes, &model->committed, sizeof({name}_state));
+    tail[0] = token;
+    tail[1] = checksum(bytes);
+    memcpy(bytes + sizeof({name}_state), tail, sizeof tail);
 }}
 
-void {name}_restore({name}_model *model, const unsigned char *bytes)
+int {name}_restore({name}_model *model, const unsigned char *bytes)
 {{
-    unsigned char *to = (unsigned char *)&model->committed;
-    size_t i;
-    for (i = 0; i < {upper}_STATE_BYTES; i++)
-        to[i] = bytes[i];
+    double tail[2];
+    memcpy(tail, bytes + sizeof({name}_state), sizeof tail);
+    if (tail[0] != token || tail[1] != checksum(bytes))
+        return 0;
+    memcpy(&model->committed, bytes, sizeof({name}_state));
     model->has_trial = 0;
+    return 1;
 }}
 ",
-        upper = name.to_uppercase(),
     )
 }
 
@@ -307,7 +323,7 @@ impl Language for C {
     }
 
     fn remark(&self, text: &str) -> String {
-        format!("/* {} */", text.replace("*/", "* /"))
+        format!("/* {text} */")
     }
 
     fn each(&self, variable: &str, first: &str, last: &str) -> String {

@@ -50,7 +50,7 @@ const REACHES: &str = "whether the wanted output was reached: 0 reached, 1 beyon
 
 /// The inputs, the outputs and, if there is a band, half its width.
 fn variables(subject: &Subject<'_>) -> Vec<Variable> {
-    let names = subject.model().names();
+    let names = subject.names();
     let time = names.time.as_deref().and_then(unit::of_column);
     let of = |argument: &Argument| match *argument {
         Argument::Input(0) if subject.inverse().is_some() => Some(Variable {
@@ -311,10 +311,9 @@ fn summary(subject: &Subject<'_>) -> String {
     escaped(&format!("{what} of hysteresis, written by Hysid. {}", facts.join("; ")))
 }
 
-/// Text inside an attribute of XML.
+/// [Harmless](crate::text) text inside an attribute of XML.
 fn escaped(text: &str) -> String {
     text.chars()
-        .filter(|letter| !letter.is_control())
         .map(|letter| match letter {
             '&' => "&amp;".to_string(),
             '<' => "&lt;".into(),

@@ -213,16 +213,19 @@ int {name}Material::recvSelf(int commitTag, Channel &channel, FEM_ObjectBroker &
         opserr << \"{name}Material::recvSelf failed to receive its data\" << endln;
         return -1;
     }}
+    for (int i = 0; i < STATE_NUMBERS; i++)
+        state[i] = data(6 + i);
+    memcpy(bytes, state, sizeof bytes);
+    if (!{name}_restore(&model, bytes)) {{
+        opserr << \"{name}Material::recvSelf received a state that is damaged or of another material\" << endln;
+        return -1;
+    }}
     this->setTag((int)data(0));
     committed.strain = data(1);
     committed.rate = data(2);
     committed.stress = data(3);
     committed.tangent = data(4);
     initialTangent = data(5);
-    for (int i = 0; i < STATE_NUMBERS; i++)
-        state[i] = data(6 + i);
-    memcpy(bytes, state, sizeof bytes);
-    {name}_restore(&model, bytes);
     trial = committed;
     return 0;
 }}

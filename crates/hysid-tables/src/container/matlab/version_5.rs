@@ -4,10 +4,9 @@
 //! A file is a header of 128 bytes and elements: type, size, data. A matrix is an element of elements: flags, sizes,
 //! name, and the values, or the fields of a structure. A compressed element holds another.
 
-use std::io::Read;
-
 use flate2::read::ZlibDecoder;
 
+use super::super::budget::{Budget, too_much};
 use super::{DEEPEST, Variable};
 
 const HEADER: usize = 128;
@@ -31,7 +30,7 @@ const DAMAGED: &str = "it is damaged or cut off";
 ///
 /// # Errors
 /// A file that is damaged, in words.
-pub fn variables(bytes: &[u8]) -> Result<Vec<Variable>, String> {
+pub fn variables(bytes: &[u8], budget: Budget) -> Result<Vec<Variable>, String> {
     let order = match bytes.get(126..HEADER) {
         Some(b"IM") => Order::Little,
         Some(b"MI") => Order::Big,
@@ -39,16 +38,20 @@ pub fn variables(bytes: &[u8]) -> Result<Vec<Variable>, String> {
     };
     let mut elements = Elements { bytes: &bytes[HEADER..], order };
     let mut found = Vec::new();
+    let (mut unpacked, mut left) = (0, budget.numbers());
     while let Some(element) = elements.next()? {
         if element.kind == COMPRESSED {
-            let mut plain = Vec::new();
-            ZlibDecoder::new(element.bytes).read_to_end(&mut plain).map_err(|_| DAMAGED)?;
+            let plain = budget.unpacked(ZlibDecoder::new(element.bytes))?;
+            unpacked += plain.len() as u64;
+            if unpacked > budget.bytes() {
+                return Err(too_much());
+            }
             let mut inner = Elements { bytes: &plain, order };
             if let Some(element) = inner.next()? {
-                collect(&element, order, None, DEEPEST, &mut found)?;
+                collect(&element, order, None, DEEPEST, &mut left, &mut found)?;
             }
         } else {
-            collect(&element, order, None, DEEPEST, &mut found)?;
+            collect(&element, order, None, DEEPEST, &mut left, &mut found)?;
         }
     }
     Ok(found)
@@ -123,6 +126,7 @@ fn collect(
     order: Order,
     field: Option<&str>,
     depth: usize,
+    left: &mut u64,
     found: &mut Vec<Variable>,
 ) -> Result<(), String> {
     if element.kind != MATRIX || element.bytes.is_empty() {
@@ -144,7 +148,11 @@ fn collect(
     let own = String::from_utf8_lossy(parts.required()?.bytes).into_owned();
     let name = field.map_or(own, String::from);
     if is_numeric {
-        let values = numbers(&parts.required()?, order)?;
+        let stored = parts.required()?;
+        let size = if stored.kind < 3 { 1 } else { 2 };
+        let count = (stored.bytes.len() / size) as u64;
+        *left = left.checked_sub(count).ok_or("it has more numbers than a file of its size should")?;
+        let values = numbers(&stored, order)?;
         found.extend(Variable::new(name, &sizes, values));
         return Ok(());
     }
@@ -160,7 +168,7 @@ fn collect(
     for field in parts.required()?.bytes.chunks(length) {
         let end = field.iter().position(|&byte| byte == 0).unwrap_or(field.len());
         let inner = format!("{name}.{}", String::from_utf8_lossy(&field[..end]));
-        collect(&parts.required()?, order, Some(&inner), depth - 1, found)?;
+        collect(&parts.required()?, order, Some(&inner), depth - 1, left, found)?;
     }
     Ok(())
 }
@@ -220,15 +228,15 @@ mod tests {
     fn damaged_files_are_refused_and_nothing_else_happens() {
         let whole = file();
         for end in 0..whole.len() {
-            let _ = variables(&whole[..end]);
+            let _ = variables(&whole[..end], Budget::of(whole.len()));
         }
         for place in 0..whole.len() {
             for byte in [0, 1, 15, 0x7f, 0xff] {
                 let mut damaged = whole.clone();
                 damaged[place] = byte;
-                let _ = variables(&damaged);
+                let _ = variables(&damaged, Budget::of(whole.len()));
             }
         }
-        assert!(variables(&whole[..300]).is_err());
+        assert!(variables(&whole[..300], Budget::of(whole.len())).is_err());
     }
 }
