@@ -19,6 +19,8 @@ pub fn not_written(failure: Failure) -> PyErr {
             PyFileExistsError::new_err(format!("{failure}: name another file, or replace it with force=True"))
         }
         Failure::Refused { error, .. } => std::io::Error::new(error.kind(), failure.to_string()).into(),
-        Failure::InUse(_) | Failure::NotPlain(_) | Failure::HoldsInput { .. } => PyOSError::new_err(failure.to_string()),
+        Failure::InUse(_) | Failure::NotPlain(_) | Failure::HoldsInput { .. } => {
+            PyOSError::new_err(failure.to_string())
+        }
     }
 }

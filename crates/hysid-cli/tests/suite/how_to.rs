@@ -1,5 +1,6 @@
 //! Pages of `docs` as a reader follows them: every line of a `sh` block that calls `hysid`, a compiler, or a program of the
-//! folder is run, in order, in a folder of the page's own. Each page is a test of its own.
+//! folder is run, in order, in a folder of the page's own. Each page is a test of its own. Every line of a `text` block must
+//! be among the lines that these commands print: the same words, and numbers that are near enough.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,6 +24,31 @@ fn commands(page: &str) -> Vec<&str> {
     commands
 }
 
+/// How far a number on a page may be from the printed one, as a share of the larger: fits end elsewhere on another processor.
+const NEAR: f64 = 0.25;
+
+/// The lines of the `text` blocks of a page, without those that say that something is left out.
+fn shown(page: &str) -> Vec<&str> {
+    let blocks = page.split("\n```text\n").skip(1).filter_map(|rest| rest.split_once("\n```"));
+    let lines = blocks.flat_map(|(block, _)| block.lines());
+    lines.filter(|line| !line.trim().is_empty() && !line.trim().starts_with("...")).collect()
+}
+
+/// True for lines of the same words, with numbers that are near each other.
+fn is_alike(shown: &str, printed: &str) -> bool {
+    let number = |word: &str| {
+        let bare = word.trim_matches(|c: char| "(),.;:%".contains(c)).replace('−', "-");
+        bare.parse::<f64>().ok()
+    };
+    let are_alike = |(shown, printed): (&str, &str)| match (number(shown), number(printed)) {
+        (Some(a), Some(b)) => (a - b).abs() <= NEAR * a.abs().max(b.abs()),
+        _ => shown == printed,
+    };
+    let (shown, printed): (Vec<_>, Vec<_>) =
+        (shown.split_whitespace().collect(), printed.split_whitespace().collect());
+    shown.len() == printed.len() && shown.into_iter().zip(printed).all(are_alike)
+}
+
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
 }
@@ -41,10 +67,19 @@ fn follow(path: &str) {
     let page = fs::read_to_string(docs().join(path)).unwrap();
     let commands = commands(&page);
     assert!(!commands.is_empty(), "{path} has no command");
+    let mut printed = String::new();
     for command in commands {
         let ran = bench.shell(command);
         assert_eq!(ran.status, Some(0), "{path}: `{command}`: {}", ran.stderr);
+        printed += &format!("{}\n{}\n", ran.stdout, ran.stderr);
     }
+    let is_printed = |line: &&str| printed.lines().any(|printed| is_alike(line, printed));
+    let others: Vec<&str> = shown(&page).into_iter().filter(|line| !is_printed(line)).collect();
+    assert!(
+        others.is_empty(),
+        "{path} shows what no command prints:\n{}\n--- printed:\n{printed}",
+        others.join("\n")
+    );
 }
 
 macro_rules! pages {
@@ -96,6 +131,17 @@ fn every_page_with_commands_is_followed() {
             }
         }
     }
+}
+
+#[test]
+fn lines_are_alike_whose_words_are_equal_and_whose_numbers_are_near() {
+    assert!(is_alike("loss  at 5 Hz: 97.2 J/m3", "loss at 5 Hz: 97.18   J/m3"));
+    for other in
+        ["loss at 5 Hz: 150 J/m3", "loss at 5 Hz: 97.18 W/m3", "loss at 5 Hz: 97.18", "loss at 5 Hz: no J/m3"]
+    {
+        assert!(!is_alike("loss at 5 Hz: 97.2 J/m3", other), "{other}");
+    }
+    assert_eq!(shown("a\n```text\nb 1\n...\n\nc\n```\nd\n```sh\ne\n```\n"), ["b 1", "c"]);
 }
 
 #[test]
