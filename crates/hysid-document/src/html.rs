@@ -14,7 +14,7 @@ const STYLE: &str = include_str!("html/style.css");
 const NARROW_COLUMNS: usize = 3;
 
 /// What makes figures answer to pointer and keys. A page is complete without it.
-const SCRIPT: &str = include_str!("html/page.js");
+const SCRIPT: &str = concat!("\n", include_str!("html/page.js"));
 
 /// Beginning of a page without a mark of the program that wrote it.
 pub const BEGINNING: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">";
@@ -47,7 +47,12 @@ pub fn style(selector: &str) -> String {
 }
 
 fn script() -> String {
-    format!("<script>\n{SCRIPT}</script>\n")
+    format!("<script>{SCRIPT}</script>\n")
+}
+
+/// The content of the one element `script` that a page may have, for a policy that allows no other.
+pub fn script_of_pages() -> &'static str {
+    SCRIPT
 }
 
 /// The parts, with a table of contents before the sections of a long page that has none.

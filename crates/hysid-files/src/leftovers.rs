@@ -9,19 +9,27 @@ use crate::temporary::{ENDING, RANDOM_LETTERS, beginning, folder_of, is_linked};
 /// Removes the temporary files and folders of a target whose processes are dead. What cannot be removed stays: it does no harm.
 pub(crate) fn clean(target: &Path) {
     let beginning = beginning(target);
-    let Ok(entries) = fs::read_dir(folder_of(target)) else { return };
+    clean_named(folder_of(target), |name| name.strip_prefix(&beginning));
+}
+
+/// Removes from a folder the temporary files and folders of all targets whose processes are dead.
+pub fn remove_leftovers(folder: &Path) {
+    clean_named(folder, |name| name.strip_prefix('.')?.rsplit_once('.').map(|(_, letters)| letters));
+}
+
+/// `letters` gives the random letters of a name without its ending, if the name may be one of a temporary file.
+fn clean_named(folder: &Path, letters: impl Fn(&str) -> Option<&str>) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let is_random = |letters: &str| {
+        letters.len() == RANDOM_LETTERS && letters.bytes().all(|letter| letter.is_ascii_alphanumeric())
+    };
     for entry in entries.flatten() {
-        if entry.file_name().to_str().is_some_and(|name| is_temporary(name, &beginning)) {
+        let name = entry.file_name();
+        let name = name.to_str().and_then(|name| name.strip_suffix(ENDING));
+        if name.and_then(&letters).is_some_and(is_random) {
             let _ = remove_if_abandoned(&entry.path());
         }
     }
-}
-
-fn is_temporary(name: &str, beginning: &str) -> bool {
-    let letters = name.strip_prefix(beginning).and_then(|rest| rest.strip_suffix(ENDING));
-    letters.is_some_and(|letters| {
-        letters.len() == RANDOM_LETTERS && letters.bytes().all(|letter| letter.is_ascii_alphanumeric())
-    })
 }
 
 /// A living process holds a lock on its file.

@@ -27,6 +27,7 @@ pub use destination::NewFile;
 pub use failure::{Failure, reason};
 pub use folder::Folder;
 pub use kind::{GENERATOR, Kind, PAGE_MARK};
+pub use leftovers::remove_leftovers;
 pub use lock::Lock;
 pub use reading::{open, unreadable};
 pub use rescue::rescue;

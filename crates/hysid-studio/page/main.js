@@ -48,6 +48,7 @@ function showProject() {
   document.getElementById("project").textContent = project.state.name;
   document.getElementById("project").title = project.state.folder;
   document.getElementById("program").textContent = project.choices.program;
+  document.getElementById("reading").hidden = !project.state.is_reading;
   show();
 }
 

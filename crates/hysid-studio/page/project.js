@@ -40,7 +40,7 @@ class Project extends EventTarget {
   /** Models whose file can be read. */
   get models() { return this.state.models.filter((model) => !model.problem); }
   get labels() { return this.state.labels; }
-  usable(use) { return this.files.filter((file) => !file.problem && (use ? file.use === use : file.use !== "unused")); }
+  usable(use) { return this.files.filter((file) => file.read_as !== null && !file.problem && (use ? file.use === use : file.use !== "unused")); }
   /** Changes when the columns of a file mean something else. */
   dataKey(file) { return JSON.stringify([file.id, file.rows, file.bytes, file.use === "unused", this.state.columns, this.state.reading]); }
 

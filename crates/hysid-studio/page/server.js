@@ -1,5 +1,13 @@
 // Talks with the studio's server: JSON, binary arrays, uploads and live events.
 
+const KEY = "hysid-studio-key";
+/** The server gives the key once to the page that was opened with a token. It stays in this browser, for this address alone. */
+const opened = fetch("/api/session", { method: "POST" })
+  .then((answer) => answer.json())
+  .then(({ key }) => { if (key) localStorage.setItem(KEY, key); }, () => {});
+const keyHeader = () => ({ "x-hysid-key": localStorage.getItem(KEY) ?? "" });
+if (location.search) history.replaceState(null, "", location.pathname + location.hash);
+
 /** An error in the server's words. */
 class ServerError extends Error {}
 /** The server cannot be reached. */
@@ -10,11 +18,12 @@ export const connection = new EventTarget();
 let isThere = true;
 let isOfEarlierStart = false;
 export const isStranger = () => isOfEarlierStart;
-/** The cookie of this page is that of an earlier studio: no request will be answered. */
+/** The key of this page is that of an earlier studio: no request will be answered until another page has the new one. */
 function estranged(words) {
   isOfEarlierStart = true;
   connection.dispatchEvent(new CustomEvent("stranger", { detail: words }));
 }
+addEventListener("storage", (event) => { if (event.key === KEY && isOfEarlierStart) location.reload(); });
 function say(there) {
   if (there === isThere || isOfEarlierStart) return;
   isThere = there;
@@ -22,9 +31,10 @@ function say(there) {
 }
 
 async function request(address, options) {
+  await opened;
   let response;
   try {
-    response = await fetch(address, options);
+    response = await fetch(address, { ...options, headers: { ...options?.headers, ...keyHeader() } });
   } catch (error) {
     if (error.name === "AbortError") throw error;
     say(false);
@@ -38,6 +48,7 @@ async function request(address, options) {
 }
 
 export const getJson = async (address) => (await request(address)).json();
+export const getText = async (address) => (await request(address)).text();
 export const remove = (address) => request(address, { method: "DELETE" });
 export async function post(address, value) {
   const response = await request(address, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(value) });
@@ -86,26 +97,44 @@ export function upload(file, progress) {
     });
     call.addEventListener("error", () => { say(false); failed(new Gone("The studio is not running.")); });
     call.setRequestHeader("content-type", "application/octet-stream");
+    for (const [name, value] of Object.entries(keyHeader())) call.setRequestHeader(name, value);
     call.send(file);
   });
 }
 
-/** Server-sent events. The browser connects again by itself, except after some errors: then this does. */
+/** Server-sent events, with the key in a header, which the browser's own class for them cannot send. */
 export function listenToEvents(listeners) {
-  let source;
+  let stop;
   let again;
-  const open = () => {
+  async function open() {
     clearTimeout(again);
-    source?.close();
-    source = new EventSource("/api/events");
-    source.addEventListener("open", () => say(true));
-    source.addEventListener("error", () => {
-      say(false);
-      // The browser does not tell why: a request does.
-      if (source.readyState === EventSource.CLOSED) again = setTimeout(() => getJson("/api/choices").catch(() => {}).then(() => { if (!isOfEarlierStart) open(); }), 2000);
-    });
-    for (const [name, listener] of Object.entries(listeners)) source.addEventListener(name, (event) => listener(JSON.parse(event.data)));
-  };
+    stop?.abort();
+    const own = new AbortController();
+    stop = own;
+    try {
+      const response = await request("/api/events", { signal: own.signal });
+      await eachEvent(response.body, (name, data) => listeners[name]?.(JSON.parse(data)));
+    } catch {
+      // The connection broke, or is refused: tried again below.
+    }
+    if (own.signal.aborted || isOfEarlierStart) return;
+    say(false);
+    again = setTimeout(open, 2000);
+  }
   open();
   return open;
+}
+
+async function eachEvent(body, take) {
+  const reader = body.pipeThrough(new TextDecoderStream()).getReader();
+  let text = "";
+  for (let part = await reader.read(); !part.done; part = await reader.read()) {
+    text += part.value;
+    const events = text.split("\n\n");
+    text = events.pop();
+    for (const event of events) {
+      const field = (name) => event.split("\n").find((line) => line.startsWith(`${name}: `))?.slice(name.length + 2);
+      if (field("event")) take(field("event"), field("data"));
+    }
+  }
 }

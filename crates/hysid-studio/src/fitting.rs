@@ -5,11 +5,12 @@ mod preview;
 mod state;
 mod watch;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use hysid::Model;
 use hysid::fit::{identify, memory_need};
 use hysid::options::FitSpec;
@@ -20,7 +21,7 @@ use rayon::ThreadPoolBuilder;
 use latest::Latest;
 pub use preview::Preview;
 use state::Candidate;
-pub use state::FitState;
+pub use state::{FitState, Unsaved};
 use watch::Watch;
 
 /// The fits of a studio: the last one, running or ended.
@@ -67,8 +68,8 @@ pub struct Work {
 /// Keeps the best model so far in a file.
 pub type Keep = Box<dyn Fn(&Model) + Send + Sync>;
 
-/// Takes what a fit has found, and gives the number of its model.
-pub type Finish = Box<dyn FnOnce(Identified, &Data) -> Result<u64> + Send>;
+/// Takes what a fit has found, or why it has found nothing, and gives the number of its model.
+pub type Finish = Box<dyn FnOnce(Result<(Identified, Arc<Data>)>) -> Result<u64> + Send>;
 
 impl Fits {
     /// Begins a fit.
@@ -92,7 +93,8 @@ impl Fits {
         });
         let own = Arc::clone(&course);
         let thread = std::thread::Builder::new().name("fit".into()).spawn(move || {
-            let ended = run(&own, work, &pool, finish);
+            let found = caught(|| run(&own, work, &pool));
+            let ended = caught(|| finish(found));
             own.change(|state| state.end(ended));
         });
         let thread = Some(thread.context("cannot start the fit")?);
@@ -119,8 +121,17 @@ impl Fits {
         }
     }
 
-    /// Says that a fit of an earlier studio did not come to its end.
-    pub fn interrupted(&self, state: FitState) {
+    /// Says that the model of the last fit is stored after all.
+    pub fn saved(&self, model: u64) {
+        if let Some(last) = &*self.last() {
+            last.course.change(|state| {
+                (state.is_unsaved, state.problem, state.made) = (false, None, Some(model));
+            });
+        }
+    }
+
+    /// Says how a fit of an earlier studio has ended.
+    pub fn taken_up(&self, state: FitState) {
         let course = Course {
             state: Mutex::new(state),
             preview: Mutex::new(None),
@@ -161,8 +172,14 @@ impl Course {
     }
 }
 
-/// The number of the model that was found.
-fn run(course: &Arc<Course>, work: Work, pool: &rayon::ThreadPool, finish: Finish) -> Result<u64> {
+/// What `work` gives; a panic in it is an error.
+pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
+    let words = "an internal error ended this fit: this is a fault of Hysid, please report it with what the terminal says";
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(anyhow!(words)))
+}
+
+/// Runs a fit.
+fn run(course: &Arc<Course>, work: Work, pool: &rayon::ThreadPool) -> Result<(Identified, Arc<Data>)> {
     let Work { request, data, beforehand, file, time_limit, keep, .. } = work;
     let models = Latest::default();
     std::thread::scope(|scope| {
@@ -183,6 +200,42 @@ fn run(course: &Arc<Course>, work: Work, pool: &rayon::ThreadPool, finish: Finis
             seconds,
             beforehand,
         };
-        finish(identified, &data)
+        Ok((identified, Arc::clone(&data)))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use hysid::options::ModelName;
+    use hysid_records::{Roles, csv_text};
+    use hysid_tables::{Reading, Table};
+
+    use super::*;
+
+    fn work() -> Work {
+        let specimen = hysid::specimens::Specimen::named("ferromagnet").unwrap();
+        let text = csv_text(&specimen.train_with_seed(1)).unwrap();
+        let path = std::path::Path::new("a.csv");
+        let table = Table::from_bytes(path, text.into_bytes(), &Reading::default()).unwrap();
+        let roles = Roles::detect(&table, &hysid_records::ColumnChoice::default()).unwrap();
+        let data = Arc::new(Data::new(vec![table], roles, None).unwrap());
+        let request = FitSpec::of("prandtl-ishlinskii".parse::<ModelName>().unwrap(), None, 1);
+        let beforehand = Beforehand::of(&data, &request).unwrap();
+        Work { id: 1, request, data, beforehand, file: 1, time_limit: None, keep: Box::new(|_| ()) }
+    }
+
+    #[test]
+    fn a_panic_ends_the_fit_and_not_the_studio() {
+        let fits = Fits::default();
+        let silent: Tell = Arc::new(|| ());
+        fits.begin(work(), Box::new(|_| panic!("while the model is stored")), Arc::clone(&silent)).unwrap();
+        fits.end();
+        let state = fits.state().unwrap();
+        assert!(!state.is_running && state.problem.unwrap().contains("an internal error ended this fit"));
+        // One in the fit itself is told to who takes its result.
+        let in_fit = Work { keep: Box::new(|_| panic!("while the fit runs")), ..work() };
+        fits.begin(in_fit, Box::new(|found| found.map(|_| 7)), silent).unwrap();
+        fits.end();
+        assert!(!fits.state().unwrap().is_running);
+    }
 }

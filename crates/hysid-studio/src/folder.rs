@@ -1,11 +1,17 @@
 //! The folder of a project: where its files are, and names that cannot leave it.
 
-use std::fs;
+mod entrance;
+mod readings;
+
+use std::fs::{self, DirBuilder};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 use hysid_files::{Destination, Failure, Kind, Lock};
 use hysid_records::Usage;
+
+use entrance::ENTRANCE;
+use readings::Readings;
 
 /// Name of a project's folder if none is given.
 const DEFAULT: &str = "hysid-project";
@@ -50,6 +56,7 @@ impl Inner {
 #[derive(Debug)]
 pub struct Folder {
     root: PathBuf,
+    readings: Readings,
     _lock: Lock,
 }
 
@@ -81,18 +88,20 @@ impl Folder {
     fn locked(asked: &Path) -> Result<Option<Self>> {
         let shown = asked.display();
         check_ours(asked)?;
+        make_private(asked)?;
         for inner in [Inner::Data, Inner::Models] {
-            let inner = asked.join(inner.name());
-            fs::create_dir_all(&inner).map_err(|error| {
-                anyhow!("{}: cannot be made: {}", inner.display(), hysid_files::reason(&error))
-            })?;
-            check_folder(&inner)?;
+            make_private(&asked.join(inner.name()))?;
+            check_folder(&asked.join(inner.name()))?;
         }
         let root = fs::canonicalize(asked).with_context(|| shown.to_string())?;
         match Lock::acquire(&root.join(PROJECT)) {
             Ok(lock) => {
-                remove_uploads(&root.join(Inner::Data.name()));
-                Ok(Some(Self { root, _lock: lock }))
+                let data = root.join(Inner::Data.name());
+                remove_uploads(&data);
+                for folder in [&root, &data, &root.join(Inner::Models.name())] {
+                    hysid_files::remove_leftovers(folder);
+                }
+                Ok(Some(Self { root, readings: Readings::left_in(&data), _lock: lock }))
             }
             Err(Failure::InUse(_)) => Ok(None),
             Err(failure) => Err(anyhow!("{failure}")),
@@ -122,6 +131,11 @@ impl Folder {
     /// The path of the best model so far of a fit that is under way.
     pub fn best_so_far(&self) -> PathBuf {
         self.root.join(Inner::Models.name()).join(BEST_SO_FAR)
+    }
+
+    /// The path of the model of a fit that has ended, until the project names it.
+    pub fn finished(&self, fit: u64) -> PathBuf {
+        self.root.join(Inner::Models.name()).join(format!(".finished-{fit}.json"))
     }
 
     /// A name, made of the one that it is given, that no file of this folder has.
@@ -212,6 +226,21 @@ fn check_folder(folder: &Path) -> Result<()> {
     }
 }
 
+/// Makes a folder that only the user can enter; one that is there stays as it is.
+fn make_private(folder: &Path) -> Result<()> {
+    let failed = |error: std::io::Error| {
+        anyhow!("{}: cannot be made: {}", folder.display(), hysid_files::reason(&error))
+    };
+    fs::create_dir_all(folder.parent().unwrap_or(Path::new(""))).map_err(failed)?;
+    let mut builder = DirBuilder::new();
+    #[cfg(unix)]
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+    match builder.create(folder) {
+        Err(error) if !folder.is_dir() => Err(failed(error)),
+        _ => Ok(()),
+    }
+}
+
 /// Removes uploads of a studio that was killed.
 fn remove_uploads(data: &Path) {
     let is_upload = |name: &str| {
@@ -247,7 +276,8 @@ fn check_ours(folder: &Path) -> Result<()> {
 /// True for what a studio makes before the project has a file.
 fn is_of_lock(entry: &fs::DirEntry) -> bool {
     let name = entry.file_name();
-    name == "data" || name == "models" || name.to_string_lossy().starts_with(".project.json")
+    ["data", "models", ENTRANCE].iter().any(|ours| name == *ours)
+        || name.to_string_lossy().starts_with(".project.json")
 }
 
 /// The last part of a name: no path leaves the folder.

@@ -15,6 +15,7 @@ mod shown;
 mod studio;
 mod take_away;
 mod view;
+mod words;
 
 pub use folder::Folder;
 pub use server::{Ending, Server};

@@ -2,13 +2,18 @@
 
 mod answer;
 mod assets;
+mod connections;
 mod events;
 mod files;
 mod guard;
+mod keys;
 mod models;
 mod routes;
+#[cfg(test)]
+mod tests;
 
 use std::net::{Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, anyhow};
@@ -18,20 +23,25 @@ use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, watch};
 
 use crate::studio::Studio;
+use connections::Limits;
 use guard::Guard;
+use keys::Keys;
 
 /// The port that is tried first if none is asked for.
 const PORT: u16 = 4973;
 
-/// Requests that compute at the same time.
+/// Requests that read tables or run models at the same time.
 const COMPUTING: usize = 2;
+
+/// Requests that diagnose at the same time. A diagnosis may take minutes, also when nobody waits for it any more.
+const DIAGNOSING: usize = 1;
 
 /// A server that listens and does not answer yet.
 pub struct Server {
     runtime: Runtime,
     listener: TcpListener,
     shared: Shared,
-    token: String,
+    keys: Arc<Keys>,
     port: u16,
 }
 
@@ -40,17 +50,22 @@ pub struct Server {
 struct Shared {
     studio: Arc<Studio>,
     computing: Arc<Semaphore>,
+    diagnosing: Arc<Semaphore>,
     is_over: watch::Receiver<bool>,
 }
 
 /// Ends a server.
-#[derive(Debug, Clone)]
-pub struct Ending(watch::Sender<bool>);
+#[derive(Clone)]
+pub struct Ending {
+    is_over: watch::Sender<bool>,
+    keys: Arc<Keys>,
+}
 
 impl Ending {
     /// Answers what is asked already, and ends.
     pub fn end(&self) {
-        self.0.send_replace(true);
+        self.keys.close();
+        self.is_over.send_replace(true);
     }
 }
 
@@ -81,29 +96,36 @@ impl Server {
         };
         let port = listener.local_addr()?.port();
         let (ending, is_over) = watch::channel(false);
-        let shared = Shared { studio, computing: Arc::new(Semaphore::new(COMPUTING)), is_over };
-        Ok((Self { runtime, listener, shared, token: guard::token()?, port }, Ending(ending)))
+        let keys = Arc::new(Keys::new(Arc::clone(&studio), port)?);
+        let semaphore = |permits| Arc::new(Semaphore::new(permits));
+        let shared =
+            Shared { studio, computing: semaphore(COMPUTING), diagnosing: semaphore(DIAGNOSING), is_over };
+        let ending = Ending { is_over: ending, keys: Arc::clone(&keys) };
+        Ok((Self { runtime, listener, shared, keys, port }, ending))
     }
 
-    /// The address that opens the page.
+    /// The address that opens the page once.
     pub fn address(&self) -> String {
-        format!("http://127.0.0.1:{}/?token={}", self.port, self.token)
+        self.keys.address()
     }
 
-    /// Answers until it is ended.
-    ///
-    /// # Errors
-    /// What the system refuses.
-    pub fn serve(self) -> Result<()> {
-        let Self { runtime, listener, shared, token, port } = self;
-        let mut is_over = shared.is_over.clone();
-        let router = routes::router(shared, Guard::new(port, token));
-        runtime.block_on(async move {
-            let over = async move {
-                let _ = is_over.wait_for(|is_over| *is_over).await;
-            };
-            axum::serve(listener, router).with_graceful_shutdown(over).await
-        })?;
-        Ok(())
+    /// The file that opens the page, as often as is wanted; `None` if it could not be written.
+    pub fn entrance(&self) -> Option<PathBuf> {
+        self.keys.file()
+    }
+
+    /// Answers until it is ended. Reads the files of the project meanwhile.
+    pub fn serve(self) {
+        self.serve_within(Limits::default());
+    }
+
+    fn serve_within(self, limits: Limits) {
+        let Self { runtime, listener, shared, keys, port } = self;
+        let (studio, is_over) = (Arc::clone(&shared.studio), shared.is_over.clone());
+        std::thread::spawn(move || studio.read_files());
+        let router = routes::router(shared, Guard::new(port, keys));
+        runtime.block_on(connections::serve(listener, router, limits, is_over));
+        // What is computed for nobody does not hold up the end.
+        runtime.shutdown_background();
     }
 }

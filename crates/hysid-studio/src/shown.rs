@@ -1,5 +1,6 @@
 //! The state of a studio as the page shows it.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use hysid::data::metrics::Errors;
@@ -32,6 +33,8 @@ pub struct Shown {
     output_unit: Option<String>,
     /// Label of the rate of the first input.
     rate_label: Option<String>,
+    /// True as long as not all files are read.
+    is_reading: bool,
     models: Vec<ShownModel>,
     fit: Option<FitState>,
 }
@@ -53,6 +56,8 @@ struct ShownFile {
     #[serde(rename = "use")]
     usage: Use,
     problem: Option<String>,
+    /// True if it can be read again, which killed the studio before.
+    is_held_back: bool,
     read_as: Option<String>,
     rows: usize,
     columns: Vec<Column>,
@@ -123,7 +128,11 @@ impl Shown {
         model: impl Fn(&ProjectModel) -> Option<Arc<Model>>,
         version: u64,
     ) -> Self {
-        let files = project.files.iter().zip(&view.files).map(|(file, view)| ShownFile::of(file, view));
+        let known: HashMap<u64, &FileView> = view.files.iter().map(|file| (file.id, &**file)).collect();
+        let files = project
+            .files
+            .iter()
+            .map(|file| ShownFile::of(file, known.get(&file.id).copied(), folder.is_held_back(file.id)));
         let models = project.models.iter().map(|stored| ShownModel::of(project, stored, model(stored)));
         let roles = view.roles.as_ref();
         Self {
@@ -139,6 +148,7 @@ impl Shown {
             labels: roles.map(|roles| names(roles, unit::label)),
             output_unit: roles.and_then(|roles| unit::split(&roles.output).1),
             rate_label: roles.map(|roles| rate_label(&roles.inputs[0], roles.time.as_deref())),
+            is_reading: !view.is_of(project),
             models: models.collect(),
             fit,
         }
@@ -164,20 +174,23 @@ fn names(roles: &Roles, shown: impl Fn(&str) -> String) -> Names {
 }
 
 impl ShownFile {
-    fn of(file: &ProjectFile, view: &FileView) -> Self {
-        let table = view.table.as_ref();
+    /// Of a file that is read, or is not yet.
+    fn of(file: &ProjectFile, view: Option<&FileView>, is_held_back: bool) -> Self {
+        let table = view.and_then(|view| view.table.as_ref());
+        let data = view.and_then(|view| view.data.as_ref());
         let columns = table.map_or(&[][..], |table| &table.looked.columns);
         Self {
             id: file.id,
             name: file.name.clone(),
             bytes: file.bytes,
             usage: file.usage,
-            problem: view.problem.clone(),
+            problem: view.and_then(|view| view.problem.clone()),
+            is_held_back,
             read_as: table.map(|table| table.read_as.clone()),
             rows: table.map_or(0, |table| table.rows),
             columns: columns.to_vec(),
-            records: view.data.as_deref().map_or_else(Vec::new, records),
-            warnings: view.data.as_ref().map_or_else(Vec::new, |data| data.warnings.clone()),
+            records: data.map_or_else(Vec::new, |data| records(data)),
+            warnings: data.map_or_else(Vec::new, |data| data.warnings.clone()),
         }
     }
 }

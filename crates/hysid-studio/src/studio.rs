@@ -4,9 +4,11 @@
 mod files;
 mod fits;
 mod models;
+#[cfg(test)]
+mod tests;
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, RwLock};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
 
 use anyhow::Result;
 use hysid::model::Model;
@@ -17,14 +19,21 @@ use crate::folder::Folder;
 use crate::judgement::Runs;
 use crate::project::{Project, ProjectModel};
 use crate::shown::Shown;
-use crate::view::View;
+use crate::view::{AtHand, View};
+use fits::Found;
 
 /// A studio.
 pub struct Studio {
     folder: Folder,
+    /// Held for moments: no table is read and nothing is computed meanwhile.
     project: Mutex<Project>,
+    /// The files as they were read last, perhaps those of an earlier project. Held for moments.
     view: RwLock<Arc<View>>,
+    /// Held while files are read, so that each is read once.
+    reading: Mutex<()>,
     fits: Fits,
+    /// A model that could not be stored.
+    unsaved: Mutex<Option<Found>>,
     /// Held while a fit begins, so that two requests do not begin two.
     beginning: Mutex<()>,
     runs: Runs,
@@ -43,18 +52,20 @@ pub struct News {
 }
 
 impl Studio {
-    /// Opens the project of a folder. A fit that did not come to its end leaves its best model so far.
+    /// Opens the project of a folder. A fit that did not come to its end leaves its best model so far. No file with data
+    /// is read before that is needed.
     ///
     /// # Errors
     /// A project that cannot be read.
     pub fn open(folder: Folder) -> Result<Self> {
         let project = Project::of(&folder)?;
-        let view = View::of(&project, &folder, &View::default());
         let studio = Self {
             folder,
             project: Mutex::new(project),
-            view: RwLock::new(Arc::new(view)),
+            view: RwLock::default(),
+            reading: Mutex::default(),
             fits: Fits::default(),
+            unsaved: Mutex::default(),
             beginning: Mutex::default(),
             runs: Runs::default(),
             models: Mutex::default(),
@@ -75,27 +86,50 @@ impl Studio {
     }
 
     fn project(&self) -> MutexGuard<'_, Project> {
-        self.project.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+        self.project.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn view(&self) -> Arc<View> {
-        Arc::clone(&self.view.read().unwrap_or_else(|poisoned| poisoned.into_inner()))
+        Arc::clone(&self.view.read().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Changes the project, stores it, and reads its files again where that is needed. Nothing is changed if it cannot be
-    /// stored.
+    fn show(&self, view: View) {
+        *self.view.write().unwrap_or_else(PoisonError::into_inner) = Arc::new(view);
+        self.news.send_modify(|news| news.project += 1);
+    }
+
+    /// Reads the files of the project that are not read as it says.
+    pub fn read_files(&self) {
+        self.read_files_with(None);
+    }
+
+    fn read_files_with(&self, at_hand: AtHand) {
+        let _reading = self.reading.lock().unwrap_or_else(PoisonError::into_inner);
+        let (project, before) = (self.project().clone(), self.view());
+        if !before.is_of(&project) {
+            self.show(View::of(&project, &self.folder, &before, at_hand, &|so_far| self.show(so_far)));
+            self.runs.clear();
+        }
+    }
+
+    /// The project, and its files as it says that they are read. Waits until they are.
+    fn current(&self) -> (Project, Arc<View>) {
+        loop {
+            let (project, view) = (self.project().clone(), self.view());
+            if view.is_of(&project) {
+                return (project, view);
+            }
+            self.read_files();
+        }
+    }
+
+    /// Changes the project and stores it. Nothing is changed if it cannot be stored.
     fn change<T>(&self, change: impl FnOnce(&mut Project) -> Result<T>) -> Result<T> {
         let mut project = self.project();
         let mut changed = project.clone();
         let result = change(&mut changed)?;
         self.folder.write_project(&changed.text())?;
-        let is_read_again = changed.files != project.files || changed.understanding != project.understanding;
         *project = changed;
-        if is_read_again {
-            let view = View::of(&project, &self.folder, &self.view());
-            *self.view.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = Arc::new(view);
-            self.runs.clear();
-        }
         drop(project);
         self.news.send_modify(|news| news.project += 1);
         Ok(result)
@@ -106,5 +140,17 @@ impl Studio {
         let project = self.project().clone();
         let model = |stored: &ProjectModel| self.model(stored.begun.id).ok();
         Shown::of(&project, &self.folder, &self.view(), self.fits.state(), model, self.news.borrow().project)
+    }
+
+    /// Holds up the reading of files.
+    #[cfg(test)]
+    pub(crate) fn being_read(&self) -> MutexGuard<'_, ()> {
+        self.reading.lock().unwrap()
+    }
+
+    /// Forgets what was read.
+    #[cfg(test)]
+    pub(crate) fn forget_view(&self) {
+        self.show(View::default());
     }
 }

@@ -1,7 +1,9 @@
 //! The files of a project as they are read: tables, columns, records.
 
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow, bail};
 use hysid_records::{Data, Looked, Roles};
@@ -9,11 +11,17 @@ use hysid_tables::{Reading, Table};
 
 use crate::folder::Folder;
 use crate::project::{Project, ProjectFile, Understanding, Use};
+use crate::words::said;
+
+/// Time between two views that are shown while files are read.
+const BETWEEN_VIEWS: Duration = Duration::from_secs(1);
 
 /// The files of a project as they are read.
 #[derive(Default)]
 pub struct View {
     understanding: Understanding,
+    /// The files of the project, once all are read.
+    of: Vec<ProjectFile>,
     /// The file that tells the columns, if they are guessed.
     first: Option<u64>,
     /// Each file, in the order of the project.
@@ -24,7 +32,12 @@ pub struct View {
     pub problem: Option<String>,
     /// All training files together, once they were asked for.
     together: OnceLock<Arc<Data>>,
+    /// The diagnosis of the training data, or why there is none, once it was asked for.
+    pub diagnosis: OnceLock<std::result::Result<String, String>>,
 }
+
+/// A table that was read before its file was in the project, with the number of the file.
+pub type AtHand = Option<(u64, Result<Table>)>;
 
 /// A file as it is read.
 pub struct FileView {
@@ -50,8 +63,15 @@ pub struct TableView {
 }
 
 impl View {
-    /// Reads the files of a project. What was read already in the same way is taken from the view `before`.
-    pub fn of(project: &Project, folder: &Folder, before: &View) -> Self {
+    /// Reads the files of a project. What was read already in the same way is taken from the view `before` and from what
+    /// is `at_hand`. Gives `show` what has been read so far, now and then.
+    pub fn of(
+        project: &Project,
+        folder: &Folder,
+        before: &View,
+        mut at_hand: AtHand,
+        show: &dyn Fn(Self),
+    ) -> Self {
         let understanding = &project.understanding;
         // Models are fitted to training files: they tell the columns.
         let first = project.files_for(Use::Training).chain(&project.files).next();
@@ -64,41 +84,76 @@ impl View {
         let reading = match understanding.reading.reading() {
             Ok(reading) => reading,
             Err(problem) => {
-                view.problem = Some(problem.to_string());
+                view.problem = Some(said(&problem.into()));
+                view.of.clone_from(&project.files);
                 return view;
             }
+        };
+        let mut table_of = |file: &ProjectFile| match at_hand.take_if(|(id, _)| *id == file.id) {
+            Some((_, table)) => table,
+            None => read(file, folder, &reading),
         };
         let mut first_table = None;
         if before.understanding == *understanding && before.first == view.first {
             (view.roles, view.problem) = (before.roles.clone(), before.problem.clone());
         } else if let Some(first) = first {
-            match read(&first.name, folder, &reading) {
-                Err(problem) => view.problem = Some(format!("{problem:#}")),
-                Ok(table) => {
-                    match Roles::detect(&table, &understanding.choice()) {
-                        Ok(roles) => view.roles = Some(roles),
-                        Err(problem) => view.problem = Some(format!("{problem:#}")),
-                    }
-                    first_table = Some((first.id, table));
-                }
+            let table = table_of(first);
+            let roles = match &table {
+                Ok(table) => Roles::detect(table, &understanding.choice()).map_err(|problem| said(&problem)),
+                Err(problem) => Err(said(problem)),
+            };
+            match roles {
+                Ok(roles) => view.roles = Some(roles),
+                Err(problem) => view.problem = Some(problem),
             }
+            first_table = Some((first.id, table));
         }
-        let read_before = |file: &ProjectFile| {
-            let mut known = before.files.iter().filter(|_| is_read_alike);
-            known.find(|known| known.id == file.id && known.roles == view.roles).cloned()
-        };
+        let known = before.files.iter().filter(|known| is_read_alike && known.roles == view.roles);
+        let known: HashMap<u64, &Arc<FileView>> = known.map(|known| (known.id, known)).collect();
+        let mut shown = Instant::now();
         for file in &project.files {
-            let of_file = read_before(file).unwrap_or_else(|| {
+            let of_file = known.get(&file.id).map(|known| Arc::clone(known)).unwrap_or_else(|| {
                 let table = match first_table.take_if(|(id, _)| *id == file.id) {
-                    Some((_, table)) => Ok(table),
-                    None => read(&file.name, folder, &reading),
+                    Some((_, table)) => table,
+                    None => table_of(file),
                 };
                 let of = first.map_or("", |first| &first.name);
                 Arc::new(FileView::of(file.id, table, view.roles.as_ref(), of, understanding))
             });
             view.files.push(of_file);
+            if shown.elapsed() >= BETWEEN_VIEWS {
+                show(view.so_far());
+                shown = Instant::now();
+            }
         }
+        view.of.clone_from(&project.files);
         view
+    }
+
+    /// The same without what is known of all files together.
+    fn so_far(&self) -> Self {
+        Self {
+            understanding: self.understanding.clone(),
+            first: self.first,
+            files: self.files.clone(),
+            roles: self.roles.clone(),
+            problem: self.problem.clone(),
+            ..Self::default()
+        }
+    }
+
+    /// The same without a file, which is then read again.
+    pub fn without(&self, id: u64) -> Self {
+        let mut view = self.so_far();
+        view.files.retain(|file| file.id != id);
+        // It may be the one that tells the columns.
+        view.first = view.first.filter(|first| *first != id);
+        view
+    }
+
+    /// True if all files of a project are read as it says.
+    pub fn is_of(&self, project: &Project) -> bool {
+        self.of == project.files && self.understanding == project.understanding
     }
 
     /// A file as it is read.
@@ -115,8 +170,10 @@ impl View {
     /// There is none of this number, or it cannot be used.
     pub fn data(&self, id: u64) -> Result<Arc<Data>> {
         let file = self.file(id)?;
-        let problem = || file.problem.clone().or_else(|| self.problem.clone()).unwrap_or_default();
-        file.data.clone().ok_or_else(|| anyhow!(problem()))
+        let problem = file.problem.as_ref().or(self.problem.as_ref());
+        file.data
+            .clone()
+            .ok_or_else(|| anyhow!(problem.map_or("this file is not read", String::as_str).to_string()))
     }
 
     /// The training files of the project that this is a view of, as one set of data.
@@ -131,10 +188,11 @@ impl View {
             (_, Some(together)) => return Ok(Arc::clone(together)),
             _ => {}
         }
-        let roles = self.roles.clone().ok_or_else(|| anyhow!(self.problem.clone().unwrap_or_default()))?;
+        let problem = self.problem.as_deref().unwrap_or("the files are not read");
+        let roles = self.roles.clone().ok_or_else(|| anyhow!(problem.to_string()))?;
         let reading = &project.understanding.reading;
         let as_read = reading.reading()?;
-        let tables = files.iter().map(|file| read(&file.name, folder, &as_read)).collect::<Result<_>>()?;
+        let tables = files.iter().map(|file| read(file, folder, &as_read)).collect::<Result<_>>()?;
         let data = Arc::new(Data::new(tables, roles, reading.zero)?);
         Ok(Arc::clone(self.together.get_or_init(|| data)))
     }
@@ -153,7 +211,7 @@ impl FileView {
         let table = match table {
             Ok(table) => table,
             Err(problem) => {
-                view.problem = Some(format!("{problem:#}"));
+                view.problem = Some(said(&problem));
                 return view;
             }
         };
@@ -165,17 +223,17 @@ impl FileView {
             .and_then(|()| Data::new(vec![table], roles.clone(), understanding.reading.zero));
         match data {
             Ok(data) => view.data = Some(Arc::new(data)),
-            Err(problem) => view.problem = Some(format!("{problem:#}")),
+            Err(problem) => view.problem = Some(said(&problem)),
         }
         view
     }
 }
 
-/// The table of a file of this name, by which errors call it.
+/// The table of a file, whose name errors have.
 ///
 /// # Errors
-/// A file that cannot be read or is no table.
-pub fn read(name: &str, folder: &Folder, reading: &Reading) -> Result<Table> {
-    let content = folder.read(&folder.data(name))?;
-    Table::from_bytes(Path::new(name), content, reading)
+/// A file that cannot be read or is no table, or that killed the studio before.
+pub fn read(file: &ProjectFile, folder: &Folder, reading: &Reading) -> Result<Table> {
+    let name = &file.name;
+    folder.read_data(file.id, name, |content| Table::from_bytes(Path::new(name), content, reading))
 }

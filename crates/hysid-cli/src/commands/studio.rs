@@ -1,5 +1,6 @@
 //! `hysid studio`: identification in the browser, on this machine.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
@@ -29,35 +30,44 @@ pub fn run(arguments: &Studio) -> Result<Outcome> {
     let address = server.address();
     results(&format!("{address}\n"))?;
     note(format_args!("project {}", files::shown(studio.folder().root())));
+    let entrance = server.entrance();
+    match &entrance {
+        Some(file) => {
+            note(format_args!("the address opens one browser; for others open {}", files::shown(file)))
+        }
+        None => warning("studio.html cannot be written to the project: the address opens one browser"),
+    }
     note(format_args!("Ctrl-C ends the studio; the project stays"));
     interrupt::listen("ending the studio")?;
-    if !arguments.no_open && open::that_detached(&address).is_err() {
+    // Other users see the arguments of a browser: it gets the file with its token, which they cannot read.
+    let is_opened = |file: PathBuf| open::that_detached(file).is_ok();
+    if !arguments.no_open && !entrance.is_some_and(is_opened) {
         warning("no browser could be opened: open the address above");
     }
     let watching = thread::spawn(move || end_when_asked(&studio, &ending));
-    server.serve()?;
-    match watching.join() {
-        Ok(true) => Ok(Outcome::Interrupted),
-        _ => Ok(Outcome::Done),
-    }
+    server.serve();
+    watching.join().unwrap_or(Ok(()))?;
+    Ok(Outcome::Interrupted)
 }
 
-/// Waits for Ctrl-C, then ends the studio; true if a fit was running, whose best model so far is saved.
-fn end_when_asked(studio: &Opened, ending: &Ending) -> bool {
+/// Waits for Ctrl-C, then ends the studio. The best model so far of a fit that was running is saved.
+fn end_when_asked(studio: &Opened, ending: &Ending) -> Result<()> {
     while !interrupt::requested() {
         thread::sleep(BETWEEN_LOOKS);
     }
     let is_fitting = studio.fit().is_some_and(|fit| fit.is_running);
-    if is_fitting {
-        studio.end();
+    let ended = studio.end();
+    if is_fitting && ended.is_ok() {
         let root = studio.folder().root().display();
         insist(format_args!("interrupted: the best model so far is in the project {root}"));
     }
     ending.end();
-    // A browser may keep a connection that it does not use.
-    thread::spawn(|| {
+    // Answers may take longer than somebody waits who has pressed Ctrl-C.
+    let failed = ended.as_ref().err().map(|error| format!("error: {error:#}"));
+    thread::spawn(move || {
         thread::sleep(LONGEST_END);
-        std::process::exit(interrupt::exit_status().into());
+        failed.iter().for_each(|words| insist(format_args!("{words}")));
+        std::process::exit(failed.map_or(interrupt::exit_status().into(), |_| 1));
     });
-    is_fitting
+    ended
 }

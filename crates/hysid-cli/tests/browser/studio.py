@@ -13,6 +13,9 @@ from pathlib import Path
 class Studio:
     """A running `hysid studio`, started in a folder."""
 
+    #: Until it is known.
+    key = ""
+
     def __init__(self, folder: Path, *arguments: str):
         self.folder = folder
         command = [os.environ["HYSID_PROGRAM"], "studio", "--no-open", *arguments]
@@ -20,15 +23,29 @@ class Studio:
             command += ["--port", "0"]
         self.said = (folder / "stderr.txt").open("w+")
         self.process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=self.said, text=True)
-        self.address = self.process.stdout.readline().strip()
-        assert self.address, (folder / "stderr.txt").read_text()
-        self.port, self.token = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/\?token=(\w+)", self.address).groups()
+        printed = self.process.stdout.readline().strip()
+        assert printed, (folder / "stderr.txt").read_text()
+        self.port, self.token = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/\?token=(\w+)", printed).groups()
         self.origin = f"http://127.0.0.1:{self.port}"
-        self.project = folder / "hysid-project"
+        end = time.monotonic() + 20
+        while not (said := re.search(r"project (\S+)\n", (folder / "stderr.txt").read_text())):
+            assert time.monotonic() < end
+            time.sleep(0.01)
+        self.project = folder / said.group(1)
+        # As the page: the token gives a ticket, and the ticket the key.
+        _, headers, _ = self.request("GET", f"/?token={self.token}", None, self.headers(Origin=None, X_Hysid_Key=None))
+        self.ticket = headers["set-cookie"].split(";")[0]
+        _, _, content = self.request("POST", "/api/session", b"", self.headers(X_Hysid_Key=None, Cookie=self.ticket))
+        self.key = json.loads(content)["key"]
+
+    @property
+    def address(self) -> str:
+        """An address that opens one browser: that of the file in the project."""
+        return re.search(r"http://[^\"]+", (self.project / "studio.html").read_text()).group(0)
 
     def headers(self, **changed: str | None) -> dict[str, str]:
         """Those that its own page sends, with some changed or left out."""
-        own = {"Host": f"127.0.0.1:{self.port}", "Origin": self.origin, "Cookie": f"hysid-studio-{self.port}={self.token}"}
+        own = {"Host": f"127.0.0.1:{self.port}", "Origin": self.origin, "X-Hysid-Key": self.key}
         named = {name.replace("_", "-"): value for name, value in changed.items()}
         return {name: value for name, value in (own | named).items() if value is not None}
 

@@ -180,7 +180,7 @@ def test_the_whole_way(start, visit, tmp_path):
     take = opened.go("take-away")
     take.get_by_label("Model", exact=True).select_option(str(models[0]["id"]))
     take.get_by_text("--stops 4").first.wait_for()
-    name, content = saved(page, lambda: take.get_by_role("link", name="Model file").click())
+    name, content = saved(page, lambda: take.get_by_role("button", name="Model file").click())
     assert name == models[0]["file"] and content == (studio.project / "models" / name).read_bytes()
     line = take.locator("pre").first.inner_text()
     programs = tmp_path / "programs"
@@ -196,9 +196,9 @@ def test_the_whole_way(start, visit, tmp_path):
         assert any(file.endswith(".c") for file in files.namelist()) and files.testzip() is None
     with page.expect_popup() as popup:
         take.get_by_role("link", name="Report").click()
-    report = popup.value
     wrong = []
-    report.on("pageerror", lambda error: wrong.append(str(error)))
+    popup.value.on("pageerror", lambda error: wrong.append(str(error)))
+    report = popup.value.frame_locator("#report")
     report.get_by_role("heading", name="Errors").wait_for()
     # Its script runs: figures have buttons.
     report.get_by_role("button", name="SVG").first.wait_for()

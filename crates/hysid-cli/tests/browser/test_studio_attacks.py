@@ -3,9 +3,11 @@
 import http.server
 import json
 import os
+import signal
 import socket
 import subprocess
 import threading
+import time
 
 import pytest
 
@@ -23,27 +25,96 @@ def refused(studio, method, path, body=None, **headers):
     return json.loads(content)["error"]
 
 
-@pytest.mark.parametrize("path", READING)
-def test_nothing_is_read_without_the_token(shared, path):
-    assert "hysid studio" in refused(shared, "GET", path, Cookie=None)
-    wrong = f"hysid-studio-{shared.port}={'0' * len(shared.token)}"
-    refused(shared, "GET", path, Cookie=wrong)
-    # The cookie of a studio on another port.
-    refused(shared, "GET", path, Cookie=f"hysid-studio-1={shared.token}")
+@pytest.mark.parametrize("path", ["/api/project", "/api/choices", "/api/events"])
+def test_nothing_is_read_without_the_key(shared, path):
+    assert "studio.html" in refused(shared, "GET", path, X_Hysid_Key=None)
+    refused(shared, "GET", path, X_Hysid_Key="0" * len(shared.key))
+    refused(shared, "GET", path, X_Hysid_Key=shared.token)
+    # What other servers on this address may have got.
+    refused(shared, "GET", path, X_Hysid_Key=None, Cookie=shared.ticket)
+    refused(shared, "GET", f"{path}?token={shared.token}", X_Hysid_Key=None)
 
 
-def test_the_token_opens_the_page_alone_and_becomes_a_cookie(shared):
-    status, headers, content = shared.request("GET", f"/?token={shared.token}", None, shared.headers(Cookie=None, Origin=None))
-    assert status == 200 and b"Hysid studio" in content
-    cookie = headers["set-cookie"]
-    assert cookie.startswith(f"hysid-studio-{shared.port}={shared.token};")
-    assert "HttpOnly" in cookie and "SameSite=Strict" in cookie
-    refused(shared, "GET", f"/api/project?token={shared.token}", Cookie=None)
-    status, headers, _ = shared.request("GET", "/?token=wrong", None, shared.headers(Cookie=None, Origin=None))
-    assert status == 403 and headers["set-cookie"] is None
+def test_an_address_opens_one_browser_and_leaves_nothing_in_it_but_the_key(start, browser):
+    studio = start()
+    studio.add("a.csv", TABLE)
+    address = studio.address
+    context = browser.new_context()
+    page = context.new_page()
+    asked = []
+    page.on("request", lambda request: asked.append((request.url, request.headers.get("referer"))))
+    # As a desktop opens it: by the file.
+    page.goto((studio.project / "studio.html").as_uri())
+    page.get_by_text("a.csv").first.wait_for()
+    assert page.url == f"{studio.origin}/" and context.cookies() == []
+    assert [url for url, referer in asked if "token" in url or "token" in (referer or "")] == [address]
+    # Reload, a second tab, and the address that is used up: this browser has the key.
+    page.reload()
+    page.get_by_text("a.csv").first.wait_for()
+    for again in [studio.origin, address]:
+        tab = context.new_page()
+        tab.goto(again)
+        tab.get_by_text("a.csv").first.wait_for()
+        assert tab.url == f"{studio.origin}/"
+    # Another browser gets nothing of the project.
+    for again in [studio.origin, address]:
+        other = browser.new_context()
+        tab = other.new_page()
+        tab.goto(again)
+        tab.get_by_text("Open the file studio.html").wait_for()
+        assert "a.csv" not in tab.content()
+        other.close()
+    # The next address opens it too.
+    other = browser.new_context()
+    tab = other.new_page()
+    tab.goto(studio.address)
+    tab.get_by_text("a.csv").first.wait_for()
+    # A restart: the pages of the studio before say so, and go on once this browser has the new key.
+    studio.end()
+    again = start("--port", studio.port, "--project", "hysid-project")
+    tab.get_by_text("The studio was restarted").wait_for(timeout=20_000)
+    opened = other.new_page()
+    opened.goto(again.address)
+    opened.get_by_text("a.csv").first.wait_for()
+    tab.get_by_text("The studio was restarted").wait_for(state="hidden")
+    tab.get_by_text("a.csv").first.wait_for()
+    context.close()
+    other.close()
 
 
-@pytest.mark.parametrize("host", ["evil.example:{port}", "127.0.0.1.nip.io:{port}", "127.0.0.1", "[::1]:{port}", ""])
+def test_no_argument_of_a_browser_opens_the_studio(tmp_path):
+    (tmp_path / "programs").mkdir()
+    for name in ["xdg-open", "gio", "gnome-open", "kde-open", "wslview"]:
+        program = tmp_path / "programs" / name
+        program.write_text(f'#!/bin/sh\necho "$@" >> {tmp_path}/arguments\n')
+        program.chmod(0o755)
+    command = [os.environ["HYSID_PROGRAM"], "studio", "--port", "0"]
+    path = {**os.environ, "PATH": f"{tmp_path}/programs{os.pathsep}{os.environ['PATH']}"}
+    process = subprocess.Popen(command, cwd=tmp_path, env=path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        token = process.stdout.readline().strip().split("=")[1]
+        wait_for(lambda: (tmp_path / "arguments").exists() and (tmp_path / "arguments").read_text())
+        arguments = (tmp_path / "arguments").read_text()
+        file = tmp_path / "hysid-project" / "studio.html"
+        assert str(file) in arguments and token not in arguments and "token" not in arguments
+        assert file.stat().st_mode & 0o777 == 0o600 and file.parent.stat().st_mode & 0o777 == 0o700
+    finally:
+        process.send_signal(signal.SIGINT)
+        # As every command that Ctrl-C ends.
+        assert process.wait(timeout=60) == 130
+        process.stdout.close()
+        process.stderr.close()
+    assert not file.exists()
+
+
+def wait_for(is_there):
+    end = time.monotonic() + 20
+    while not is_there():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+@pytest.mark.parametrize("host", ["evil.example:{port}", "127.0.0.1.nip.io:{port}", "127.0.0.1", "localhost:{port}", "[::1]:{port}", ""])
 def test_a_name_that_is_not_the_studios_gets_nothing(shared, host):
     host = host.format(port=shared.port)
     origin = f"http://{host}"
@@ -200,9 +271,9 @@ def test_names_are_text_and_never_html(browser, start):
         assert page.locator("main img, main script, main b, main iframe").count() == 0
     report = context.new_page()
     report.on("dialog", lambda dialog: (wrong.append(dialog.message), dialog.dismiss()))
-    report.goto(f"{studio.origin}/api/models/{studio.state()['models'][0]['id']}/report")
-    report.locator("h1").wait_for()
-    assert report.locator("main img, main b").count() == 0
+    report.goto(f"{studio.origin}/report#{studio.state()['models'][0]['id']}")
+    report.frame_locator("#report").locator("h1").wait_for()
+    assert report.frame_locator("#report").locator("main img, main b").count() == 0
     assert "taken" not in page.title() + report.title() and wrong == []
     context.close()
 
@@ -243,7 +314,7 @@ def test_a_page_on_another_port_of_this_machine_reaches_nothing(browser, start):
         own = context.new_page()
         own.goto(studio.address)
         own.get_by_text("a.csv").first.wait_for()
-        # The same browser, which has the cookie of the studio.
+        # The same browser, which has the key of the studio.
         hostile = context.new_page()
         hostile.goto(f"http://127.0.0.1:{server.server_port}/")
         hostile.wait_for_function("document.title.startsWith('read')")
@@ -266,7 +337,7 @@ def test_two_studios_side_by_side(browser, start, tmp_path):
         pages.append(context.new_page())
         pages[-1].goto(studio.address)
         pages[-1].get_by_text("Drop CSV").wait_for()
-    # Each has its own cookie.
+    # Each has its own key.
     for studio, page in zip((first, second), pages):
         page.reload()
         page.get_by_text(studio.state()["name"], exact=True).wait_for()

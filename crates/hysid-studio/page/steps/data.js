@@ -95,8 +95,9 @@ export class DataStep {
       use.value = file.use;
       const records = file.records.length > 1 ? `, ${file.records.length} records` : "";
       return element("li", {}, element("span", { class: "name", text: file.name }),
-        element("span", { class: "about", text: file.problem ? "not read" : `${counted(file.rows)} rows${records}, ${bytes(file.bytes)}. ${file.read_as}` }), use,
+        element("span", { class: "about", text: file.problem ? "not read" : file.read_as === null ? "being read \u2026" : `${counted(file.rows)} rows${records}, ${bytes(file.bytes)}. ${file.read_as}` }), use,
         button("Remove", () => this.notice.during(() => remove(`/api/files/${file.id}`)), { "aria-label": `Remove ${file.name}` }),
+        file.is_held_back ? button("Read again", () => this.notice.during(() => post(`/api/files/${file.id}/read`, {})), { "aria-label": `Read ${file.name} again` }) : null,
         file.problem ? problem(file.problem) : null,
         file.warnings.length > 0 ? element("ul", { class: "warnings" }, ...file.warnings.map((words) => element("li", {}, linked(words)))) : null);
     };
@@ -121,8 +122,13 @@ export class DataStep {
     const words = { text: "Note", class: "words" };
     const text = (name) => ({ text: name, class: "text" });
     const tables = readable.map((file, k) => {
-      const made = table(`Columns of ${file.name}`, ["Column", text("Role"), text("Unit"), "Minimum", "Maximum", "Missing", words], file.columns.map(row(file, k === 0)));
-      if (k > 0) return element("details", {}, element("summary", { text: `Columns of ${file.name}` }), made);
+      const build = () => table(`Columns of ${file.name}`, ["Column", text("Role"), text("Unit"), "Minimum", "Maximum", "Missing", words], file.columns.map(row(file, k === 0)));
+      if (k > 0) {
+        // Built when it is opened: there may be many.
+        const details = element("details", { on: { toggle: () => { if (details.childElementCount === 1) details.append(build()); } } }, element("summary", { text: `Columns of ${file.name}` }));
+        return details;
+      }
+      const made = build();
       // A role that no column has leads to the first select.
       for (const flag of Object.values(FLAG_OF_ROLE)) {
         if (!flagged.has(flag)) made.querySelector("select:not([data-flag])")?.setAttribute("data-flag", flag);

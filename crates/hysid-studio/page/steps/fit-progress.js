@@ -5,8 +5,9 @@ import { problem } from "../notices.js";
 import { duration, percent, sentence } from "../numbers.js";
 import { Figure } from "../plots/figure.js";
 import { RecordFigures } from "../plots/record-figures.js";
+import { download } from "../plots/save.js";
 import { project, startsOf } from "../project.js";
-import { getBinary, post } from "../server.js";
+import { getBinary, getFile, post } from "../server.js";
 
 const judge = (model) => element("p", {}, element("a", { class: "button", href: `#judge/${model.id}`, text: "Judge this model" }));
 
@@ -29,7 +30,7 @@ export class FitProgress {
     if (!fit) return;
     this.head.update([fit.id, fit.is_running], () => this.build(fit));
     if (fit.is_running) this.advance(fit);
-    this.result.update([fit.id, fit.is_running, fit.made, fit.problem, project.models.length], () => this.ended(fit));
+    this.result.update([fit.id, fit.is_running, fit.made, fit.problem, fit.is_unsaved, project.models.length], () => this.ended(fit));
     this.candidates.update(fit.candidates, () => (fit.candidates.length === 0 ? [] : [element("h3", { text: "Candidates" }),
       table("Candidates", ["Model", { text: "Error, % of std", class: "" }, "Folds", { text: "State", class: "text" }],
         fit.candidates.map((one) => [one.name, percent(one.error_percent), `${one.folds} of ${one.of}`, one.state])),
@@ -66,6 +67,7 @@ export class FitProgress {
     if (fit.is_running) return [];
     const model = project.models.find(({ id }) => id === fit.made);
     if (fit.was_interrupted) return [element("h2", { text: "The fit was interrupted" }), problem(fit.problem), model ? judge(model) : null];
+    if (fit.is_unsaved) return [element("h2", { text: "The model is not stored" }), problem(fit.problem), this.saving()];
     if (fit.problem) return [element("h2", { text: "The fit failed" }), problem(fit.problem)];
     if (!model) return [];
     const held = model.validation ? ` and ${percent(model.validation.nrmse_std_percent)} in cross-validation` : "";
@@ -73,6 +75,16 @@ export class FitProgress {
       element("p", { class: "verdict", text: `${model.title}: error ${percent(model.train.nrmse_std_percent)} on the training data${held}, in % of the standard deviation of the output. ${duration(model.seconds)}, ${model.termination}.` }),
       ...[model.chosen, model.why].filter(Boolean).map((words) => element("p", { text: sentence(words) })),
       judge(model)];
+  }
+
+  /** What can be done with a model that could not be stored. */
+  saving() {
+    const save = () => this.notice.during(() => post("/api/fit/save", {}));
+    const keep = () => this.notice.during(async () => {
+      const { name, content } = await getFile("/api/fit/model");
+      download(content, name);
+    });
+    return element("div", { class: "row" }, button("Save again", save), button("Download the model", keep));
   }
 
   /** Fetches the newest picture; while one is on its way, no second. */

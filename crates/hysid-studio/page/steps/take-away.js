@@ -33,7 +33,7 @@ export class TakeAwayStep {
   choose(id) { this.model = id; }
 
   /** A model that cannot be exported there is told in words, and not as a failed download. */
-  export(address) {
+  save(address) {
     return this.notice.during(async () => {
       const { name, content } = await getFile(address);
       download(content, name);
@@ -52,12 +52,12 @@ export class TakeAwayStep {
     this.region.update([project.models.map(({ id, title, is_stale: isStale }) => [id, title, isStale]), model.id, folder], () => [
       element("div", { class: "row" }, modelChoice("take-away", model, (id) => { this.model = id; this.update(); })), stale(model),
       element("h2", { text: "Files" }),
-      element("div", { class: "row" }, element("a", { class: "button", href: `${address}/file`, download: model.file, text: "Model file" }),
-        model.has_report ? element("a", { class: "button", href: `${address}/report`, target: "_blank", text: "Report (new tab)" }) : null),
+      element("div", { class: "row" }, button("Model file", () => this.save(`${address}/file`)),
+        model.has_report ? element("a", { class: "button", href: `/report#${model.id}`, target: "_blank", text: "Report (new tab)" }) : null),
       element("p", { class: "note" }, "This model is also in the project's folder: ", element("code", { text: `${folder}/models/${model.file}` })),
       element("h2", { text: "Source code and exports" }),
       element("ul", { class: "files" }, ...project.choices.targets.map(({ name, what }) => element("li", {},
-        element("span", { class: "about", text: what }), button(`Download ${name}`, () => this.export(`${address}/export/${encodeURIComponent(name)}`), { "aria-label": `Download ${name}: ${what}` }))))]);
+        element("span", { class: "about", text: what }), button(`Download ${name}`, () => this.save(`${address}/export/${encodeURIComponent(name)}`), { "aria-label": `Download ${name}: ${what}` }))))]);
     try {
       const { shell, python, note } = await project.ofModel(model, "commands");
       if (modelOr(this.model) === model) this.commands.update([model.id, shell, python], () => [element("h2", { text: "Without this page" }), note ? problem(note) : null, copyable("Command line", shell), python ? copyable("Python", python, `Run in the folder ${folder}.`) : element("p", { class: "note", text: "Python code is not available for several training files, files other than CSV, and reading options." })]);

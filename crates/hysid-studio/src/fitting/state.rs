@@ -4,6 +4,8 @@ use anyhow::Result;
 use hysid::options::FitSpec;
 use serde::Serialize;
 
+use crate::words::said;
+
 /// What is known of a fit. Errors are in percent of the standard deviation of the output.
 #[derive(Debug, Clone, Serialize)]
 pub struct FitState {
@@ -37,9 +39,23 @@ pub struct FitState {
     pub problem: Option<String>,
     /// Number of the model that was made.
     pub made: Option<u64>,
+    /// True if the model could not be stored and is in memory alone.
+    pub is_unsaved: bool,
     /// True if the studio was ended before the fit.
     pub was_interrupted: bool,
 }
+
+/// A model that could not be stored, with the reason.
+#[derive(Debug)]
+pub struct Unsaved(pub String);
+
+impl std::fmt::Display for Unsaved {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Unsaved {}
 
 /// A candidate of `auto`.
 #[derive(Debug, Clone, Serialize)]
@@ -91,6 +107,7 @@ impl FitState {
             preview: 0,
             problem: None,
             made: None,
+            is_unsaved: false,
             was_interrupted: false,
         }
     }
@@ -127,12 +144,13 @@ impl FitState {
 
     /// Takes how the fit has ended.
     pub(super) fn end(&mut self, ended: Result<u64>) {
+        self.is_unsaved = ended.as_ref().is_err_and(|problem| problem.is::<Unsaved>());
         self.is_running = false;
         self.remaining = None;
         self.remaining_seconds = None;
         match ended {
             Ok(model) => self.made = Some(model),
-            Err(problem) => self.problem = Some(format!("{problem:#}")),
+            Err(problem) => self.problem = Some(said(&problem)),
         }
     }
 }

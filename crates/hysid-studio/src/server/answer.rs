@@ -1,5 +1,6 @@
 //! Answers: JSON, arrays of numbers, downloads, and problems in words.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Json;
@@ -9,9 +10,11 @@ use axum::http::header::{self, HeaderName, HeaderValue};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use serde_json::json;
+use tokio::sync::OwnedSemaphorePermit;
 
 use super::Shared;
 use crate::studio::Studio;
+use crate::words::shortened;
 
 /// Why something cannot be done, in words.
 #[derive(Debug)]
@@ -23,7 +26,12 @@ pub struct Problem {
 impl Problem {
     /// A problem with this HTTP status.
     pub fn new(status: StatusCode, words: impl Into<String>) -> Self {
-        Self { status, words: words.into() }
+        let words: String = words.into();
+        let words = match words.trim().is_empty() {
+            true => format!("this is not possible: {}", status.canonical_reason().unwrap_or("refused")),
+            false => shortened(&words).into_owned(),
+        };
+        Self { status, words }
     }
 
     /// A request that is refused.
@@ -55,14 +63,38 @@ pub type Answer<T> = Result<T, Problem>;
 /// Time after which an answer is given up.
 const LONGEST_COMPUTATION: Duration = Duration::from_secs(600);
 
-/// Computes an answer on a thread of its own, one of few at a time.
+/// Computes an answer on a thread of its own: reads tables or runs models, one of few at a time.
 pub async fn computed<T: Send + 'static>(
     shared: Shared,
-    compute: impl FnOnce(&std::sync::Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
+    compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
 ) -> Answer<T> {
-    let Shared { studio, computing, .. } = shared;
-    let ending = |_| Problem::new(StatusCode::SERVICE_UNAVAILABLE, "the studio is ending");
-    let permit = computing.acquire_owned().await.map_err(ending)?;
+    let permit = Arc::clone(&shared.computing).acquire_owned().await;
+    on_a_thread(shared, permit.ok(), compute).await
+}
+
+/// As [`computed`], for diagnoses: those that nobody waits for any more hold up only other diagnoses.
+pub async fn diagnosed<T: Send + 'static>(
+    shared: Shared,
+    compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
+) -> Answer<T> {
+    let permit = Arc::clone(&shared.diagnosing).acquire_owned().await;
+    on_a_thread(shared, permit.ok(), compute).await
+}
+
+/// An answer that takes moments: it waits for no other.
+pub async fn at_once<T: Send + 'static>(
+    shared: Shared,
+    compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
+) -> Answer<T> {
+    on_a_thread(shared, None, compute).await
+}
+
+async fn on_a_thread<T: Send + 'static>(
+    shared: Shared,
+    permit: Option<OwnedSemaphorePermit>,
+    compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
+) -> Answer<T> {
+    let studio = shared.studio;
     let result = tokio::task::spawn_blocking(move || {
         let _permit = permit;
         compute(&studio)

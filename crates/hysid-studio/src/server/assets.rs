@@ -1,14 +1,28 @@
 //! The files of the page, which are part of the program.
 
+use std::sync::LazyLock;
+
 use axum::extract::Path;
-use axum::http::header;
+use axum::http::header::{self, HeaderValue};
 use axum::response::{Html, IntoResponse, Response};
 use hysid_document::html;
+use sha2::{Digest, Sha256};
 
 use super::answer::{Answer, Problem};
 
 /// The page.
 const PAGE: &str = include_str!("../../page/index.html");
+
+/// The page that shows a report.
+const REPORT: &str = include_str!("../../page/report.html");
+
+/// What a report may do: run the program's own script, and nothing else.
+static REPORT_SCRIPT: LazyLock<String> = LazyLock::new(|| checksum(html::script_of_pages()));
+
+/// A script as a policy names it.
+pub fn checksum(script: &str) -> String {
+    format!("'sha256-{}'", base64(&Sha256::digest(script)))
+}
 
 /// The files of a list, each with its content.
 macro_rules! files {
@@ -41,6 +55,7 @@ const FILES: &[(&str, &[u8])] = files![
     "plots/svg.js",
     "plots/trace.js",
     "project.js",
+    "report.js",
     "server.js",
     "steps/compare.js",
     "steps/data.js",
@@ -59,8 +74,36 @@ const FILES: &[(&str, &[u8])] = files![
 ];
 
 /// The page itself.
-pub async fn page() -> Html<&'static str> {
+pub fn page() -> Html<&'static str> {
     Html(PAGE)
+}
+
+/// The page that shows a report, in a frame that has this policy too.
+pub fn report() -> Response {
+    let policy = format!(
+        "default-src 'none'; script-src 'self' {}; style-src 'unsafe-inline'; img-src data: blob:; connect-src 'self'; \
+         form-action 'none'; base-uri 'none'; frame-ancestors 'none'",
+        *REPORT_SCRIPT
+    );
+    with_policy(Html(REPORT), &policy)
+}
+
+/// The text of a report. A project may be of somebody else: the policy names the program's own script and no other.
+pub fn report_text(text: String) -> Response {
+    let policy = format!(
+        "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; form-action 'none'; \
+         base-uri 'none'; frame-ancestors 'none'; sandbox allow-scripts allow-downloads",
+        *REPORT_SCRIPT
+    );
+    with_policy(Html(text), &policy)
+}
+
+fn with_policy(page: impl IntoResponse, policy: &str) -> Response {
+    let mut response = page.into_response();
+    if let Ok(policy) = HeaderValue::from_str(policy) {
+        response.headers_mut().insert(header::CONTENT_SECURITY_POLICY, policy);
+    }
+    response
 }
 
 /// A file of the page.
@@ -81,6 +124,21 @@ fn kind(name: &str) -> &'static str {
         Some("svg") => "image/svg+xml",
         _ => "text/plain; charset=utf-8",
     }
+}
+
+/// Bytes as text of base 64.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let letters = |three: &[u8]| {
+        let bits =
+            three.iter().fold(0u32, |bits, byte| bits << 8 | u32::from(*byte)) << (8 * (3 - three.len()));
+        let letter = |place: usize| match place <= three.len() {
+            true => char::from(LETTERS[(bits >> (18 - 6 * place)) as usize & 63]),
+            false => '=',
+        };
+        [letter(0), letter(1), letter(2), letter(3)]
+    };
+    bytes.chunks(3).flat_map(letters).collect()
 }
 
 /// The style of what the program writes as documents, inside elements of the class `document`.
@@ -114,7 +172,7 @@ mod tests {
     fn the_program_has_every_file_of_the_page() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("page");
         let mut known: BTreeSet<String> = FILES.iter().map(|(name, _)| (*name).to_string()).collect();
-        known.insert("index.html".into());
+        known.extend(["index.html", "report.html"].map(String::from));
         assert_eq!(known, files_in(&folder, ""));
     }
 
@@ -135,5 +193,14 @@ mod tests {
             assert!(is_library || !outside, "{name}");
         }
         assert!(!PAGE.contains("<style") && !PAGE.contains(" style=") && !PAGE.contains("<script>"));
+    }
+
+    #[test]
+    fn base_64_is_that_of_rfc_4648() {
+        for (bytes, text) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
     }
 }

@@ -18,7 +18,7 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::Shared;
-use super::answer::{Answer, Arrays, Problem, computed, done, value};
+use super::answer::{Answer, Arrays, Problem, computed, diagnosed, done, value};
 use crate::choices::MOST_FILE_BYTES;
 use crate::project::{ChosenColumns, Use};
 
@@ -93,6 +93,12 @@ fn too_large() -> Problem {
 /// Removes a file.
 pub async fn remove(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
     computed(shared, move |studio| studio.remove_file(id)).await?;
+    Ok(done())
+}
+
+/// Reads a file that was held back.
+pub async fn read_again(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
+    computed(shared, move |studio| studio.read_again(id)).await?;
     Ok(done())
 }
 
@@ -209,10 +215,10 @@ fn columns_of(data: &Data) -> Vec<(&'static str, Vec<f64>)> {
 
 /// What may be wrong with the training data.
 pub async fn findings(State(shared): State<Shared>) -> Answer<Response> {
-    Ok(value(computed(shared, |studio| studio.findings()).await?))
+    Ok(value(diagnosed(shared, |studio| studio.findings()).await?))
 }
 
 /// The diagnosis of the training data.
 pub async fn diagnosis(State(shared): State<Shared>) -> Answer<Response> {
-    Ok(value(json!({"html": computed(shared, |studio| studio.diagnosis()).await?})))
+    Ok(value(json!({"html": diagnosed(shared, |studio| studio.diagnosis()).await?})))
 }

@@ -1,22 +1,26 @@
-//! Access: only the page that this studio opened gets answers.
+//! Access: only the page that this studio opened gets answers about the project.
 //!
-//! A random token is in the address that is opened, and from then on in a cookie that the browser sends from this page
-//! alone. A page of somebody else has neither; nor can it pretend to be this machine by a name of its own (DNS rebinding),
-//! because `Host` must be the address of this server, and `Origin`, where there is one, too.
+//! Every request about the project needs the key in a header. A page of somebody else has no key; nor can it pretend to
+//! be this machine by a name of its own (DNS rebinding), because `Host` must be the address of this server, and `Origin`,
+//! where there is one, too. The files of the page itself are those of the program, and need no key.
 
 use std::sync::Arc;
 
-use anyhow::{Result, anyhow};
+use axum::Extension;
 use axum::extract::{Request, State};
 use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
 use axum::http::{Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use serde_json::json;
 
-use super::answer::Problem;
+use super::answer::{Problem, value};
+use super::assets;
+use super::connections::Proof;
+use super::keys::Keys;
 
-/// Bytes of a token.
-const TOKEN_BYTES: usize = 24;
+/// The header with the key.
+const KEY: HeaderName = HeaderName::from_static("x-hysid-key");
 
 /// What a page may do: use what this server gives, and nothing else.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
@@ -33,79 +37,71 @@ const HEADERS: [(HeaderName, &str); 6] = [
     (header::CACHE_CONTROL, "no-store"),
 ];
 
-/// The address, token and cookie of this studio.
+/// The address and the keys of this studio.
 #[derive(Clone)]
 pub struct Guard(Arc<Known>);
 
 struct Known {
-    hosts: [String; 2],
-    token: String,
+    host: String,
+    origin: String,
     cookie: String,
-}
-
-/// A random token.
-///
-/// # Errors
-/// A system without random numbers.
-pub fn token() -> Result<String> {
-    let mut random = [0; TOKEN_BYTES];
-    getrandom::fill(&mut random).map_err(|error| anyhow!("no random numbers: {error}"))?;
-    Ok(random.iter().map(|byte| format!("{byte:02x}")).collect())
+    keys: Arc<Keys>,
 }
 
 impl Guard {
     /// Of a server on this port.
-    pub fn new(port: u16, token: String) -> Self {
-        let hosts = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
+    pub fn new(port: u16, keys: Arc<Keys>) -> Self {
+        // `localhost` may be the address of another server, at `::1`.
+        let host = format!("127.0.0.1:{port}");
         // Cookies do not tell ports apart: two studios need two names.
-        Self(Arc::new(Known { hosts, token, cookie: format!("hysid-studio-{port}") }))
+        Self(Arc::new(Known {
+            origin: format!("http://{host}"),
+            host,
+            cookie: format!("hysid-studio-{port}"),
+            keys,
+        }))
     }
 
-    /// Why a request is refused; `None` if it is not.
+    /// Why a request is refused before its key is looked at; `None` if it is not.
     fn refusal(&self, request: &Request) -> Option<Problem> {
         let headers = request.headers();
-        let host = text(headers, &header::HOST).unwrap_or_default();
-        if !self.0.hosts.iter().any(|known| known == host) {
-            return Some(Problem::refused("request refused: wrong address"));
+        if text(headers, &header::HOST) != Some(&self.0.host) {
+            return Some(Problem::refused(&format!("request refused: the studio is at {}", self.0.origin)));
         }
-        let own = format!("http://{host}");
         let origin = text(headers, &header::ORIGIN);
         let is_reading = matches!(*request.method(), Method::GET | Method::HEAD);
-        if origin.is_some_and(|origin| origin != own) || (origin.is_none() && !is_reading) {
-            return Some(Problem::refused("request refused: it did not come from the page of this studio"));
-        }
-        let is_opening = request.uri().path() == "/";
+        let is_foreign = origin.map_or(!is_reading, |origin| origin != self.0.origin);
         let site = text(headers, &HeaderName::from_static("sec-fetch-site"));
-        if !is_opening && site.is_some_and(|site| site != "same-origin" && site != "none") {
+        let is_opening = request.uri().path() == "/";
+        if is_foreign || (!is_opening && site.is_some_and(|site| site != "same-origin" && site != "none")) {
             return Some(Problem::refused("request refused: it did not come from the page of this studio"));
         }
-        let has_token = self.has_cookie(headers) || (is_opening && self.has_token(request));
-        let words = "The studio was restarted, or this page was not opened by it. Open the address that `hysid studio` has printed.";
-        (!has_token).then(|| Problem::refused(words))
+        None
     }
 
-    fn has_cookie(&self, headers: &HeaderMap) -> bool {
-        let cookies = headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
-        let mut pairs =
-            cookies.flat_map(|cookies| cookies.split(';')).filter_map(|pair| pair.trim().split_once('='));
-        pairs.any(|(name, value)| name == self.0.cookie && self.is_token(value))
+    /// The answer to an address with a token: the page without it, and a ticket; `None` for any other address.
+    fn opening(&self, request: &Request) -> Option<Response> {
+        let query = request.uri().query().filter(|_| request.uri().path() == "/")?;
+        let token = query.split('&').find_map(|pair| pair.strip_prefix("token="))?;
+        if request.method() != Method::GET {
+            return None;
+        }
+        let Some(ticket) = self.0.keys.open(token) else {
+            // The page shows the project if this browser has the key, and says what to do otherwise.
+            return Some((StatusCode::FORBIDDEN, assets::page()).into_response());
+        };
+        let mut response = (StatusCode::SEE_OTHER, [(header::LOCATION, "/")]).into_response();
+        self.set_cookie(&mut response, &ticket, 60);
+        Some(response)
     }
 
-    fn has_token(&self, request: &Request) -> bool {
-        let query = request.uri().query().unwrap_or_default();
-        query.split('&').filter_map(|pair| pair.strip_prefix("token=")).any(|value| self.is_token(value))
-    }
-
-    /// Takes the same time wherever the first difference is.
-    fn is_token(&self, value: &str) -> bool {
-        let (value, token) = (value.as_bytes(), self.0.token.as_bytes());
-        let differences = value.iter().zip(token).fold(0, |sum, (a, b)| sum | (a ^ b));
-        value.len() == token.len() && differences == 0
-    }
-
-    /// The cookie that stands for the token from now on.
-    fn cookie(&self) -> String {
-        format!("{}={}; Path=/; HttpOnly; SameSite=Strict", self.0.cookie, self.0.token)
+    fn set_cookie(&self, response: &mut Response, ticket: &str, seconds: u32) {
+        let name = &self.0.cookie;
+        let cookie =
+            format!("{name}={ticket}; Path=/api/session; HttpOnly; SameSite=Strict; Max-Age={seconds}");
+        if let Ok(cookie) = HeaderValue::from_str(&cookie) {
+            response.headers_mut().insert(header::SET_COOKIE, cookie);
+        }
     }
 }
 
@@ -114,26 +110,46 @@ fn text<'h>(headers: &'h HeaderMap, name: &HeaderName) -> Option<&'h str> {
     headers.get(name).map(|value| value.to_str().unwrap_or("?"))
 }
 
-/// Lets the page of the studio through, and gives every answer its headers.
+/// Gives the key for the ticket in the cookie; `null` without a valid one.
+pub async fn session(State(guard): State<Guard>, headers: HeaderMap) -> Response {
+    let cookies = headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
+    let mut pairs =
+        cookies.flat_map(|cookies| cookies.split(';')).filter_map(|pair| pair.trim().split_once('='));
+    let ticket = pairs.find(|(name, _)| *name == guard.0.cookie);
+    let key = ticket.and_then(|(_, ticket)| guard.0.keys.exchange(ticket));
+    let mut response = value(json!({"key": key}));
+    guard.set_cookie(&mut response, "", 0);
+    response
+}
+
+/// Lets requests with the key through.
+pub async fn check_key(
+    State(guard): State<Guard>,
+    Extension(proof): Extension<Proof>,
+    request: Request,
+    next: Next,
+) -> Response {
+    if text(request.headers(), &KEY).is_some_and(|key| guard.0.keys.is_key(key)) {
+        proof.give();
+        return next.run(request).await;
+    }
+    let words = "The studio was restarted, or did not open this page. Open the file studio.html in the folder of the project.";
+    Problem::refused(words).into_response()
+}
+
+/// Refuses requests of other pages, opens the page, and gives every answer its headers.
 pub async fn check(State(guard): State<Guard>, request: Request, next: Next) -> Response {
-    let opens = request.uri().path() == "/" && guard.has_token(&request);
-    let mut response = match guard.refusal(&request) {
-        Some(problem) => problem.into_response(),
+    let refused = guard.refusal(&request).map(IntoResponse::into_response);
+    let mut response = match refused.or_else(|| guard.opening(&request)) {
+        Some(response) => response,
         None => next.run(request).await,
     };
-    let is_answered = response.status() == StatusCode::OK;
     let headers = response.headers_mut();
     for (name, value) in HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
     }
     if !headers.contains_key(header::CONTENT_SECURITY_POLICY) {
         headers.insert(header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY));
-    }
-    if opens
-        && is_answered
-        && let Ok(cookie) = HeaderValue::from_str(&guard.cookie())
-    {
-        headers.insert(header::SET_COOKIE, cookie);
     }
     response
 }

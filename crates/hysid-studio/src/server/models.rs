@@ -3,15 +3,14 @@
 use axum::Json;
 use axum::body::Bytes;
 use axum::extract::{Path, Query, State};
-use axum::http::header::{self, HeaderValue};
-use axum::response::{Html, IntoResponse, Response};
+use axum::response::Response;
 use hysid::model::Model;
 use serde::Deserialize;
 use serde_json::json;
-use sha2::{Digest, Sha256};
 
 use super::Shared;
-use super::answer::{Answer, Arrays, Problem, computed, done, download, encoded, value};
+use super::answer::{Answer, Arrays, Problem, at_once, computed, diagnosed, done, download, encoded, value};
+use super::assets::report_text;
 use crate::drive;
 use crate::judgement;
 use crate::project::FitRequest;
@@ -27,6 +26,18 @@ pub async fn fit(State(shared): State<Shared>, Json(request): Json<FitRequest>) 
 pub async fn stop(State(shared): State<Shared>) -> Response {
     shared.studio.stop_fit();
     done()
+}
+
+/// Stores the model that could not be stored.
+pub async fn save_again(State(shared): State<Shared>) -> Answer<Response> {
+    at_once(shared, |studio| studio.save_again()).await?;
+    Ok(done())
+}
+
+/// The model that could not be stored.
+pub async fn unsaved(State(shared): State<Shared>) -> Answer<Response> {
+    let (name, text) = at_once(shared, |studio| studio.unsaved_model()).await?;
+    Ok(download(&name, "application/json", text.into_bytes()))
 }
 
 /// What the best model so far simulates.
@@ -100,54 +111,27 @@ pub async fn run(
 
 /// What is known of a model.
 pub async fn facts(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
-    Ok(value(json!({"html": computed(shared, move |studio| studio.facts(id)).await?})))
+    Ok(value(json!({"html": diagnosed(shared, move |studio| studio.facts(id)).await?})))
 }
 
 /// Removes a model.
 pub async fn remove(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
-    computed(shared, move |studio| studio.remove_model(id)).await?;
+    at_once(shared, move |studio| studio.remove_model(id)).await?;
     Ok(done())
 }
 
 /// The file of a model.
 pub async fn file(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
-    computed(shared, move |studio| {
+    at_once(shared, move |studio| {
         let content = studio.folder().read(&studio.model_file(id)?)?;
         Ok(download(&studio.stored_model(id)?.file, "application/json", content))
     })
     .await
 }
 
-/// The report of a model. Its script is part of it, and runs because the policy names its checksum.
+/// The report of a model.
 pub async fn report(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
-    let text = computed(shared, move |studio| studio.report(id)).await?;
-    let script = text.split_once("<script>").and_then(|(_, rest)| rest.rsplit_once("</script>"));
-    let checksum = script.map(|(script, _)| format!("'sha256-{}'", base64(&Sha256::digest(script))));
-    let policy = format!(
-        "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; form-action 'none'; \
-         base-uri 'none'; frame-ancestors 'none'; sandbox allow-scripts allow-downloads",
-        checksum.as_deref().unwrap_or("'none'")
-    );
-    let mut response = Html(text).into_response();
-    if let Ok(policy) = HeaderValue::from_str(&policy) {
-        response.headers_mut().insert(header::CONTENT_SECURITY_POLICY, policy);
-    }
-    Ok(response)
-}
-
-/// Bytes as text of base 64.
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let letters = |three: &[u8]| {
-        let bits =
-            three.iter().fold(0u32, |bits, byte| bits << 8 | u32::from(*byte)) << (8 * (3 - three.len()));
-        let letter = |place: usize| match place <= three.len() {
-            true => char::from(LETTERS[(bits >> (18 - 6 * place)) as usize & 63]),
-            false => '=',
-        };
-        [letter(0), letter(1), letter(2), letter(3)]
-    };
-    bytes.chunks(3).flat_map(letters).collect()
+    Ok(report_text(at_once(shared, move |studio| studio.report(id)).await?))
 }
 
 /// A model for a target, as an archive.
@@ -164,19 +148,5 @@ pub async fn export(
 
 /// The lines that make a model without the studio.
 pub async fn lines(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
-    Ok(value(computed(shared, move |studio| studio.lines(id)).await?))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn base_64_is_that_of_rfc_4648() {
-        for (bytes, text) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
-        {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
-    }
+    Ok(value(at_once(shared, move |studio| studio.lines(id)).await?))
 }

@@ -7,7 +7,7 @@ use axum::middleware::{from_fn_with_state, map_response};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{delete, get, post};
 
-use super::answer::{Answer, Problem, computed, value};
+use super::answer::{Answer, Problem, at_once, value};
 use super::guard::{self, Guard};
 use super::{Shared, assets, events, files, models};
 use crate::choices::Choices;
@@ -21,6 +21,7 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
         .route("/files", post(files::upload).layer(DefaultBodyLimit::disable()))
         .route("/files/{id}", delete(files::remove))
         .route("/files/{id}/use", post(files::use_as))
+        .route("/files/{id}/read", post(files::read_again))
         .route("/files/{id}/columns", get(files::numbers))
         .route("/specimens", post(files::specimen))
         .route("/reading", post(files::reading))
@@ -31,6 +32,8 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
         .route("/fit", post(models::fit))
         .route("/fit/stop", post(models::stop))
         .route("/fit/preview", get(models::preview))
+        .route("/fit/save", post(models::save_again))
+        .route("/fit/model", get(models::unsaved))
         .route("/models/{id}", delete(models::remove))
         .route("/models/{id}/simulated/{file}", get(models::simulated))
         .route("/models/{id}/members/{file}", get(models::members))
@@ -46,9 +49,12 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
         .route("/project", get(project))
         .route("/events", get(events::events))
         .merge(of_files)
-        .merge(of_models);
+        .merge(of_models)
+        .layer(from_fn_with_state(guard.clone(), guard::check_key));
     Router::new()
-        .route("/", get(assets::page))
+        .route("/", get(async || assets::page()))
+        .route("/report", get(async || assets::report()))
+        .route("/api/session", post(guard::session).with_state(guard.clone()))
         .route("/{*path}", get(assets::asset))
         .nest("/api", api)
         .fallback(async || Problem::new(StatusCode::NOT_FOUND, "there is no such address"))
@@ -59,20 +65,18 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
 }
 
 async fn project(State(shared): State<Shared>) -> Answer<Response> {
-    Ok(value(computed(shared, |studio| Ok(studio.shown())).await?))
+    Ok(value(at_once(shared, |studio| Ok(studio.shown())).await?))
 }
 
 /// What the server itself refuses, in words of the same form.
 async fn in_words(response: Response) -> Response {
-    let is_text = response
-        .headers()
-        .get("content-type")
-        .is_some_and(|kind| kind.to_str().is_ok_and(|kind| kind.starts_with("text/plain")));
+    let kind = response.headers().get("content-type").map(|kind| kind.to_str().unwrap_or_default());
+    let is_in_words = kind.is_some_and(|kind| kind.starts_with("application/json"));
     let status = response.status();
-    if !status.is_client_error() || !is_text {
+    if is_in_words || !(status.is_client_error() || status.is_server_error()) {
         return response;
     }
-    let bytes = axum::body::to_bytes(response.into_body(), 4096).await.unwrap_or_default();
+    let bytes = axum::body::to_bytes(response.into_body(), MOST_BODY_BYTES).await.unwrap_or_default();
     let words = String::from_utf8_lossy(&bytes)
         .replace("Failed to deserialize the JSON body into the target type", "the request is not valid");
     Problem::new(status, words).into_response()

@@ -13,12 +13,14 @@ use hysid_document::html;
 use hysid_document::visible::clipped;
 use hysid_records::{Data, ReadingChoice, Roles, csv_text, summarised, understanding};
 use hysid_report::diagnosis::DataDiagnosis;
+use hysid_tables::Table;
 use serde::Serialize;
 
 use super::Studio;
 use crate::folder::{Inner, UPLOAD, cannot_read};
-use crate::project::{ChosenColumns, ProjectFile, Use};
+use crate::project::{ChosenColumns, Project, ProjectFile, Use};
 use crate::view::read;
+use crate::words::said;
 
 /// Most files of a project.
 const MOST_FILES: usize = 200;
@@ -32,31 +34,55 @@ pub struct Findings {
     issues: Vec<DataIssue>,
 }
 
+/// Refuses one more file in a full project.
+fn check_room(project: &Project) -> Result<()> {
+    if project.files.len() >= MOST_FILES {
+        bail!("a project has at most {MOST_FILES} files: remove some that are not used");
+    }
+    Ok(())
+}
+
 impl Studio {
     /// Where a file with this name that comes in is put, before it is [taken](Self::take_file).
+    ///
+    /// # Errors
+    /// A project with as many files as it may have.
     pub fn place_for_upload(&self) -> Result<PathBuf> {
-        if self.project().files.len() >= MOST_FILES {
-            bail!("a project has at most {MOST_FILES} files: remove some that are not used");
-        }
+        check_room(&self.project())?;
         let mut random = [0; 8];
         getrandom::fill(&mut random).map_err(|error| anyhow!("no random name: {error}"))?;
         Ok(self.folder.data(&format!("{UPLOAD}{:016x}", u64::from_le_bytes(random))))
     }
 
-    /// Takes a file that lies at a place of an upload.
+    /// Takes a file that lies at a place of an upload. It is read before it is in the project: one that kills the studio
+    /// is in none.
     ///
     /// # Errors
-    /// A folder that cannot be written to.
+    /// A folder that cannot be written to; a project with as many files as it may have.
     pub fn take_file(&self, given: &str, place: &Path, usage: Use) -> Result<u64> {
-        let bytes = fs::metadata(place).map_or(0, |metadata| metadata.len());
-        self.change(|project| {
+        let reading = self.project().understanding.reading.clone();
+        let name = self.folder.free_name(Inner::Data, given)?;
+        let content = fs::read(place).map_err(|error| cannot_read(Path::new(&name), &error))?;
+        let bytes = content.len() as u64;
+        let table = Table::from_bytes(Path::new(&name), content, &reading.reading()?);
+        let mut stored = None;
+        let entered = self.change(|project| {
+            check_room(project)?;
             let name = self.folder.free_name(Inner::Data, given)?;
-            fs::rename(place, self.folder.data(&name))
+            let path = self.folder.data(&name);
+            fs::rename(place, &path)
                 .map_err(|error| anyhow!("{name}: cannot be stored: {}", hysid_files::reason(&error)))?;
+            stored = Some(path);
             let id = project.next_id();
             project.files.push(ProjectFile { id, name, bytes, usage });
-            Ok(id)
-        })
+            Ok((id, project.understanding.reading == reading))
+        });
+        if entered.is_err() {
+            stored.iter().for_each(|path| self.folder.remove(path));
+        }
+        let (id, is_read_alike) = entered?;
+        self.read_files_with(is_read_alike.then_some((id, table)));
+        Ok(id)
     }
 
     /// Takes a file with this content.
@@ -65,9 +91,13 @@ impl Studio {
     /// A folder that cannot be written to.
     pub fn take_content(&self, given: &str, content: &[u8], usage: Use) -> Result<u64> {
         let place = self.place_for_upload()?;
-        fs::write(&place, content)
-            .map_err(|error| anyhow!("{given}: cannot be stored: {}", hysid_files::reason(&error)))?;
-        self.take_file(given, &place, usage)
+        let stored = fs::write(&place, content)
+            .map_err(|error| anyhow!("{given}: cannot be stored: {}", hysid_files::reason(&error)));
+        let taken = stored.and_then(|()| self.take_file(given, &place, usage));
+        if taken.is_err() {
+            self.folder.remove(&place);
+        }
+        taken
     }
 
     /// Takes a copy of a file of the user, unless the project has the same already.
@@ -108,6 +138,20 @@ impl Studio {
         if fs::symlink_metadata(&path).is_ok_and(|found| found.len() == removed.bytes) {
             self.folder.remove(&path);
         }
+        self.folder.release(id);
+        self.read_files();
+        Ok(())
+    }
+
+    /// Reads a file that was not read because that killed the studio before.
+    ///
+    /// # Errors
+    /// There is none of this number.
+    pub fn read_again(&self, id: u64) -> Result<()> {
+        self.project().file(id)?;
+        self.folder.release(id);
+        self.show(self.view().without(id));
+        self.read_files();
         Ok(())
     }
 
@@ -120,7 +164,9 @@ impl Studio {
             project.file(id)?;
             project.files.iter_mut().filter(|file| file.id == id).for_each(|file| file.usage = usage);
             Ok(())
-        })
+        })?;
+        self.read_files();
+        Ok(())
     }
 
     /// Takes the training and the test data of a specimen.
@@ -150,7 +196,9 @@ impl Studio {
         self.change(|project| {
             project.understanding.reading = reading;
             Ok(())
-        })
+        })?;
+        self.read_files();
+        Ok(())
     }
 
     /// Says which columns are what; `None` to guess.
@@ -160,21 +208,38 @@ impl Studio {
     ///
     /// The answer is a note on a column that has a role by its name although none was chosen for it.
     pub fn choose_columns(&self, columns: Option<ChosenColumns>) -> Result<Option<String>> {
+        let before = self.project().clone();
+        let first = before.files_for(Use::Training).chain(&before.files).next();
+        let note = match (&columns, first) {
+            (Some(chosen), Some(first)) => self.check_columns(&before, first, chosen)?,
+            _ => None,
+        };
         self.change(|project| {
+            if project.files != before.files || project.understanding != before.understanding {
+                bail!("the files or their reading changed meanwhile: choose the columns again");
+            }
             project.understanding.columns = columns;
-            let first = project.files_for(Use::Training).chain(&project.files).next();
-            let Some(first) = first.map(|file| file.name.clone()) else { return Ok(None) };
-            let understanding = &project.understanding;
-            let Some(chosen) = &understanding.columns else { return Ok(None) };
-            let table = read(&first, &self.folder, &understanding.reading.reading()?)?;
-            let found = Roles::detect(&table, &understanding.choice())?;
-            let roles = [("time", &chosen.time, &found.time), ("record", &chosen.record, &found.record)];
-            let by_name = roles.iter().find_map(|(role, chosen, found)| {
-                let name = found.as_ref().filter(|_| chosen.is_none())?;
-                Some(format!("\"{}\" keeps the role {role}, which is detected from its name or values; another column can get the role", clipped(name)))
-            });
-            Ok(by_name)
-        })
+            Ok(())
+        })?;
+        self.read_files();
+        Ok(note)
+    }
+
+    /// Checks columns by the first file; gives a note on one that keeps its role.
+    fn check_columns(
+        &self,
+        project: &Project,
+        first: &ProjectFile,
+        chosen: &ChosenColumns,
+    ) -> Result<Option<String>> {
+        let table = read(first, &self.folder, &project.understanding.reading.reading()?)?;
+        let found = Roles::detect(&table, &chosen.choice())?;
+        let roles = [("time", &chosen.time, &found.time), ("record", &chosen.record, &found.record)];
+        let by_name = roles.iter().find_map(|(role, chosen, found)| {
+            let name = found.as_ref().filter(|_| chosen.is_none())?;
+            Some(format!("\"{}\" keeps the role {role}, which is detected from its name or values; another column can get the role", clipped(name)))
+        });
+        Ok(by_name)
     }
 
     /// The data of a file.
@@ -182,7 +247,7 @@ impl Studio {
     /// # Errors
     /// A file that cannot be used.
     pub fn data_of(&self, id: u64) -> Result<Arc<Data>> {
-        self.view().data(id)
+        self.current().1.data(id)
     }
 
     /// All training data, as a fit takes them.
@@ -190,10 +255,7 @@ impl Studio {
     /// # Errors
     /// No training file, or files that cannot be used.
     pub fn training_data(&self) -> Result<Arc<Data>> {
-        let (project, view) = {
-            let project = self.project();
-            (project.clone(), self.view())
-        };
+        let (project, view) = self.current();
         view.training(&project, &self.folder)
     }
 
@@ -212,14 +274,20 @@ impl Studio {
         Ok(Findings { warnings, issues })
     }
 
-    /// The diagnosis of the training data, as HTML.
+    /// The diagnosis of the training data, as HTML. It is made once, also if who asked for it does not wait.
     ///
     /// # Errors
     /// As [`Studio::training_data`]; data that cannot be diagnosed.
     pub fn diagnosis(&self) -> Result<String> {
-        let data = self.training_data()?;
-        let understood = understanding::of_data(&data, &Summary::of(&data.set));
-        let diagnosed = DataDiagnosis::of(&data, &DiagnosisOptions::default(), &understood, String::new())?;
-        Ok(html::parts(&diagnosed.page().parts))
+        let (project, view) = self.current();
+        let made = || view.training(&project, &self.folder).and_then(|data| diagnosis_of(&data));
+        let diagnosis = view.diagnosis.get_or_init(|| made().map_err(|error| said(&error)));
+        diagnosis.clone().map_err(|words| anyhow!(words))
     }
+}
+
+fn diagnosis_of(data: &Data) -> Result<String> {
+    let understood = understanding::of_data(data, &Summary::of(&data.set));
+    let diagnosed = DataDiagnosis::of(data, &DiagnosisOptions::default(), &understood, String::new())?;
+    Ok(html::parts(&diagnosed.page().parts))
 }

@@ -1,9 +1,9 @@
 //! Fits to the training data, and what is kept of them.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, MutexGuard, PoisonError};
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::options::chosen::NamedOptions;
@@ -12,9 +12,20 @@ use hysid_records::{Data, Usage};
 use hysid_report::{Beforehand, Identified, date, origin, page_text};
 
 use super::Studio;
-use crate::fitting::{FitState, Preview, Work};
+use crate::fitting::{Finish, FitState, Preview, Unsaved, Work, caught};
 use crate::folder::Inner;
 use crate::project::{Begun, ChosenColumns, FitRequest, ProjectModel, Use};
+
+/// What a fit has found, until it is stored.
+pub struct Found {
+    begun: Begun,
+    identified: Identified,
+    data: Arc<Data>,
+    /// The text of the model's file.
+    text: String,
+    /// A copy in another place, if there was room.
+    rescued: Option<PathBuf>,
+}
 
 impl Studio {
     /// Begins a fit to the training data.
@@ -31,7 +42,9 @@ impl Studio {
                 Usage("--time-limit: a number of seconds above 0, at most 1e9, is needed".into()).into()
             );
         }
+        self.save_again().context("the model of the last fit cannot be stored")?;
         let request = request.with_values()?;
+        let (seen, _) = self.current();
         let data = self.training_data()?;
         let spec = self.spec(&request, &data)?;
         // What can be refused is refused before anything is stored.
@@ -39,6 +52,9 @@ impl Studio {
         let best = self.folder.best_so_far();
         self.folder.remove(&best);
         let begun = self.change(|project| {
+            if project.files != seen.files || project.understanding != seen.understanding {
+                bail!("the files or their reading changed meanwhile: start the fit again");
+            }
             let id = project.next_id();
             let files = project.files_for(Use::Training).map(|file| file.name.clone()).collect();
             let understanding = project.understanding.clone();
@@ -50,16 +66,20 @@ impl Studio {
         let id = begun.id;
         let file = self.project().files_for(Use::Training).next().map_or(0, |file| file.id);
         let time_limit = begun.request.time_limit;
-        let (finishing, telling, keeping) = (Arc::clone(self), Arc::clone(self), Arc::clone(self));
+        let (finishing, keeping, news) = (Arc::clone(self), Arc::clone(self), self.news.clone());
         let keep = Box::new(move |model: &Model| {
             let folder = &keeping.folder;
             drop(folder.write(&folder.best_so_far(), Kind::Model, model.to_json().as_bytes()));
         });
         let work = Work { id, request: spec, data, beforehand, file, time_limit, keep };
-        let finish = Box::new(move |identified: Identified, data: &Data| {
-            finishing.take_model(begun, &identified, data).map(|()| id)
+        let finish: Finish = Box::new(move |found| match found {
+            Ok((identified, data)) => {
+                let text = identified.model.to_json();
+                finishing.take_model(Found { begun, identified, data, text, rescued: None })
+            }
+            Err(problem) => Err(finishing.keep_the_best(problem)),
         });
-        let tell = Arc::new(move || telling.news.send_modify(|news| news.fit += 1));
+        let tell = Arc::new(move || news.send_modify(|news| news.fit += 1));
         let begun = self.fits.begin(work, finish, tell);
         if begun.is_err() {
             self.forget_the_unfinished();
@@ -89,62 +109,105 @@ impl Studio {
     }
 
     /// Ends everything: the fit stops with its best model so far, which is saved.
-    pub fn end(&self) {
+    ///
+    /// # Errors
+    /// A model that cannot be stored; the error says where a copy is.
+    pub fn end(&self) -> Result<()> {
+        self.folder.end_readings();
         self.fits.end();
+        self.save_again().map_err(|error| {
+            let place = self.unsaved().as_ref().and_then(|found| found.rescued.clone());
+            let place = place.map_or_else(|| "lost".into(), |place| format!("in {}", place.display()));
+            anyhow!("{error:#}; the model is {place}")
+        })
     }
 
-    /// Saves what a fit has found. If that fails, the model is put elsewhere, and the error says where.
-    fn take_model(&self, begun: Begun, identified: &Identified, data: &Data) -> Result<()> {
-        let text = identified.model.to_json();
+    /// Saves what a fit has found. If that fails, it stays in memory, and a copy is put elsewhere if there is room.
+    fn take_model(&self, found: Found) -> Result<u64> {
+        let id = found.begun.id;
         // From here on a studio that is killed finds this model, and not an earlier one.
-        let best = self.folder.best_so_far();
-        let _ = self.folder.write(&best, Kind::Model, text.as_bytes());
-        self.store_model(begun, identified, data, &text).map_err(|error| {
-            let named = self.folder.models(&format!("{}.json", identified.model.name().name()));
-            match hysid_files::rescue(&named, text.as_bytes()) {
-                Some(place) => anyhow!("{error:#}; the model is in {}", place.display()),
-                None => error,
-            }
-        })?;
-        self.folder.remove(&best);
+        let _ = self.folder.write(&self.folder.finished(id), Kind::Model, found.text.as_bytes());
+        let Err(error) = self.store_model(&found) else { return Ok(id) };
+        let named = self.folder.models(&format!("{}.json", found.identified.model.name().name()));
+        let rescued = hysid_files::rescue(&named, found.text.as_bytes());
+        let place = rescued.as_ref().map_or_else(String::new, |place| format!(" and in {}", place.display()));
+        *self.unsaved() = Some(Found { rescued, ..found });
+        Err(Unsaved(format!("{error:#}; the model is in the memory of the studio{place}")).into())
+    }
+
+    /// Stores the model that could not be stored at the end of its fit.
+    ///
+    /// # Errors
+    /// It still cannot be stored.
+    pub fn save_again(&self) -> Result<()> {
+        let mut unsaved = self.unsaved();
+        let Some(found) = &*unsaved else { return Ok(()) };
+        self.store_model(found)?;
+        // The file of the project is as good as this copy, which nobody asked for.
+        found.rescued.iter().for_each(|copy| drop(std::fs::remove_file(copy)));
+        self.fits.saved(found.begun.id);
+        *unsaved = None;
         Ok(())
     }
 
-    fn store_model(&self, begun: Begun, identified: &Identified, data: &Data, text: &str) -> Result<()> {
-        let stem = format!("{}-{}", begun.id, identified.model.name().name());
-        let file = self.folder.free_name(Inner::Models, &format!("{stem}.json"))?;
-        let report = self.folder.free_name(Inner::Models, &format!("{stem}.html"))?;
-        self.folder.write(&self.folder.models(&file), Kind::Model, text.as_bytes())?;
+    /// Name and text of the model that could not be stored.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn unsaved_model(&self) -> Result<(String, String)> {
+        let unsaved = self.unsaved();
+        let found = unsaved.as_ref().ok_or_else(|| anyhow!("all models are stored"))?;
+        Ok((format!("{}.json", found.stem()), found.text.clone()))
+    }
+
+    fn unsaved(&self) -> MutexGuard<'_, Option<Found>> {
+        self.unsaved.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Stores a model with its report, the project last.
+    fn store_model(&self, found: &Found) -> Result<()> {
+        let file = self.place_model(found.begun.id, &found.identified.model, &found.text)?;
         // A model is worth more than its report.
-        let report = self.write_report(&report, &file, identified, data, &begun).is_ok().then_some(report);
-        let stored = ProjectModel {
-            begun,
+        let report = self.folder.free_name(Inner::Models, &format!("{}.html", found.stem()))?;
+        let written = caught(|| self.write_report(&report, &file, found));
+        self.keep(ProjectModel {
+            begun: found.begun.clone(),
             file,
-            report,
+            report: written.is_ok().then_some(report),
             made: date::now(),
-            seconds: identified.seconds,
+            seconds: found.identified.seconds,
             was_interrupted: false,
-        };
-        self.keep(stored)
+        })
+    }
+
+    /// Writes the file of a model unless it is there already, and gives its name.
+    fn place_model(&self, fit: u64, model: &Model, text: &str) -> Result<String> {
+        let file = format!("{}.json", stem(fit, model));
+        let path = self.folder.models(&file);
+        let is_named = self.project().models.iter().any(|stored| stored.file == file);
+        if !is_named && self.folder.read(&path).is_ok_and(|there| there == text.as_bytes()) {
+            return Ok(file);
+        }
+        let file = self.folder.free_name(Inner::Models, &file)?;
+        self.folder.write(&self.folder.models(&file), Kind::Model, text.as_bytes())?;
+        Ok(file)
     }
 
     /// Stores a model, with which its fit is no longer unfinished.
     fn keep(&self, stored: ProjectModel) -> Result<()> {
+        let fit = stored.begun.id;
         self.change(|project| {
             project.unfinished = None;
             project.models.push(stored);
             Ok(())
-        })
+        })?;
+        self.folder.remove(&self.folder.finished(fit));
+        self.folder.remove(&self.folder.best_so_far());
+        Ok(())
     }
 
-    fn write_report(
-        &self,
-        report: &str,
-        file: &str,
-        identified: &Identified,
-        data: &Data,
-        begun: &Begun,
-    ) -> Result<()> {
+    fn write_report(&self, report: &str, file: &str, found: &Found) -> Result<()> {
+        let Found { begun, identified, data, .. } = found;
         let trained = identified.model.as_trained(&data.set)?;
         let mut page = identified.page(Path::new(file), &[("training", trained.as_ref())])?;
         let inputs: Vec<PathBuf> = begun.files.iter().map(|file| self.folder.data(file)).collect();
@@ -162,46 +225,76 @@ impl Studio {
         drop(forgotten);
     }
 
-    /// Keeps the best model of a fit that an earlier studio did not bring to its end, and says so.
+    /// Keeps the best model so far of a fit that ends without a model, and says so.
+    fn keep_the_best(&self, problem: anyhow::Error) -> anyhow::Error {
+        let Some(begun) = self.project().unfinished.clone() else { return problem };
+        match self.model_in(&self.folder.best_so_far()) {
+            Some((model, text)) if self.keep_unfinished(begun, &model, &text, true).is_ok() => {
+                problem.context("the best model so far was kept")
+            }
+            _ => {
+                self.forget_the_unfinished();
+                problem
+            }
+        }
+    }
+
+    /// A model in a file, with its text.
+    fn model_in(&self, path: &Path) -> Option<(Model, String)> {
+        let text = String::from_utf8(self.folder.read(path).ok()?).ok()?;
+        Some((Model::from_json(&text).ok()?, text))
+    }
+
+    /// Keeps the model of a fit that was not stored at its end.
+    fn keep_unfinished(&self, begun: Begun, model: &Model, text: &str, was_interrupted: bool) -> Result<()> {
+        let file = self.place_model(begun.id, model, text)?;
+        self.keep(ProjectModel {
+            begun,
+            file,
+            report: None,
+            made: date::now(),
+            seconds: 0.0,
+            was_interrupted,
+        })
+    }
+
+    /// Keeps the model of a fit that an earlier studio did not bring to its end, and says so.
     pub(super) fn take_up_the_unfinished(&self) -> Result<()> {
         let Some(begun) = self.project().unfinished.clone() else { return Ok(()) };
         let chosen = NamedOptions::of(begun.request.options.clone()).unwrap_or_default();
-        let best = self.folder.best_so_far();
-        let text = self.folder.read(&best).ok().and_then(|content| String::from_utf8(content).ok());
-        let model = text.as_ref().and_then(|text| Model::from_json(text).ok());
+        let (id, finished) = (begun.id, self.folder.finished(begun.id));
         let mut state = FitState::begun(begun.id, &FitSpec::of(chosen.model(), None, 1));
         state.is_running = false;
-        state.was_interrupted = true;
-        let words = "the studio was closed";
-        match model {
-            Some(model) => {
-                let id = begun.id;
-                let file = format!("{id}-{}.json", model.name().name());
-                let file = self.folder.free_name(Inner::Models, &file)?;
-                self.folder.write(
-                    &self.folder.models(&file),
-                    Kind::Model,
-                    text.unwrap_or_default().as_bytes(),
-                )?;
-                let stored = ProjectModel {
-                    begun,
-                    file,
-                    report: None,
-                    made: date::now(),
-                    seconds: 0.0,
-                    was_interrupted: true,
-                };
-                self.keep(stored)?;
-                self.folder.remove(&best);
-                state.made = Some(id);
-                state.problem = Some(format!("{words} during this fit; the best model so far was kept"));
-            }
-            None => {
-                self.forget_the_unfinished();
-                state.problem = Some(format!("{words} before this fit had a model: start it again"));
-            }
+        if let Some((model, text)) = self.model_in(&finished) {
+            self.keep_unfinished(begun, &model, &text, false)?;
+            state.made = Some(id);
+        } else {
+            state.was_interrupted = true;
+            let words = "the studio was closed";
+            state.problem = Some(match self.model_in(&self.folder.best_so_far()) {
+                Some((model, text)) => {
+                    self.keep_unfinished(begun, &model, &text, true)?;
+                    state.made = Some(id);
+                    format!("{words} during this fit; the best model so far was kept")
+                }
+                None => {
+                    self.forget_the_unfinished();
+                    format!("{words} before this fit had a model: start it again")
+                }
+            });
         }
-        self.fits.interrupted(state);
+        self.fits.taken_up(state);
         Ok(())
     }
+}
+
+impl Found {
+    /// Begins the names of its files.
+    fn stem(&self) -> String {
+        stem(self.begun.id, &self.identified.model)
+    }
+}
+
+fn stem(fit: u64, model: &Model) -> String {
+    format!("{fit}-{}", model.name().name())
 }

@@ -97,13 +97,13 @@ impl Studio {
     /// A file that the model cannot run on.
     pub fn run(&self, model: u64, file: u64) -> Result<Arc<Run>> {
         self.runs.of(model, file, || {
-            let (stored, name, reading) = {
+            let (stored, file, reading) = {
                 let project = self.project();
-                let name = project.file(file)?.name.clone();
-                (project.model(model)?.clone(), name, project.understanding.reading.clone())
+                let file = project.file(file)?.clone();
+                (project.model(model)?.clone(), file, project.understanding.reading.clone())
             };
             let fitted = self.model(model)?;
-            let table = read(&name, &self.folder, &reading.reading()?)?;
+            let table = read(&file, &self.folder, &reading.reading()?)?;
             // The model knows the names of its columns, whatever is chosen now.
             let record = stored.begun.columns.record.filter(|name| table.column(name).is_some());
             let columns = ColumnChoice { record, ..ColumnChoice::default() };

@@ -1,0 +1,194 @@
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+use super::*;
+use crate::fitting::FitState;
+use crate::project::{FitRequest, Use};
+
+const TABLE: &str = "t,x,y\n0,0,0\n1,1,1.1\n2,2,2.1\n3,1,1.2\n4,0,0.1\n5,1,1.1\n";
+
+fn opened(path: &Path) -> Arc<Studio> {
+    Arc::new(Studio::open(Folder::open(Some(path)).unwrap()).unwrap())
+}
+
+fn shown(studio: &Studio) -> Value {
+    serde_json::to_value(studio.shown()).unwrap()
+}
+
+/// Fits, and waits for the end.
+fn fit(studio: &Arc<Studio>) -> FitState {
+    let options = [("model", json!("prandtl-ishlinskii")), ("operators", json!(3))];
+    let options = options.map(|(name, value)| (name.to_string(), value)).into_iter().collect();
+    studio.begin_fit(FitRequest { options, rate: Some("none".into()), time_limit: None }).unwrap();
+    wait(studio)
+}
+
+fn wait(studio: &Studio) -> FitState {
+    let began = Instant::now();
+    loop {
+        let state = studio.fit().unwrap();
+        if !state.is_running {
+            return state;
+        }
+        assert!(began.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn changed(path: &Path, change: impl FnOnce(&mut Value)) {
+    let file = path.join("project.json");
+    let mut project = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+    change(&mut project);
+    fs::write(file, serde_json::from_value::<Project>(project).unwrap().text()).unwrap();
+}
+
+#[test]
+fn uploads_at_the_same_time_do_not_exceed_the_limit() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("p");
+    let studio = opened(&path);
+    studio.take_content("a.csv", TABLE.as_bytes(), Use::Unused).unwrap();
+    drop(studio);
+    changed(&path, |project| {
+        let file = project["files"][0].clone();
+        let files = (1..=195).map(|id| {
+            let mut file = file.clone();
+            (file["id"], file["name"]) = (json!(id), json!(format!("{id}.csv")));
+            file
+        });
+        project["files"] = files.collect();
+    });
+    let studio = opened(&path);
+    let taken: usize = std::thread::scope(|scope| {
+        let uploads: Vec<_> = (0..20)
+            .map(|_| scope.spawn(|| studio.take_content("b.csv", TABLE.as_bytes(), Use::Unused).is_ok()))
+            .collect();
+        uploads.into_iter().map(|upload| usize::from(upload.join().unwrap())).sum()
+    });
+    assert_eq!((taken, studio.project().files.len()), (5, 200));
+    let left = fs::read_dir(path.join("data")).unwrap().flatten();
+    assert_eq!(left.filter(|entry| entry.file_name().to_string_lossy().starts_with('.')).count(), 0);
+}
+
+#[test]
+fn a_project_with_3000_files_opens_in_a_second() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("p");
+    drop(opened(&path));
+    let file =
+        |id: usize| json!({"id": id, "name": format!("{id}.csv"), "bytes": TABLE.len(), "use": "training"});
+    (1..=3000).for_each(|id| fs::write(path.join(format!("data/{id}.csv")), TABLE).unwrap());
+    let studio = opened(&path);
+    studio.change(|project| Ok(project.files.clear())).unwrap();
+    drop(studio);
+    changed(&path, |project| project["files"] = (1..=3000).map(file).collect());
+    let began = Instant::now();
+    let studio = opened(&path);
+    let state = shown(&studio);
+    assert!(began.elapsed() < Duration::from_secs(1), "{:?}", began.elapsed());
+    assert_eq!((state["files"].as_array().unwrap().len(), &state["is_reading"]), (3000, &json!(true)));
+    // What is asked for is there once it is read.
+    assert_eq!(studio.data_of(2999).unwrap().set.rows(), 6);
+    let state = shown(&studio);
+    assert_eq!((&state["files"][2999]["rows"], &state["is_reading"]), (&json!(6), &json!(false)));
+}
+
+#[test]
+fn a_file_that_killed_the_studio_is_held_back_until_it_is_read_again() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("p");
+    let studio = opened(&path);
+    let bad = studio.take_content("bad.csv", TABLE.as_bytes(), Use::Unseen).unwrap();
+    let good = studio.take_content("good.csv", TABLE.as_bytes(), Use::Training).unwrap();
+    assert!(!path.join("data/.reading-1").exists());
+    // The studio dies while the reader of the file is at work.
+    let folder = &studio.folder;
+    let died = std::panic::catch_unwind(|| {
+        folder.read_data(bad, "bad.csv", |_| -> Result<()> { std::panic::resume_unwind(Box::new(())) })
+    });
+    assert!(died.is_err() && path.join("data/.reading-1").exists());
+    drop(studio);
+    let studio = opened(&path);
+    assert_eq!(studio.data_of(good).unwrap().set.rows(), 6);
+    let words = studio.data_of(bad).map(drop).unwrap_err().to_string();
+    assert!(words.contains("the studio was killed while it read this file"), "{words}");
+    assert_eq!(shown(&studio)["files"][0]["is_held_back"], true);
+    studio.read_again(bad).unwrap();
+    assert_eq!(studio.data_of(bad).unwrap().set.rows(), 6);
+    assert_eq!(shown(&studio)["files"][0]["is_held_back"], false);
+    assert!(!path.join("data/.reading-1").exists());
+}
+
+#[test]
+fn a_model_that_cannot_be_stored_stays_until_it_is() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("p");
+    let studio = opened(&path);
+    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    // As with a full disk: nothing can be written to the folder of models.
+    let (models, away) = (path.join("models"), path.join("models-away"));
+    fs::rename(&models, &away).unwrap();
+    fs::write(&models, "").unwrap();
+    let state = fit(&studio);
+    let words = state.problem.clone().unwrap();
+    assert!(state.is_unsaved && words.contains("is in the memory of the studio"), "{words}");
+    let (name, text) = studio.unsaved_model().unwrap();
+    assert!(name.ends_with("-prandtl-ishlinskii.json") && Model::from_json(&text).is_ok());
+    assert!(studio.save_again().is_err() && studio.unsaved_model().is_ok());
+    fs::remove_file(&models).unwrap();
+    fs::rename(&away, &models).unwrap();
+    studio.save_again().unwrap();
+    let state = studio.fit().unwrap();
+    assert_eq!((state.is_unsaved, state.problem, state.made), (false, None, Some(state.id)));
+    assert_eq!(fs::read_to_string(models.join(&name)).unwrap(), text);
+    assert_eq!(studio.project().unfinished, None);
+    assert!(studio.project().models[0].report.is_some() && studio.unsaved_model().is_err());
+}
+
+#[test]
+fn a_studio_that_was_killed_between_model_and_project_takes_the_finished_model() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("p");
+    let studio = opened(&path);
+    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    let id = fit(&studio).made.unwrap();
+    let stored = studio.stored_model(id).unwrap();
+    let finished = studio.folder.finished(id);
+    studio.end().unwrap();
+    drop(studio);
+    assert!(!finished.exists());
+    let model = path.join("models").join(&stored.file);
+    fs::copy(&model, &finished).unwrap();
+    fs::write(path.join("models/.best-so-far.json"), "an earlier model").unwrap();
+    changed(&path, |project| {
+        project["unfinished"] = project["models"][0]["begun"].clone();
+        project["models"] = json!([]);
+    });
+    let studio = opened(&path);
+    let project = studio.project().clone();
+    assert_eq!(project.models.len(), 1);
+    assert_eq!((&project.models[0].file, project.models[0].was_interrupted), (&stored.file, false));
+    assert!(project.unfinished.is_none() && !finished.exists());
+    let left = fs::read_dir(path.join("models")).unwrap().flatten().map(|entry| entry.file_name());
+    assert_eq!(left.filter(|name| name.to_string_lossy().ends_with(".json")).count(), 1);
+}
+
+#[test]
+fn temporary_files_of_killed_studios_go_at_the_next_start() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("p");
+    drop(opened(&path));
+    let left = [
+        ".project.json.AbCdEf12.hysid-partial",
+        "models/.1-pnn.json.AbCdEf12.hysid-partial",
+        "data/.upload-0123456789abcdef",
+    ];
+    left.iter().for_each(|name| fs::write(path.join(name), "half").unwrap());
+    fs::write(path.join("models/.mine.hysid-partial"), "mine").unwrap();
+    drop(opened(&path));
+    assert!(left.iter().all(|name| !path.join(name).exists()));
+    assert!(path.join("models/.mine.hysid-partial").exists());
+}
