@@ -60,7 +60,7 @@ class Project extends EventTarget {
       const names = headers.get("x-columns").split(",");
       const arrays = cut(names.length);
       const of = (name) => arrays.filter((_, k) => names[k] === name);
-      return { time: of("time")[0], inputs: of("input"), rate: of("rate")[0] ?? null, output: of("output")[0] };
+      return { time: of("time")[0] ?? of("row")[0], inputs: of("input"), rate: of("rate")[0] ?? null, output: of("output")[0] };
     });
   }
   simulated(model, file) {

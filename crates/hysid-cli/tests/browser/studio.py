@@ -73,7 +73,10 @@ class Studio:
         return json.loads(content)
 
     def state(self) -> dict:
-        return self.ask("/api/project")
+        """The state of the project, once its files are read."""
+        while (state := self.ask("/api/project"))["is_reading"]:
+            time.sleep(0.01)
+        return state
 
     def add(self, name: str, content: str | bytes) -> int:
         """Adds a file."""

@@ -99,21 +99,26 @@ def network(shared):
     return shared
 
 
-def test_a_project_that_names_files_elsewhere_reads_none_of_them(start, tmp_path):
+def test_a_project_that_names_files_elsewhere_is_refused(start, tmp_path):
     studio = start()
     studio.add("good.csv", TABLE)
     studio.end()
     (tmp_path / "secret.csv").write_text(TABLE.replace("x", "secret"))
     written = json.loads((studio.project / "project.json").read_text())
     written["files"][0]["name"] = "../../secret.csv"
-    (studio.project / "project.json").write_text(json.dumps(written, indent=2))
-    again = start("--project", "hysid-project")
-    file = again.state()["files"][0]
-    assert file["problem"] and "secret" not in json.dumps(file["columns"])
-    assert again.request("GET", f"/api/files/{file['id']}/columns")[0] == 400
-    # Nor is it removed.
-    assert again.request("DELETE", f"/api/files/{file['id']}")[0] in (200, 400)
-    assert (tmp_path / "secret.csv").exists()
+    text = json.dumps(written, indent=2)
+    (studio.project / "project.json").write_text(text)
+    ran = refused(tmp_path)
+    assert '"../../secret.csv" is no name of a file in the project' in ran.stderr
+    assert (tmp_path / "secret.csv").exists() and (studio.project / "project.json").read_text() == text
+
+
+def refused(folder):
+    """A start that is refused in one line."""
+    command = [os.environ["HYSID_PROGRAM"], "studio", "--no-open", "--port", "0", "--project", "hysid-project"]
+    ran = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60)
+    assert ran.returncode == 1 and len(ran.stderr.splitlines()) == 1, ran.stderr
+    return ran
 
 
 def test_a_damaged_project_is_one_line_and_stays_as_it_is(start, tmp_path):
@@ -122,7 +127,30 @@ def test_a_damaged_project_is_one_line_and_stays_as_it_is(start, tmp_path):
     studio.end()
     damaged = (studio.project / "project.json").read_text()[:40]
     (studio.project / "project.json").write_text(damaged)
-    command = [os.environ["HYSID_PROGRAM"], "studio", "--no-open", "--port", "0", "--project", "hysid-project"]
-    ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    assert ran.returncode == 1 and len(ran.stderr.splitlines()) == 1 and "project.json: is damaged" in ran.stderr
+    assert "project.json: is damaged" in refused(tmp_path).stderr
     assert (studio.project / "project.json").read_text() == damaged
+
+
+def test_a_finished_model_is_not_lost_when_the_disk_is_full(start, visit):  # noqa: F811
+    studio = start()
+    studio.specimen("ferromagnet")
+    # As with a full disk: nothing can be written to the folder of models.
+    models, away = studio.project / "models", studio.project / "away"
+    models.rename(away)
+    models.write_text("")
+    opened = visit(studio)
+    identify = opened.go("identify")
+    identify.get_by_label("Model", exact=True).select_option("prandtl-ishlinskii")
+    identify.get_by_role("button", name="Start").click()
+    identify.get_by_text("The model is not stored").wait_for(timeout=60_000)
+    with opened.page.expect_download() as download:
+        identify.get_by_role("button", name="Download the model").click()
+    content = download.value.path().read_bytes()
+    assert json.loads(content)["format"] == "hysid-model"
+    models.unlink()
+    away.rename(models)
+    identify.get_by_role("button", name="Save again").click()
+    opened.page.get_by_role("link", name="Judge this model").wait_for()
+    assert (models / download.value.suggested_filename).read_bytes() == content
+    assert studio.state()["fit"]["problem"] is None and len(studio.state()["models"]) == 1
+    opened.check()
