@@ -98,3 +98,20 @@ def test_the_lines_of_a_fit_that_was_stopped_by_hand_say_so(start, visit):  # no
     take = visit(studio).go("take-away")
     # The lines run the fit to its end, which makes another model.
     take.get_by_text("This fit was stopped early").wait_for()
+
+
+def test_a_report_of_somebody_else_runs_no_script_of_its_own(made, browser, tmp_path, start):
+    shutil.copytree(made.project, tmp_path / "hysid-project", ignore=shutil.ignore_patterns(".*", "studio.html"))
+    (report,) = (tmp_path / "hysid-project" / "models").glob("*.html")
+    foreign = "<script>parent.document.title = 'taken'; document.body.innerHTML = 'taken'</script><img src=x onerror=\"document.body.innerHTML = 'taken'\">"
+    report.write_text(report.read_text().replace("<h1>", f"{foreign}<h1>"))
+    studio = start()
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto(studio.address)
+    page.goto(f"{studio.origin}/report#{the_model(studio)['id']}")
+    frame = page.frame_locator("#report")
+    # The script of the program runs.
+    frame.get_by_role("button", name="SVG").first.wait_for()
+    assert frame.locator("h1").count() == 1 and "taken" not in page.title()
+    context.close()

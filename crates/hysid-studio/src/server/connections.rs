@@ -13,8 +13,8 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 use tokio::task::{AbortHandle, JoinSet};
 
-/// Time after which a connection is tried again that the system refused.
-const AFTER_FAILURE: Duration = Duration::from_millis(100);
+/// Time after which a connection is tried again that the system refused: once one was closed, and if none could be.
+const AFTER_FAILURE: [Duration; 2] = [Duration::from_millis(2), Duration::from_millis(100)];
 
 /// What connections may take.
 #[derive(Debug, Clone, Copy)]
@@ -76,8 +76,8 @@ pub async fn serve(
         };
         let Ok((stream, _)) = accepted else {
             // Too many open files, most likely.
-            open.close_a_stranger();
-            tokio::time::sleep(AFTER_FAILURE).await;
+            let [soon, later] = AFTER_FAILURE;
+            tokio::time::sleep(if open.close_a_stranger() { soon } else { later }).await;
             continue;
         };
         if tasks.len() >= limits.connections && !open.close_a_stranger() {
