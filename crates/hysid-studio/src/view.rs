@@ -153,7 +153,12 @@ impl View {
 
     /// True if all files of a project are read as it says.
     pub fn is_of(&self, project: &Project) -> bool {
-        self.of == project.files && self.understanding == project.understanding
+        self.of == project.files && self.is_read_as(&project.understanding)
+    }
+
+    /// True if those files that are read are read like this.
+    pub fn is_read_as(&self, understanding: &Understanding) -> bool {
+        self.understanding == *understanding
     }
 
     /// A file as it is read.

@@ -18,7 +18,7 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::Shared;
-use super::answer::{Answer, Arrays, Problem, computed, diagnosed, done, value};
+use super::answer::{Answer, Arrays, Problem, at_once, computed, diagnosed, done, value};
 use crate::choices::MOST_FILE_BYTES;
 use crate::project::{ChosenColumns, Use};
 
@@ -92,7 +92,7 @@ fn too_large() -> Problem {
 
 /// Removes a file.
 pub async fn remove(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
-    computed(shared, move |studio| studio.remove_file(id)).await?;
+    at_once(shared, move |studio| studio.remove_file(id)).await?;
     Ok(done())
 }
 
@@ -115,7 +115,7 @@ pub async fn use_as(
     Path(id): Path<u64>,
     Json(Usage { usage }): Json<Usage>,
 ) -> Answer<Response> {
-    computed(shared, move |studio| studio.use_file(id, usage)).await?;
+    at_once(shared, move |studio| studio.use_file(id, usage)).await?;
     Ok(done())
 }
 

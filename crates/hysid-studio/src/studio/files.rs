@@ -247,6 +247,12 @@ impl Studio {
     /// # Errors
     /// A file that cannot be used.
     pub fn data_of(&self, id: u64) -> Result<Arc<Data>> {
+        let view = self.view();
+        let is_read_as = view.is_read_as(&self.project().understanding);
+        // Others may still be read.
+        if is_read_as && let Ok(data) = view.data(id) {
+            return Ok(data);
+        }
         self.current().1.data(id)
     }
 

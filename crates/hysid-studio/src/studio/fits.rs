@@ -15,6 +15,7 @@ use super::Studio;
 use crate::fitting::{Finish, FitState, Preview, Unsaved, Work, caught};
 use crate::folder::Inner;
 use crate::project::{Begun, ChosenColumns, FitRequest, ProjectModel, Use};
+use crate::words::said;
 
 /// What a fit has found, until it is stored.
 pub struct Found {
@@ -42,7 +43,9 @@ impl Studio {
                 Usage("--time-limit: a number of seconds above 0, at most 1e9, is needed".into()).into()
             );
         }
-        self.save_again().context("the model of the last fit cannot be stored")?;
+        self.save_again()
+            .and_then(|()| self.take_up_the_unfinished())
+            .context("the model of the last fit cannot be stored")?;
         let request = request.with_values()?;
         let (seen, _) = self.current();
         let data = self.training_data()?;
@@ -259,31 +262,39 @@ impl Studio {
     }
 
     /// Keeps the model of a fit that an earlier studio did not bring to its end, and says so.
+    ///
+    /// # Errors
+    /// It cannot be stored; it stays where it is.
     pub(super) fn take_up_the_unfinished(&self) -> Result<()> {
         let Some(begun) = self.project().unfinished.clone() else { return Ok(()) };
         let chosen = NamedOptions::of(begun.request.options.clone()).unwrap_or_default();
-        let (id, finished) = (begun.id, self.folder.finished(begun.id));
         let mut state = FitState::begun(begun.id, &FitSpec::of(chosen.model(), None, 1));
         state.is_running = false;
-        if let Some((model, text)) = self.model_in(&finished) {
-            self.keep_unfinished(begun, &model, &text, false)?;
-            state.made = Some(id);
-        } else {
-            state.was_interrupted = true;
-            let words = "the studio was closed";
-            state.problem = Some(match self.model_in(&self.folder.best_so_far()) {
-                Some((model, text)) => {
-                    self.keep_unfinished(begun, &model, &text, true)?;
-                    state.made = Some(id);
-                    format!("{words} during this fit; the best model so far was kept")
-                }
-                None => {
-                    self.forget_the_unfinished();
-                    format!("{words} before this fit had a model: start it again")
-                }
-            });
+        let taken = self.take_up(begun, &mut state);
+        if let Err(error) = &taken {
+            state.problem = Some(said(error));
         }
         self.fits.taken_up(state);
+        taken
+    }
+
+    fn take_up(&self, begun: Begun, state: &mut FitState) -> Result<()> {
+        let id = begun.id;
+        if let Some((model, text)) = self.model_in(&self.folder.finished(id)) {
+            self.keep_unfinished(begun, &model, &text, false)?;
+            state.made = Some(id);
+            return Ok(());
+        }
+        state.was_interrupted = true;
+        let words = "the studio was closed";
+        let Some((model, text)) = self.model_in(&self.folder.best_so_far()) else {
+            self.forget_the_unfinished();
+            state.problem = Some(format!("{words} before this fit had a model: start it again"));
+            return Ok(());
+        };
+        self.keep_unfinished(begun, &model, &text, true)?;
+        state.made = Some(id);
+        state.problem = Some(format!("{words} during this fit; the best model so far was kept"));
         Ok(())
     }
 }

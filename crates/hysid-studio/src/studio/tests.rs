@@ -161,6 +161,13 @@ fn a_studio_that_was_killed_between_model_and_project_takes_the_finished_model()
         project["unfinished"] = project["models"][0]["begun"].clone();
         project["models"] = json!([]);
     });
+    // A project that cannot be written opens all the same, and keeps what there is.
+    let file = path.join("project.json");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, format!(" {text}")).unwrap();
+    let state = opened(&path).fit().unwrap();
+    assert!(state.made.is_none() && state.problem.unwrap().contains("project.json"));
+    fs::write(&file, text).unwrap();
     let studio = opened(&path);
     let project = studio.project().clone();
     assert_eq!(project.models.len(), 1);
