@@ -88,7 +88,6 @@ pub(crate) struct Noise {
 
 impl Noise {
     /// White noise.
-    #[cfg(test)]
     pub fn white(deviation: f64) -> Self {
         let part = (Correlation::White, deviation * deviation);
         Self { parts: if deviation > 0.0 { vec![part] } else { Vec::new() }, roughness: deviation }

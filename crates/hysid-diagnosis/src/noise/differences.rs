@@ -100,7 +100,11 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = Run<'a>> + Clone) -> Noise {
     let is_told = |distance: usize| differences.iter().any(|d| d.distance == distance && d.order >= TELLING);
     let grows = |&distance: &usize| least(&differences, distance) > (1.0 + sampling) * least(&differences, 1);
     let told: Vec<usize> = NEAR.into_iter().filter(|distance| is_told(*distance)).collect();
-    let is_white = told.is_empty() || !told.iter().all(grows);
+    if told.is_empty() {
+        // At one distance alone, a course of the values cannot be told from noise.
+        return Noise::white(roughness);
+    }
+    let is_white = !told.iter().all(grows);
     let correlations = if is_white { vec![Correlation::White] } else { correlations(length) };
     let shares = shares(&differences, &correlations);
     let total: f64 = shares.iter().sum();
@@ -288,6 +292,17 @@ mod tests {
         assert!((noise.deviation() / 0.01 - 1.0).abs() < 0.1, "{noise:?}");
         // A mean of many rows shows whether it was taken for white.
         assert!(noise.of_mean(25) < 1.6 * 0.01 / 5.0, "{noise:?}");
+    }
+
+    #[test]
+    fn white_noise_of_short_branches_is_found_too() {
+        let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(3);
+        for rows in [7, 10, 15, 25, 40] {
+            let branch = |_| (0..rows).map(|row| row as f64 + 0.01 * normal(&mut generator)).collect();
+            let branches: Vec<Vec<f64>> = (0..2000 / rows).map(branch).collect();
+            let ratio = noise_of(&branches).deviation() / 0.01;
+            assert!((0.75..1.25).contains(&ratio), "{rows} rows: {ratio}");
+        }
     }
 
     #[test]
