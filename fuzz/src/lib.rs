@@ -5,6 +5,7 @@
 
 mod bytes;
 mod checkpoint;
+mod container;
 mod differential;
 pub mod driver;
 mod fixtures;
@@ -28,10 +29,11 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 6] = [
+pub const TARGETS: [Target; 7] = [
     Target { name: "table", run: table::run, seeds: table::seeds, words: &table::WORDS },
     Target { name: "model_file", run: model_file::run, seeds: model_file::seeds, words: &NUMBERS },
     Target { name: "checkpoint", run: checkpoint::run, seeds: checkpoint::seeds, words: &[] },
+    Target { name: "container", run: container::run, seeds: container::seeds, words: &[] },
     Target { name: "options", run: options::run, seeds: options::seeds, words: &NUMBERS },
     Target { name: "steps", run: steps::run, seeds: steps::seeds, words: &[] },
     Target { name: "differential", run: differential::run, seeds: differential::seeds, words: &[] },

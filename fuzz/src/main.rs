@@ -19,6 +19,9 @@ struct CommandLine {
     /// Seconds for each target
     #[arg(long, default_value_t = 60, value_name = "NUMBER")]
     seconds: u64,
+    /// So many mutated inputs for each target, whatever time they take
+    #[arg(long, conflicts_with = "seconds", value_name = "NUMBER")]
+    mutations: Option<usize>,
     /// Seed of the mutations; the same seed gives the same inputs
     #[arg(long, default_value_t = 1, value_name = "NUMBER")]
     seed: u64,
@@ -38,7 +41,10 @@ fn main() -> Result<()> {
     }
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (corpus, artifacts) = (root.join("corpus"), root.join("artifacts"));
-    let limit = Limit::Time(Duration::from_secs(arguments.seconds));
+    let limit = match arguments.mutations {
+        Some(count) => Limit::Mutations(count),
+        None => Limit::Time(Duration::from_secs(arguments.seconds)),
+    };
     let mut failures = 0;
     for target in targets {
         let outcome = driver::run(target, &corpus, &artifacts, limit, arguments.seed).context(target.name)?;

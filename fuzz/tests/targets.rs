@@ -29,9 +29,23 @@ macro_rules! targets {
     };
 }
 
-targets!(table model_file checkpoint options steps differential);
+targets!(table model_file checkpoint container options steps differential);
 
 #[test]
 fn every_target_is_tested() {
     assert_eq!(hysid_fuzz::TARGETS.map(|target| target.name), TESTED);
+}
+
+/// Files of a few kilobytes ask for no more memory than this. A process that is refused memory aborts.
+#[cfg(unix)]
+#[test]
+fn containers_stay_within_their_memory() {
+    const MOST_KILOBYTES: usize = 800_000;
+    let line = format!(
+        "ulimit -v {MOST_KILOBYTES}; exec '{}' container --mutations {MUTATIONS} --seed 2",
+        env!("CARGO_BIN_EXE_hysid-fuzz")
+    );
+    // An arena of memory for each thread is address space that is not used.
+    let output = std::process::Command::new("sh").env("MALLOC_ARENA_MAX", "2").args(["-c", &line]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }

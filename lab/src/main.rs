@@ -1,5 +1,6 @@
 //! Measurements of Hysid: `cd lab && cargo run --release -- COMMAND`. README.md lists what each command measures.
 
+mod attack;
 mod bench;
 mod cases;
 mod compensation;
@@ -39,6 +40,8 @@ struct CommandLine {
 
 #[derive(Subcommand)]
 enum Measurement {
+    /// Attack readers, exports and saved states with files that were made to break them (an hour and a half)
+    Attack(attack::Request),
     /// Measure simulation, training and single steps on this machine (a minute or two)
     Bench(bench::Request),
     /// Fit models to every case of a folder; tables of errors, times and chosen structures
@@ -114,6 +117,7 @@ fn main() -> ExitCode {
 
 fn run(measurement: &Measurement) -> Result<()> {
     match measurement {
+        Measurement::Attack(request) => attack::run(request),
         Measurement::Bench(request) => bench::run(request),
         Measurement::Cases(request) => cases::run(request),
         Measurement::Compensation => compensation::run(),

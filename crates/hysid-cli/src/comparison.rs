@@ -92,7 +92,7 @@ pub fn run(data: &Data, requests: &[FitSpec], arguments: &Compare) -> Result<Vec
     let finished: Mutex<Vec<Row>> = Mutex::new(Vec::new());
     std::thread::scope(|scope| -> Result<()> {
         let work = || -> Result<()> {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let pool = hysid::thread_pool(Some(threads));
             let pool = pool.context("cannot start a thread")?;
             loop {
                 let next = queue.lock().expect("no thread panics with the lock").pop_front();

@@ -126,6 +126,9 @@ pub fn check_outputs(outputs: &[&Destination], inputs: &[&Path]) -> Result<()> {
 
 /// Makes a folder for results, if it is not there.
 pub fn make_folder(folder: &Path) -> Result<()> {
+    if folder == Path::new("-") {
+        return Err(Usage("-o -: the files need a folder, which stdout cannot be: name one".into()).into());
+    }
     fs::create_dir_all(folder)
         .map_err(|error| anyhow!("{}: cannot be made: {}", folder.display(), reason(&error)))
 }

@@ -62,8 +62,7 @@ pub fn check_memory(data: &Dataset, request: &FitSpec, threads: usize) -> hysid:
 
 /// So many threads; one for each processor if not said.
 pub fn thread_pool(threads: Option<u16>) -> Result<ThreadPool> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0).into()).build();
-    pool.context("cannot start the threads")
+    hysid::thread_pool(threads.map(usize::from)).context("cannot start the threads")
 }
 
 /// Identifies a model, following the training on stderr.

@@ -2,12 +2,13 @@
 
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
+use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use hysid::fit::network::Progress;
 use hysid::significant::Significant;
 use hysid_document::plain::WIDTH;
-use hysid_document::progress::{Line, Remaining, in_words};
+use hysid_document::progress::{Line, Remaining, in_words, share_done};
 use hysid_report::Course;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -74,7 +75,9 @@ impl Follower {
     pub fn observe(&mut self, progress: &Progress) -> ControlFlow<()> {
         self.course.take(progress);
         let (place, of) = self.fold;
-        let done = (place as f64 + progress.done) / of as f64;
+        let elapsed = self.fold_started.elapsed().as_secs_f64();
+        let of_fold = share_done(progress.done, elapsed, self.limit.map(|limit| limit.as_secs_f64()));
+        let done = (place as f64 + of_fold) / of as f64;
         let line = self.line(progress, done);
         if let Some(bar) = &self.bar {
             // The last column stays free: some terminals wrap when it is filled.
@@ -140,6 +143,23 @@ impl Follower {
         let of_this = (limit - self.fold_started.elapsed().as_secs_f64()).max(0.0);
         Some(of_this + (of - place - 1) as f64 * limit)
     }
+}
+
+/// Tells on stderr that work goes on for which no share can be told, every few seconds.
+pub fn while_working<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    let began = Instant::now();
+    let (done, is_done) = mpsc::channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            // An error says that the work is over.
+            while let Err(mpsc::RecvTimeoutError::Timeout) = is_done.recv_timeout(BETWEEN_LINES) {
+                note(format_args!("{what}: {:.0} s (Ctrl-C stops)", began.elapsed().as_secs_f64()));
+            }
+        });
+        let result = work();
+        drop(done);
+        result
+    })
 }
 
 /// Columns of the terminal behind stderr.

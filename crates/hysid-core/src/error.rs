@@ -37,7 +37,10 @@ pub enum Error {
         known: Vec<&'static str>,
     },
     /// A parameter of a law that is not finite or out of bounds.
-    #[error("{law}: {symbol} ({meaning}) is {value}, and must be from {low} to {high}")]
+    #[error(
+        "{law}: {symbol} ({meaning}) is {:.6}, and must be from {:.6} to {:.6}",
+        Significant(*value), Significant(*low), Significant(*high)
+    )]
     Parameter {
         /// The law.
         law: &'static str,
@@ -138,6 +141,9 @@ pub enum Error {
 /// Largest magnitude that a value of a record may have. Beyond it the square of a
 /// scaled value could overflow; no measured quantity comes near.
 pub const LARGEST_VALUE: f64 = 1e100;
+
+/// Most turning points of a lead-in: a model runs along them before the first row of each record.
+pub const MOST_TURNS: usize = 10_000;
 
 /// A defect of a record, with its place.
 #[derive(Debug, Clone, PartialEq)]
@@ -242,6 +248,20 @@ pub enum DataProblem {
     /// A turning point before the first row that is not a usable number.
     #[error("the lead-in has the value {0}: finite numbers of at most {LARGEST_VALUE:e} are needed")]
     LeadIn(f64),
+    /// Ranges of an input and the output that no slope can have.
+    #[error(
+        "its range is {:.2} and that of the output {:.2}: their ratio must be from 1e-50 to 1e50 (choose other units)",
+        Significant(*input), Significant(*output)
+    )]
+    Ranges {
+        /// Range of the input.
+        input: f64,
+        /// Range of the output.
+        output: f64,
+    },
+    /// A lead-in with more turning points than [`MOST_TURNS`].
+    #[error("the lead-in has {0} turning points: at most {MOST_TURNS} are possible")]
+    LongLeadIn(usize),
     /// The number of inputs is not what it must be.
     #[error("has {found} inputs where {expected} are expected")]
     Inputs {
@@ -376,6 +396,9 @@ pub enum SampleError {
     /// NaN or infinity.
     #[error("an input or its rate is {0}, not a finite number")]
     NotFinite(f64),
+    /// A magnitude beyond [`LARGEST_VALUE`].
+    #[error("an input or its rate is {0:e}, which is too large: at most {LARGEST_VALUE:e} in magnitude")]
+    TooLarge(f64),
     /// A wanted output of NaN or infinity.
     #[error("the wanted output is {0}, not a finite number")]
     Wanted(f64),

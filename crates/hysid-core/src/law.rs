@@ -96,6 +96,12 @@ pub trait Law: Sized {
         None
     }
 
+    /// Elementary operations of a row in which the input travels so far in so much time, roughly and at most.
+    fn work_of_row(&self, travel: f64, time: f64) -> f64 {
+        let _ = (travel, time);
+        20.0 + 10.0 * self.parameters().len() as f64
+    }
+
     /// The parameters, with the field's symbols.
     fn parameters(&self) -> Vec<Parameter>;
 
@@ -277,6 +283,13 @@ macro_rules! any_of {
             pub fn parameters(&self) -> Vec<Parameter> {
                 match self {
                     $(Self::$law(law) => law.parameters(),)*
+                }
+            }
+
+            /// As [`Law::work_of_row`].
+            pub fn work_of_row(&self, travel: f64, time: f64) -> f64 {
+                match self {
+                    $(Self::$law(law) => law.work_of_row(travel, time),)*
                 }
             }
 

@@ -492,6 +492,17 @@ impl Model {
         &self.provenance
     }
 
+    /// Elementary operations of a row in which the first input travels so far in so much time, roughly and at most.
+    pub fn work_of_row(&self, travel: f64, time: f64) -> f64 {
+        match &self.body {
+            Predictor::Network { network, .. } => 20.0 + 4.0 * network.parameters().len() as f64,
+            Predictor::Law(law) => law.work_of_row(travel, time),
+            Predictor::Ensemble(ensemble) => {
+                ensemble.members().iter().map(|member| member.work_of_row(travel, time)).sum()
+            }
+        }
+    }
+
     /// True if the model needs time stamps.
     pub fn needs_time(&self) -> bool {
         self.body.needs_steps() || self.rate.is_some_and(|rate| rate != RateMethod::Given)

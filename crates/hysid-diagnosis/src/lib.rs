@@ -237,6 +237,11 @@ pub struct Diagnosis {
     pub advice: Advice,
 }
 
+const ONLY_DEFECTS: &str =
+    "beside what looks like a defect of the record, the input or the output does not change";
+
+const RECORD_ANEW: &str = "record an output that follows an input over its whole range";
+
 impl Diagnosis {
     /// Diagnoses measured data.
     ///
@@ -292,6 +297,12 @@ impl Diagnosis {
             let rate = properties[2].verdict;
             properties.push(strength_loss::test(survey, &table.cycles, rate));
             properties.push(pinching::test(survey, &table.cycles));
+        }
+        // Shares of no height or width are no numbers.
+        if !(survey.height() > 0.0 && survey.width() > 0.0) {
+            for finding in &mut properties {
+                *finding = Finding::not_testable(finding.property, ONLY_DEFECTS, RECORD_ANEW);
+            }
         }
         let turning_rows = survey.turning_rows();
         Ok(Self {

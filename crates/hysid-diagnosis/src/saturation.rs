@@ -101,7 +101,8 @@ fn slope_ratio(survey: &BranchSet, branch: &Branch) -> Option<Comparison> {
     let rises: Vec<f64> =
         readings.windows(2).map(|pair| (direction * (pair[1].y - pair[0].y)).max(0.0)).collect();
     let largest = rises.iter().copied().fold(0.0, f64::max);
-    if (readings[PARTS].y - readings[0].y).abs() < HIGH * survey.height() {
+    // Of an output that stays, or only falls back, no slope is the largest.
+    if !((readings[PARTS].y - readings[0].y).abs() >= HIGH * survey.height() && largest > 0.0) {
         return None;
     }
     let last = readings[PARTS - 1].deviation.hypot(readings[PARTS].deviation);

@@ -4,4 +4,4 @@ mod line;
 mod remaining;
 
 pub use line::Line;
-pub use remaining::{Remaining, in_words};
+pub use remaining::{Remaining, in_words, share_done};

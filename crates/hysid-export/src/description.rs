@@ -29,7 +29,7 @@ pub enum RateSource {
 pub enum Argument {
     /// The input with this index.
     Input(usize),
-    /// The time since the step before; ignored in the first step.
+    /// The time since the step before; in the first step any finite number.
     TimeStep,
     /// The rate of the first input.
     Rate,
@@ -107,6 +107,8 @@ impl Description {
                 let last = builder.state("last_input", vec![0.0]);
                 let rate = (&inputs[0] - last.at(0_usize)) / &step;
                 let rate = builder.value(step.above(0.0).choose(rate, 0.0));
+                // A slope by so short a time step could overflow: it leaves out what the rate adds.
+                let rate = builder.value(step.above(1.0 / LARGEST_VALUE).choose(&rate, rate.detached()));
                 builder.set(last, 0_usize, &inputs[0]);
                 rate
             }

@@ -163,7 +163,9 @@ impl<'m> Subject<'m> {
                 }
                 Argument::TimeStep => {
                     let time = names.time.as_deref().unwrap_or("time");
-                    format!("time since the step before, in the unit of {time}; ignored in the first step")
+                    format!(
+                        "time since the step before, in the unit of {time}; in the first step any finite number"
+                    )
                 }
                 Argument::Rate => {
                     let of = &names.inputs[0];

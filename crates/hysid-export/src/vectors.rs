@@ -4,8 +4,16 @@ use crate::description::{Argument, Description};
 use crate::program::Program;
 use crate::program::interpreter::Machine;
 
-/// Rows of the path.
+/// Rows of the path, and the fewest of a model whose steps need so much work that all would take seconds.
 const ROWS: usize = 300;
+const FEWEST_ROWS: usize = 30;
+
+/// Operations with real numbers that the vectors of a model may need, about a second of the interpreter; with
+/// [`FEWEST_ROWS`] it may be more.
+const MOST_OPERATIONS: u64 = 40_000_000;
+
+/// Rows whose steps tell the work of all.
+const TRIED: usize = 5;
 
 /// The state is saved before this row, and restored after [`REPEATED`] further ones, which are then repeated.
 const SAVED: usize = 120;
@@ -92,14 +100,16 @@ pub fn vectors(
         all.push(Vector { action, arguments, output, tangent: slope });
     };
     let path = Path { arguments: &description.arguments, inputs, rate };
+    let rows = rows_of(tangent, &path);
+    let (saved, repeated) = (SAVED * rows / ROWS, REPEATED * rows / ROWS);
     act(Action::Reset, Vec::new());
-    for row in 0..ROWS {
-        if row == SAVED {
+    for row in 0..rows {
+        if row == saved {
             act(Action::Save, Vec::new());
         }
-        if row == SAVED + REPEATED {
+        if row == saved + repeated {
             act(Action::Restore, Vec::new());
-            for row in SAVED..SAVED + REPEATED {
+            for row in saved..saved + repeated {
                 act(Action::Step, path.row(row, 0.0));
             }
         }
@@ -118,6 +128,17 @@ pub fn vectors(
     act(Action::Reset, Vec::new());
     act(Action::Step, path.row(0, 0.0));
     all
+}
+
+/// Rows of the path: fewer where steps need much work.
+fn rows_of(tangent: &Program, path: &Path<'_>) -> usize {
+    let mut machine = Machine::new(tangent);
+    for row in 0..TRIED {
+        machine.step(&path.row(row, 0.0));
+    }
+    // A row is two steps, on average.
+    let of_row = 2 * machine.operations() / TRIED as u64;
+    ((MOST_OPERATIONS / of_row.max(1)) as usize).clamp(FEWEST_ROWS, ROWS)
 }
 
 /// A path through the trained ranges and a little beyond.
@@ -146,4 +167,37 @@ impl Path<'_> {
 /// The place between -1 and 1 in a range.
 pub(crate) fn within((low, high): (f64, f64), place: f64) -> f64 {
     0.5 * (low + high) + 0.5 * (high - low) * place
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::expression::Real;
+    use crate::program::{Builder, Precision};
+
+    /// A program with so many sums in a step.
+    fn of_sums(count: f64) -> Program {
+        let mut builder = Builder::new(1, 2, Precision::Double);
+        let sums = builder.variable(0.0);
+        builder.while_true(Real::from(sums).below(count), |builder| {
+            builder.assign(sums, Real::from(sums) + 1.0);
+        });
+        builder.output(0, sums);
+        builder.output(1, 0.0);
+        builder.finish()
+    }
+
+    #[test]
+    fn a_model_whose_steps_need_much_work_has_fewer_vectors() {
+        let count = |sums: f64| {
+            let description = Description { program: of_sums(sums), arguments: vec![Argument::Input(0)] };
+            let all = vectors(&description, &description.program, &[(-1.0, 1.0)], 0.0);
+            let count = |action: Action| all.iter().filter(|vector| vector.action == action).count();
+            assert_eq!((count(Action::Save), count(Action::Restore)), (1, 1));
+            count(Action::Step)
+        };
+        assert_eq!(count(100.0), 4 * ROWS / 5 + REPEATED + 1);
+        assert!((100..250).contains(&count(1e5)), "{}", count(1e5));
+        assert!((FEWEST_ROWS / 2..=FEWEST_ROWS).contains(&count(1e6)), "{}", count(1e6));
+    }
 }

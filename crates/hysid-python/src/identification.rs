@@ -196,7 +196,7 @@ fn attended<T: Send + 'static>(
         }
         limit => limit.map(|limit| Instant::now() + Duration::from_secs_f64(limit)),
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+    let pool = hysid::thread_pool(threads);
     let pool = pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start the threads: {error}")))?;
     let exchange = Arc::new(Exchange::default());
     let (answer, mut answers) = channel();

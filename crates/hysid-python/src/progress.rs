@@ -1,7 +1,7 @@
 //! The line of progress: its words, its width and the remaining time.
 
 use hysid::significant::Significant;
-use hysid_document::progress::{Line, Remaining, in_words};
+use hysid_document::progress::{Line, Remaining, in_words, share_done};
 use pyo3::prelude::*;
 
 /// The line of one computation.
@@ -31,6 +31,7 @@ impl ProgressLine {
         columns: usize,
         bar: bool,
     ) -> String {
+        let done = share_done(done, elapsed, most.map(|most| elapsed + most));
         let left = self.remaining.after(elapsed, done, most).map(in_words);
         let error = error.map(|error| format!("{:.3}", Significant(error)));
         let line = Line { done, fold: None, part, error, left };

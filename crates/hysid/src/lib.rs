@@ -42,6 +42,7 @@ pub mod fit;
 pub mod optimise;
 pub mod plan;
 pub mod restoring_force;
+mod thread_pool;
 pub mod validation;
 
 pub use builder::{Compared, Fit, compare};
@@ -59,6 +60,7 @@ pub use hysid_diagnosis as diagnosis;
 pub use hysid_diagnosis::Diagnosis;
 pub use hysid_specimens as specimens;
 pub use restoring_force::restoring_force;
+pub use thread_pool::{MOST_THREADS, thread_pool};
 pub use validation::CrossValidation;
 
 /// Fits a model to data with the defaults: cross-validates networks and classical models and combines the

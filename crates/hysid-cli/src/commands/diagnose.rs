@@ -18,6 +18,7 @@ use crate::commands::{Given, model_from_bytes};
 use crate::data::data_of;
 use crate::files::{self, check_outputs};
 use crate::messages::{note, note_labelled, results, warning};
+use crate::progress::while_working;
 
 /// What is told of a diagnosis, and the page if there is to be one.
 struct Told {
@@ -52,7 +53,9 @@ fn of_data(arguments: &Diagnose, tables: Vec<Table>) -> Result<Told> {
     if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
         warning("diagnose ignores --rate: it uses the speeds between turning points");
     }
-    let diagnosed = DataDiagnosis::of(&data, &arguments.options(), &understood, fit_command(arguments))?;
+    let diagnosed = while_working("diagnosing the data", || {
+        DataDiagnosis::of(&data, &arguments.options(), &understood, fit_command(arguments))
+    })?;
     let text = if arguments.json { diagnosed.json()? } else { diagnosed.text() };
     Ok(Told { text, page: (!arguments.no_report).then(|| diagnosed.page()) })
 }
@@ -67,7 +70,7 @@ fn fit_command(arguments: &Diagnose) -> String {
 fn of_model(arguments: &Diagnose, content: Vec<u8>) -> Result<Told> {
     let path = &arguments.files[0];
     let model = model_from_bytes(path, content)?;
-    let diagnosed = DiagnosedModel::of(path, &model)?;
+    let diagnosed = while_working("probing the model", || DiagnosedModel::of(path, &model))?;
     note_labelled(&diagnosed.understood());
     for option in useless_for_models(&arguments.columns, &arguments.options()) {
         warning(format_args!("the diagnosis of a model ignores {option}"));

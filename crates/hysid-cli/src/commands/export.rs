@@ -18,6 +18,7 @@ use crate::arguments::Export;
 use crate::commands::read_model;
 use crate::files;
 use crate::messages::{Usage, json_results, note};
+use crate::progress::while_working;
 
 /// Runs the command.
 pub fn run(arguments: &Export) -> Result<Outcome> {
@@ -47,7 +48,10 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         inverse: arguments.inverse.then_some(inverse),
         source: source(&arguments.model),
     };
-    let exported = hysid_export::export(&model, arguments.to, &options).map_err(|error| match error {
+    let exported = while_working("writing and testing the code", || {
+        hysid_export::export(&model, arguments.to, &options)
+    });
+    let exported = exported.map_err(|error| match error {
         Error::Name(_) | Error::Reserved { .. } if arguments.name.is_some() => {
             Usage(format!("--name: {error}")).into()
         }

@@ -86,7 +86,7 @@ fn finished(experiments: &[Experiment], settings: Settings) -> Result<Vec<(Exper
     let left = Mutex::new(left);
     let terminal = Terminal { began: Instant::now() };
     let work = || -> Result<()> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads((threads / workers.max(1)).max(1)).build();
+        let pool = hysid::thread_pool(Some(threads / workers.max(1)));
         let pool = pool.context("cannot start a thread")?;
         while !interrupt::requested() {
             let next = left.lock().expect("no thread panics with the lock").pop_front();

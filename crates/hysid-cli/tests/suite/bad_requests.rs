@@ -181,3 +181,49 @@ fn files_without_permission() {
         ",
     );
 }
+
+/// A folder named `-` was made.
+#[test]
+fn stdout_is_no_folder() {
+    let bench = Workbench::with_model();
+    bench.refuses_in_part(
+        "
+            2 demo -o - => -o -: the files need a folder, which stdout cannot be: name one
+            2 man -o - => -o -: the files need a folder, which stdout cannot be: name one
+            2 reproduce -o - => -o -: the files need a folder, which stdout cannot be: name one
+            2 export model.json --to c -o - => -o -: an export is a folder, which stdout cannot be: name one
+        ",
+    );
+    assert!(!bench.shell("ls -d ./-").status.is_some_and(|status| status == 0));
+}
+
+/// It started as many threads and did not end.
+#[test]
+fn threads_of_the_environment_are_not_believed() {
+    let bench = Workbench::with_model();
+    let line = "RAYON_NUM_THREADS=99999 hysid fit good.csv -o threads.json --no-report --model pnn --starts 1 --epochs 2";
+    assert_eq!(bench.shell(line).status, Some(0));
+}
+
+/// Percentages of an output that hardly varies are absent, not infinite; ranges that no slope can have are refused.
+#[test]
+fn extreme_ranges() {
+    let bench = Workbench::with_model();
+    let scaled = |x: f64, y: f64| {
+        let row = |row: Vec<String>| {
+            let number = |text: &str, scale: f64| scale * text.parse::<f64>().unwrap();
+            vec![row[0].clone(), format!("{:e}", number(&row[1], x)), format!("{:e}", number(&row[2], y))]
+        };
+        csv("t,x,y", ",", "\n", &rows().into_iter().map(row).collect::<Vec<_>>())
+    };
+    bench.put("denormal.csv", scaled(1.0, 1e-310));
+    bench.put("apart.csv", scaled(1e-90, 1e90));
+    let ran = bench.run("evaluate model.json denormal.csv");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    assert!(!ran.stdout.contains("inf") && !ran.stdout.contains("NaN"), "{}", ran.stdout);
+    bench.refuses_in_part(
+        "
+            1 fit apart.csv --model prandtl-ishlinskii => their ratio must be from 1e-50 to 1e50 (choose other units)
+        ",
+    );
+}

@@ -29,9 +29,9 @@ pub struct Errors {
     /// Root mean square error, in the output's unit: `√mse` (theory.md (5.2)).
     pub rmse: f64,
     /// `rmse` in percent of the standard deviation of the measured output (theory.md (5.3)). `None` if the
-    /// output does not vary.
+    /// output does not vary, or so little that the percentage is no finite number.
     pub nrmse_std_percent: Option<f64>,
-    /// `rmse` in percent of the range of the measured output (theory.md (5.4)). `None` if it does not vary.
+    /// `rmse` in percent of the range of the measured output (theory.md (5.4)). `None` as there.
     pub nrmse_range_percent: Option<f64>,
     /// `100 - nrmse_std_percent`; it may be negative (theory.md (5.5)).
     pub fit_percent: Option<f64>,
@@ -114,7 +114,7 @@ impl ErrorSums {
         }
         let n = self.samples as f64;
         let rmse = (self.square_error / n).sqrt();
-        let percent_of = |scale: f64| (scale > 0.0).then(|| 100.0 * rmse / scale);
+        let percent_of = |scale: f64| Some(100.0 * rmse / scale).filter(|percent| percent.is_finite());
         let nrmse_std_percent = percent_of((self.square_deviation / n).sqrt());
         Some(Errors {
             output: output.to_string(),
@@ -133,6 +133,15 @@ impl ErrorSums {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_percentage_that_overflows_is_absent() {
+        let mut sums = ErrorSums::default();
+        sums.add(&[0.0, 1e-310, 2e-310], &[0.5, 0.5, 0.5]);
+        let errors = sums.errors("y").unwrap();
+        assert_eq!(errors.rmse, 0.5);
+        assert_eq!((errors.nrmse_std_percent, errors.nrmse_range_percent, errors.fit_percent), (None, None, None));
+    }
 
     #[test]
     fn errors_of_a_hand_computed_case() {

@@ -503,7 +503,8 @@ impl Dataset {
     /// Checks that a model can be identified.
     ///
     /// # Errors
-    /// A constant input, a constant or blank output, fewer than `needed` scored rows.
+    /// A constant input, a constant or blank output, fewer than `needed` scored rows, ranges whose ratio is no slope of a
+    /// model.
     pub fn check_identifiable(&self, needed: usize) -> Result<()> {
         self.check_scored()?;
         let first = &self.records[0];
@@ -523,9 +524,22 @@ impl Dataset {
         if high - low <= low.abs().max(high.abs()) * 1e-14 + 1e-100 {
             return Err(first.defect(None, Some(Channel::Output), DataProblem::ConstantOutput(low)));
         }
+        let output = high - low;
+        for input in 0..self.names.inputs.len() {
+            let (low, high) = self.input_range(input);
+            let input_range = high - low;
+            if !(output / input_range <= LARGEST_RATIO && input_range / output <= LARGEST_RATIO) {
+                let problem = DataProblem::Ranges { input: input_range, output };
+                return Err(first.defect(None, Some(Channel::Input(input)), problem));
+            }
+        }
         Ok(())
     }
 }
+
+/// Largest ratio of the ranges of output and input, either way. Slopes and their squares then stay far below
+/// [`LARGEST_VALUE`](crate::error::LARGEST_VALUE), which bounds the weights of laws.
+const LARGEST_RATIO: f64 = 1e50;
 
 /// Smallest and largest of the values that are not NaN.
 fn range<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
@@ -541,6 +555,19 @@ mod tests {
     fn record(output: Vec<f64>) -> Record {
         let x = (0..output.len()).map(|k| k as f64).collect();
         Record::new("r", vec![x], output).unwrap()
+    }
+
+    #[test]
+    fn ranges_that_no_slope_can_have_are_refused_with_a_remedy() {
+        let of = |x: f64, y: f64| {
+            let column = |scale: f64| (0..20).map(|k| scale * f64::from(k)).collect::<Vec<f64>>();
+            Dataset::from_columns(None, &[("x", &column(x))], ("y", &column(y))).unwrap().check_identifiable(10)
+        };
+        assert!(of(1e90, 1e90).is_ok() && of(1e-24, 1e24).is_ok());
+        for (x, y) in [(1e-90, 1e90), (1e90, 1e-90)] {
+            let error = of(x, y).unwrap_err().to_string();
+            assert!(error.contains("(choose other units)") && error.len() < 200, "{error}");
+        }
     }
 
     #[test]

@@ -60,6 +60,9 @@ pub const DAMPING_RATIOS: (f64, f64) = (1e-5, 1e3);
 /// Steps that a row of data is divided into at most; after a longer gap they are longer.
 pub(crate) const MOST_STEPS: usize = 64;
 
+/// Evaluations of an element in a step, roughly.
+const EVALUATIONS: usize = 5;
+
 /// Steps of a quasi-static change of the input, such as that of a lead-in.
 pub(crate) const STATIC_STEPS: usize = 16;
 
@@ -181,6 +184,17 @@ impl Dynamics {
     #[inline(always)]
     fn steps_of(&self, row: f64) -> usize {
         (row / self.longest_step - 1e-6).ceil().clamp(1.0, MOST_STEPS as f64) as usize
+    }
+
+    /// Elementary operations of a row of so much time, roughly and at most: each step evaluates the elements several times.
+    pub(crate) fn work_of_row(&self, time: f64) -> f64 {
+        let of_element = |element: &Element| {
+            let Shape { neurons, .. } = element.shape();
+            10 * self.modes.len() + 20 * (1 + neurons) + 2 * element.layer.len()
+        };
+        let of_step =
+            30 * self.modes.len() + EVALUATIONS * self.elements.iter().map(of_element).sum::<usize>();
+        (self.steps_of(time) * of_step) as f64
     }
 
     /// The parameters that are free in this form, with their symbols, in scaled units where they have no unit of their
@@ -325,6 +339,10 @@ macro_rules! law_of_dynamics {
 
             fn step(&self, motion: &mut Self::State, sample: $crate::law::Sample) -> f64 {
                 self.0.step(motion, sample)
+            }
+
+            fn work_of_row(&self, _: f64, time: f64) -> f64 {
+                self.0.work_of_row(time)
             }
 
             fn parameters(&self) -> Vec<$crate::law::Parameter> {

@@ -186,6 +186,10 @@ impl Law for JilesAtherton {
         self.offset + self.permeability * sample.x + self.saturation * m
     }
 
+    fn work_of_row(&self, travel: f64, _: f64) -> f64 {
+        self.operations(&self.virgin(), travel) as f64
+    }
+
     fn parameters(&self) -> Vec<Parameter> {
         let any = (-LARGEST_VALUE, LARGEST_VALUE);
         let positive = (0.0, LARGEST_VALUE);

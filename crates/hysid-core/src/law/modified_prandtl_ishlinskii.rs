@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::properties::WIPES_OUT;
-use crate::law::thresholds::check_weights;
+use crate::law::thresholds::{check_count, check_weights};
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
@@ -74,6 +74,7 @@ impl DeadZones {
     /// Thresholds that are not finite and rising, or 0; a weight that is not usable; a slope that is not
     /// positive.
     pub fn new(parts: DeadZoneParts) -> Result<Self> {
+        check_count(&parts.thresholds)?;
         check_weights(&parts.thresholds)?;
         check_weights(&parts.weights)?;
         check_weights(&[parts.constant, parts.linear])?;

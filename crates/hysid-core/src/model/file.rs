@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::rate::RateMethod;
 use crate::data::record::ColumnNames;
 use crate::data::unit;
-use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::error::{Error, LARGEST_VALUE, MOST_TURNS, Result};
 use crate::law::Classical;
 use crate::model::input_transform::InputTransform;
 use crate::model::{Band, Ensemble, Group, Model, Predictor, Provenance, TrainedRanges};
@@ -366,6 +366,12 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
     model.trained.check()?;
     if model.lead_in.iter().any(|value| value.is_nan() || value.abs() > LARGEST_VALUE) {
         return Err(Error::Parts("its lead-in has a value that is none".into()));
+    }
+    if model.lead_in.len() > MOST_TURNS {
+        let found = model.lead_in.len();
+        return Err(Error::Parts(format!(
+            "its lead-in has {found} turning points, at most {MOST_TURNS} are possible"
+        )));
     }
     let added = model.preprocessing.added_inputs();
     let inputs = match &model.body {

@@ -6,7 +6,7 @@ mod trial;
 use std::borrow::Cow;
 
 use crate::data::initial_state::InitialState;
-use crate::error::{Error, Result, SampleError};
+use crate::error::{Error, LARGEST_VALUE, Result, SampleError};
 use crate::law::series::lead_in_samples;
 use crate::law::{ClassicalState, Sample};
 use crate::model::band::{BandLevel, disagreement};
@@ -205,6 +205,9 @@ impl State {
         let rate = self.rate(model, inputs, elapsed, rate);
         if let Some(bad) = inputs.iter().chain(&rate).find(|value| !value.is_finite()) {
             return Err(SampleError::NotFinite(*bad).into());
+        }
+        if let Some(large) = inputs.iter().chain(&rate).find(|value| value.abs() > LARGEST_VALUE) {
+            return Err(SampleError::TooLarge(*large).into());
         }
         if let (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) = (&model.body, &self.memory) {
             let mut members = memory.members.iter().zip(ensemble.members());

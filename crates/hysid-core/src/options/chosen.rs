@@ -9,6 +9,7 @@ use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Speeds};
 use crate::error::{Error, OptionError, Result};
+use crate::law::thresholds::MOST_THRESHOLDS;
 use crate::network::{Family, Sizes};
 use crate::options::auto::AutoOptions;
 use crate::options::classical::{ClassicalModel, ClassicalOptions, Sign};
@@ -80,7 +81,7 @@ impl NamedOptions {
             ModelName::Classical(rival) => rival.facts().limits,
             ModelName::Network(_) | ModelName::Auto(_) => &[],
         };
-        let most_models = ("operators", 1, usize::MAX);
+        let most_models = ("operators", 1, MOST_THRESHOLDS);
         let is_named = limits.iter().any(|limit| limit.0 == most_models.0);
         for (option, least, most) in limits.iter().copied().chain((!is_named).then_some(most_models)) {
             let asked = match option {

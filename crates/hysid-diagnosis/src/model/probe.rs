@@ -13,6 +13,14 @@ use hysid_core::network::Layout;
 /// whole range has few enough rows that none are averaged.
 pub(super) const STEPS: u32 = 160;
 
+/// Rows of a model whose steps need much work: the first number with which the paths stay below [`MOST_WORK`], or the last.
+/// Tenths of the way fall on rows of all.
+const FEWER_STEPS: [u32; 4] = [80, 40, 20, 10];
+
+/// Operations that the paths of a diagnosis may need, some seconds, and rows of all paths with [`STEPS`].
+const MOST_WORK: f64 = 3e9;
+const ROWS: f64 = 60_000.0;
+
 /// A vanishing speed, as a share of the fastest.
 const VANISHING: f64 = 1e-6;
 
@@ -51,8 +59,22 @@ pub struct Probing {
     pub vanishing_speed: f64,
     /// Speeds of those that do.
     pub speeds: Vec<f64>,
+    /// Rows from the middle of the range to its end: 160, or fewer of a model whose rows need much work.
+    pub steps: u32,
     /// What was outside of what the model was trained on, in words, if anything had to be.
     pub outside: Option<String>,
+}
+
+impl Probing {
+    /// What a reader must know of the rows, where they are fewer than usual.
+    pub fn rows_in_words(&self) -> Option<String> {
+        let steps = self.steps;
+        (steps < STEPS).then(|| {
+            format!(
+                "{steps} in half the range instead of {STEPS}, because each row of this model needs much work"
+            )
+        })
+    }
 }
 
 /// A way of the input through turning points.
@@ -70,6 +92,8 @@ pub(super) struct Probe<'m> {
     pub centre: f64,
     pub half: f64,
     pub speeds: Speeds,
+    /// Rows from the middle of the range to its end.
+    pub steps: u32,
     held: Vec<f64>,
 }
 
@@ -137,11 +161,13 @@ impl<'m> Probe<'m> {
                 "the model was trained on inputs from {low} to {high}: there is no range to probe"
             )));
         }
+        let speeds = Speeds::of(model, half);
         Ok(Self {
             model,
             centre: middle(&ranges[0]),
             half,
-            speeds: Speeds::of(model, half),
+            steps: steps(model, half, speeds.vanishing),
+            speeds,
             held: ranges[1..].iter().map(middle).collect(),
         })
     }
@@ -158,6 +184,7 @@ impl<'m> Probe<'m> {
                 .speeds
                 .one_sided
                 .then(|| "only rates of one sign were trained: the probing also uses the other sign".into()),
+            steps: self.steps,
         }
     }
 
@@ -173,7 +200,7 @@ impl<'m> Probe<'m> {
 
     /// A path over the trained range: turning points from -1, its lower end, to 1, its upper end.
     pub fn path(&self, turning: &[f64]) -> Path {
-        path(self.centre, self.half, turning, STEPS)
+        path(self.centre, self.half, turning, self.steps)
     }
 
     /// Drives the model from its virgin state along a path at one speed. The record has the first input,
@@ -212,6 +239,17 @@ impl<'m> Probe<'m> {
         }
         Ok(record)
     }
+}
+
+/// Rows from the middle of the range to its end.
+fn steps(model: &Model, half: f64, slowest: f64) -> u32 {
+    let is_quick = |steps: &u32| {
+        let travel = half / f64::from(*steps);
+        let rows = ROWS * f64::from(*steps) / f64::from(STEPS);
+        rows * model.work_of_row(travel, travel / slowest) <= MOST_WORK
+    };
+    let all = [STEPS].into_iter().chain(FEWER_STEPS);
+    all.clone().find(is_quick).unwrap_or(FEWER_STEPS[FEWER_STEPS.len() - 1])
 }
 
 /// Where the memory of a model is virgin, in the unit of the first input; of an ensemble's members that do not

@@ -262,3 +262,28 @@ fn a_model_that_answers_nothing_is_refused() {
     let error = ModelDiagnosis::of(&model).unwrap_err().to_string();
     assert!(error.contains("constant"), "{error}");
 }
+
+/// A pinning of a millionth of the range needs the most parts of every step: it took minutes.
+#[test]
+fn a_model_whose_rows_need_much_work_is_probed_with_fewer() {
+    let law = |k: f64| JilesAtherton {
+        offset: 0.0,
+        permeability: 1.5,
+        saturation: 2.0,
+        a: 1.0,
+        k,
+        alpha: 0.25,
+        c: 0.2,
+        form: JilesAthertonForm::Original,
+    };
+    let request = || FitSpec::Classical(ClassicalOptions::of(ClassicalModel::JilesAtherton));
+    let of = |k: f64| model(Predictor::Law(law(k).into()), request(), None);
+    assert_eq!(Probe::new(&of(0.5)).unwrap().steps, probe::STEPS);
+    let heavy = of(1e-6);
+    let few = Probe::new(&heavy).unwrap();
+    assert!(few.steps < probe::STEPS / 2, "{}", few.steps);
+    let words = few.description().rows_in_words().unwrap();
+    assert!(words.starts_with(&format!("{} in half the range instead of 160", few.steps)), "{words}");
+    let diagnosis = ModelDiagnosis::of(&heavy).unwrap();
+    assert!(diagnosis.invertibility.scans < 100, "{}", diagnosis.invertibility.scans);
+}

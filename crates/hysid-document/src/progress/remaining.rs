@@ -9,6 +9,11 @@ const LEAST_SHARE: f64 = 0.01;
 /// Below so many seconds the time is not told more precisely.
 const A_FEW: f64 = 5.0;
 
+/// Share of work that is done, at least that of its time limit: work that a limit ends is over with it.
+pub fn share_done(done: f64, elapsed: f64, limit: Option<f64>) -> f64 {
+    limit.map_or(done, |limit| done.max((elapsed / limit).min(1.0)))
+}
+
 /// Remaining time of work whose speed changes.
 ///
 /// The time that is shown is the smallest estimate so far. Where the work turns out slower, the time stays as it is until
@@ -67,6 +72,14 @@ mod tests {
                 pair[0].parse::<f64>().unwrap() * unit
             })
             .sum()
+    }
+
+    #[test]
+    fn work_with_a_time_limit_is_done_at_its_limit() {
+        assert_eq!(share_done(0.01, 50.0, None), 0.01);
+        assert_eq!(share_done(0.01, 50.0, Some(100.0)), 0.5);
+        assert_eq!(share_done(0.7, 50.0, Some(100.0)), 0.7);
+        assert_eq!(share_done(0.01, 103.0, Some(100.0)), 1.0);
     }
 
     #[test]

@@ -5,8 +5,13 @@ use hysid_core::model::{Inverse, Inverted, Model};
 use crate::description::Argument;
 use crate::vectors::{Action, within};
 
-/// Rows of the path.
+/// Rows of the path, and the fewest of a model whose steps need much work.
 const ROWS: usize = 200;
+const FEWEST_ROWS: usize = 20;
+
+/// Operations that the vectors may need, about a second, if a row needs [`STEPS`] steps of the model.
+const MOST_WORK: f64 = 1e9;
+const STEPS: f64 = 20.0;
 
 /// The state is saved before this row, and restored after [`REPEATED`] further ones, which are then repeated.
 const SAVED: usize = 90;
@@ -45,14 +50,18 @@ pub(super) fn vectors(model: &Model, initial: Inverse<'_>, arguments: &[Argument
         }
         all.push(vector);
     };
+    let (low, high) = model.trained_ranges().inputs[0];
+    let work = STEPS * model.work_of_row(high - low, Row::of(model, 0).time_step);
+    let rows = ((MOST_WORK / work) as usize).clamp(FEWEST_ROWS, ROWS);
+    let (saved, repeated) = (SAVED * rows / ROWS, REPEATED * rows / ROWS);
     act(Action::Reset, 0);
-    for row in 0..ROWS {
-        if row == SAVED {
+    for row in 0..rows {
+        if row == saved {
             act(Action::Save, 0);
         }
-        if row == SAVED + REPEATED {
+        if row == saved + repeated {
             act(Action::Restore, 0);
-            (SAVED..SAVED + REPEATED).for_each(|row| act(Action::Step, row));
+            (saved..saved + repeated).for_each(|row| act(Action::Step, row));
         }
         act(Action::Step, row);
     }

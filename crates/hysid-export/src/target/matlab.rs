@@ -120,7 +120,13 @@ end
 
 fn function(matlab: &Matlab, program: &Program, name: &str, with_tangent: bool) -> String {
     let slope = if with_tangent { ", slope" } else { "" };
-    let mut text = format!("function [y, state{slope}] = {name}(state, {})\n", matlab.arguments.join(", "));
+    let arguments = matlab.arguments.join(", ");
+    let mut text = format!("function [y, state{slope}] = {name}(state, {arguments})\n");
+    let no_slope = if with_tangent { "    slope = NaN;\n" } else { "" };
+    let _ = writeln!(
+        text,
+        "if ~all(isfinite([{arguments}])) % Nothing changes then.\n    y = NaN;\n{no_slope}    return\nend"
+    );
     let used = used_arrays(program);
     for array in &used {
         let declaration = program.declaration(*array);

@@ -186,6 +186,14 @@ fn function(python: &Python, program: &Program, name: &str, with_tangent: bool) 
     let mut text = format!("def {name}(state{arguments}):\n");
     let states: Vec<String> =
         program.states().map(|(array, _, _)| python.array(program.declaration(array))).collect();
+    let finite = python
+        .arguments
+        .iter()
+        .map(|name| format!("math.isfinite({name})"))
+        .collect::<Vec<_>>()
+        .join(" and ");
+    let none = if with_tangent { "math.nan, math.nan" } else { "math.nan" };
+    let _ = writeln!(text, "    if not ({finite}):\n        return {none}  # Nothing changes then.");
     let _ = writeln!(text, "    {} = state", states.join(", ") + ",");
     for array in used_arrays(program) {
         let declaration = program.declaration(array);

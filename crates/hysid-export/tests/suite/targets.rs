@@ -5,6 +5,7 @@ mod case;
 mod closed_loop;
 mod fmu;
 mod foreign;
+mod invalid;
 mod inverse;
 mod inverse_case;
 mod inverse_fmu;

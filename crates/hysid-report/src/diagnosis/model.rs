@@ -72,6 +72,9 @@ impl<'a> DiagnosedModel<'a> {
             "speeds",
             if speeds.is_empty() { from.into() } else { format!("{}, from {from}", speeds.join(", ")) },
         );
+        if let Some(rows) = probing.rows_in_words() {
+            say("rows", rows);
+        }
         if let Some(outside) = &probing.outside {
             say("outside", outside.clone());
         }

@@ -188,6 +188,12 @@ fn contradictory_checkpoints_are_refused() {
             let error = resume(&data(), wrong, &mut |_| ControlFlow::Continue(())).unwrap_err().to_string();
             assert!(error.contains("is inconsistent") && error.contains("start a new fit"), "{key}: {error}");
         }
+        // A resumed fit wrote a model with this mean square, which could not be read.
+        for key in ["mean_square", "train_nrmse_percent"] {
+            let wrong = with_number(&bytes, key, -0.5);
+            let error = resume(&data(), wrong, &mut |_| ControlFlow::Continue(())).unwrap_err().to_string();
+            assert!(error.contains("is inconsistent"), "{key} with {training:?}: {error}");
+        }
     }
 }
 

@@ -249,3 +249,37 @@ fn poor_records_are_errors_or_not_testable() {
     blank[3..45].fill(f64::NAN);
     of(data(ramp, blank)).unwrap();
 }
+
+/// Data that leave a test without a height or a slope: their numbers are absent, and none is NaN.
+#[test]
+fn no_number_of_a_finding_is_infinite_or_none() {
+    let rows = 200;
+    let pulse = |at: usize, row: usize| f64::from(u8::from(row == at));
+    let sine = |row: usize| (0.1 * row as f64).sin();
+    type Signal<'a> = &'a dyn Fn(usize) -> f64;
+    let signals: [(Signal, Signal); 8] = [
+        (&|row| pulse(100, row), &|row| pulse(101, row)),
+        (&|row| pulse(100, row), &|row| pulse(100, row)),
+        (&|row| pulse(0, row), &|row| pulse(199, row)),
+        (&sine, &|row| pulse(100, row)),
+        (&|row| pulse(100, row), &sine),
+        (&|row| f64::from(u8::from(row > 100)), &|row| f64::from(u8::from(row > 102))),
+        (&|row| 1e-300 * sine(row), &|row| 1e-300 * sine(row + 3)),
+        (&|row| 1e90 * sine(row), &|row| 1e-300 * sine(row + 3)),
+    ];
+    let mut count = 0;
+    for (place, (x, y)) in signals.iter().enumerate() {
+        let column = |signal: &Signal| (0..rows).map(signal).collect::<Vec<f64>>();
+        let (time, x, y) = ((0..rows).map(|row| 0.1 * row as f64).collect::<Vec<f64>>(), column(x), column(y));
+        let data = Dataset::from_columns(Some(("t", &time)), &[("x", &x)], ("y", &y)).unwrap();
+        let Ok(diagnosis) = Diagnosis::of(&data, &DiagnosisOptions::default()) else { continue };
+        count += 1;
+        for finding in &diagnosis.properties {
+            let numbers = [finding.index, finding.threshold, finding.noise];
+            assert!(numbers.into_iter().flatten().all(f64::is_finite), "{place}: {finding:?}");
+            let mut words = finding.statement.split(|letter: char| !letter.is_alphanumeric());
+            assert!(!words.any(|word| ["NaN", "inf"].contains(&word)), "{place}: {}", finding.statement);
+        }
+    }
+    assert!(count > 4, "{count}");
+}

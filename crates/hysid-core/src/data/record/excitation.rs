@@ -1,6 +1,6 @@
 //! The inputs of a simulation, borrowed: no column is copied.
 
-use crate::error::{Channel, DataError, DataProblem, Error, LARGEST_VALUE, Result};
+use crate::error::{Channel, DataError, DataProblem, Error, LARGEST_VALUE, MOST_TURNS, Result};
 
 /// Rows that are checked together: without a branch for each the compiler checks several at once, and a long
 /// run is not noticeably longer for it.
@@ -79,8 +79,11 @@ impl<'a> Excitation<'a> {
     /// the first row, in its unit. Without rows it is the virgin state, whatever the model was trained with.
     ///
     /// # Errors
-    /// A value that is not finite or beyond [`LARGEST_VALUE`].
+    /// A value that is not finite or beyond [`LARGEST_VALUE`]; more than [`MOST_TURNS`] turning points.
     pub fn with_lead_in(mut self, lead_in: &'a [f64]) -> Result<Self> {
+        if lead_in.len() > MOST_TURNS {
+            return Err(self.defect(None, Some(Channel::Input(0)), DataProblem::LongLeadIn(lead_in.len())));
+        }
         if let Some(&value) = lead_in.iter().find(|value| value.is_nan() || value.abs() > LARGEST_VALUE) {
             return Err(self.defect(None, Some(Channel::Input(0)), DataProblem::LeadIn(value)));
         }

@@ -15,6 +15,7 @@ const DOUBLINGS: std::ops::RangeInclusive<i32> = -5..=8;
 /// Inputs of a scan of the whole range, and of one of many with different time steps.
 const POINTS: usize = 65;
 const FEWER_POINTS: usize = 33;
+const LEAST_POINTS: usize = 9;
 
 /// A window that leaves out less than this share of the trained range is whole.
 const WHOLE: f64 = 1e-9;
@@ -118,6 +119,8 @@ impl Examination {
             let time = past.time + time_step.unwrap_or(0.0);
             let least = EFFECT * self.range;
             let points = if time_steps.len() > 1 { FEWER_POINTS } else { POINTS };
+            // Fewer, as on the paths, of a model whose steps need much work.
+            let points = (points * probe.steps as usize / STEPS as usize).max(LEAST_POINTS);
             let scan = Scan::of(window, points, past.input, least, &mut |x| {
                 inputs[0] = x;
                 stepper.trial(&inputs, time, None)
@@ -134,7 +137,7 @@ impl Examination {
 
 /// Time between the rows of a path.
 fn row(probe: &Probe, speed: f64) -> f64 {
-    probe.half / f64::from(STEPS) / speed
+    probe.half / f64::from(probe.steps) / speed
 }
 
 fn paces(probe: &Probe) -> Vec<Pace> {

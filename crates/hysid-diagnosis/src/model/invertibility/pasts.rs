@@ -3,11 +3,12 @@
 use hysid_core::error::Result;
 use hysid_core::model::Stepper;
 
-use crate::model::probe::{Probe, times};
+use crate::model::probe::{Probe, STEPS, times};
 use crate::model::properties::{PROTOCOL, SHIFTED, WHOLE_LOOPS, repeated_loops};
 
 /// Moments on a path.
 const MOMENTS: usize = 24;
+const LEAST_MOMENTS: usize = 4;
 
 /// Turning points of the path with random reversals.
 const RANDOM_REVERSALS: usize = 40;
@@ -76,7 +77,8 @@ pub(super) fn drive<'m>(
 ) -> Result<()> {
     let path = probe.path(&way.turning);
     let time = times(&path.x, speed);
-    let moments = moments(&path.turns);
+    let count = (MOMENTS * probe.steps as usize / STEPS as usize).max(LEAST_MOMENTS);
+    let moments = moments(&path.turns, count);
     let mut moments = moments.iter().peekable();
     stepper.reset();
     let mut inputs = probe.inputs(path.x[0]);
@@ -98,7 +100,7 @@ pub(super) fn drive<'m>(
 }
 
 /// Rows at turning points and on the way between them, evenly chosen.
-fn moments(turns: &[usize]) -> Vec<usize> {
+fn moments(turns: &[usize], most: usize) -> Vec<usize> {
     // The golden section falls on other parts of each way.
     let share = |leg: usize| (0.618_034 * (leg + 1) as f64).fract();
     let candidates: Vec<usize> = turns
@@ -106,7 +108,7 @@ fn moments(turns: &[usize]) -> Vec<usize> {
         .enumerate()
         .flat_map(|(leg, ends)| [ends[0] + (share(leg) * (ends[1] - ends[0]) as f64) as usize, ends[1]])
         .collect();
-    let count = MOMENTS.min(candidates.len());
+    let count = most.min(candidates.len());
     let mut rows: Vec<usize> =
         (0..count).map(|k| candidates[(2 * k + 1) * candidates.len() / (2 * count)]).collect();
     rows.dedup();

@@ -6,6 +6,7 @@ use crate::description::Argument;
 use crate::inverse::Inverse;
 use crate::program::Precision;
 use crate::subject::Subject;
+use crate::target::c::source::EXACT;
 use crate::target::template::filled;
 
 /// Of an inverse with a bound of the rate.
@@ -83,6 +84,7 @@ pub(super) fn header_and_source(subject: &Subject<'_>, inverse: &Inverse) -> [St
     let source = filled(
         include_str!("inverse.c.txt"),
         &[
+            ("@exact@", EXACT),
             ("NAME", name),
             ("UPPER", &upper),
             ("fabs(", &functions[0]),

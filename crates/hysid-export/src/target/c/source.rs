@@ -12,6 +12,19 @@ use crate::program::{Array, Declaration, Precision, Program, Storage};
 use crate::subject::Subject;
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
 
+/// Refuses options of compilers that change results, and switches off the optimisation of gcc that fuses products and sums
+/// in spite of `-ffp-contract=off` (gcc 12: alternating sums and differences become one `vfmaddsub`).
+pub(super) const EXACT: &str =
+    "#if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || \\
+    (defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__)
+#error \"-ffast-math and its parts change the results of this file\"
+#endif
+#if defined __GNUC__ && !defined __clang__ && __GNUC__ >= 12
+#pragma GCC optimize (\"no-tree-slp-vectorize\")
+#endif
+
+";
+
 /// The text of the source file.
 pub(super) fn source(subject: &Subject<'_>) -> String {
     let name = subject.name();
@@ -27,7 +40,7 @@ pub(super) fn source(subject: &Subject<'_>) -> String {
         text += "#include <stdint.h>\n";
     }
     text += &format!("#include <string.h>\n\n#include \"{name}.h\"\n\n");
-    text += "#if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__\n#error \"-ffast-math and its parts change the results of this file\"\n#endif\n\n";
+    text += EXACT;
     text += &format!("typedef {name}_real real;\n\n");
     text += &prelude(&functions, subject.precision());
     text += &constants(&c, &[step, tangent]);
@@ -90,6 +103,15 @@ fn function(c: &C, name: &str, program: &Program, function: &str, with_tangent: 
             let _ = writeln!(text, "    real {}[{length}];", declaration.name);
         }
     }
+    let sum = c.arguments.iter().map(|argument| format!("0 * {argument}")).collect::<Vec<_>>().join(" + ");
+    let slope = if with_tangent { "\n        *tangent = invalid;" } else { "" };
+    let _ = writeln!(
+        text,
+        "    const real invalid = {sum}; /* 0, or NaN if an argument is not finite: nothing changes then. */
+    if (invalid != 0) {{{slope}
+        return invalid;
+    }}"
+    );
     text += &Printer::new(c, program).body(1);
     let output = &program.declaration(program.outputs).name;
     if with_tangent {

@@ -6,12 +6,19 @@ use std::process::Command;
 use hysid_export::{Error, Options, Target, export};
 
 use super::case::{MODELS, written};
-use super::tools::{python, succeeds, tool};
+use super::tools::{at_length, python, succeeds, tool};
 
 /// Names of models: those that users choose, and parts of names inside the files.
 const NAMES: [&str; 8] = ["model", "data", "state", "first", "real", "MODEL", "y", "inverse"];
 
-/// Runs the test that an export has.
+/// Names that users, libraries and languages have, for tests at length.
+const MORE_NAMES: [&str; 34] = [
+    "a", "abs", "advance", "array", "assert", "auto", "bool", "cell", "committed", "double", "error", "exp", "file",
+    "float", "index", "input", "inverse_sinh", "len", "long", "math", "max", "numpy", "object", "output", "rounded",
+    "self", "sum", "token", "trial", "type", "vector", "x", "X1", "z9_",
+];
+
+/// Runs the test that an export has. A name is refused, or works.
 fn run(target: Target, name: &str, folder: &Path) {
     let compiled = |compiler: &str, arguments: &[&str]| {
         succeeds(Command::new(compiler).current_dir(folder).args(arguments));
@@ -43,9 +50,13 @@ fn run(target: Target, name: &str, folder: &Path) {
 fn every_name_that_is_not_refused_works() {
     let (_, model) = MODELS.iter().find(|(label, _)| label.starts_with("auto")).unwrap();
     for target in Target::ALL {
-        for name in NAMES {
+        let more = MORE_NAMES.iter().filter(|_| at_length());
+        for &name in NAMES.iter().chain(more) {
             let options = Options::named(name);
             if let Err(Error::Reserved { .. }) = export(model, target, &options) {
+                if MORE_NAMES.contains(&name) {
+                    continue;
+                }
                 let is_matlab = ["state", "y", "real", "inverse"].contains(&name) && target == Target::Matlab;
                 assert!(is_matlab, "{name}: {target:?}");
                 continue;

@@ -8,14 +8,16 @@ use hysid::Model;
 use hysid_export::{InverseOptions, Options, Target};
 
 use super::case::{Case, MODELS, NAME, written};
-use super::tools::{succeeds, tool};
+use super::tools::{at_length, succeeds, tool};
 
 /// Models whose states have counters, and those whose loops depend on the state.
 const WITH_COUNTERS: [&str; 7] =
     ["masing", "preisach of", "neuro-madelung", "peak-oriented", "menegotto-pinto", "jiles-atherton", "auto"];
 
+/// Those, or all kinds where the laboratory tests at length.
 fn models() -> impl Iterator<Item = &'static (String, Model)> {
-    MODELS.iter().filter(|(label, _)| WITH_COUNTERS.iter().any(|name| label.starts_with(name)))
+    let all = at_length();
+    MODELS.iter().filter(move |(label, _)| all || WITH_COUNTERS.iter().any(|name| label.starts_with(name)))
 }
 
 fn run(folder: &Path, sources: &[&str]) {

@@ -44,3 +44,8 @@ pub fn succeeds(command: &mut Command) -> Output {
     assert!(output.status.success(), "{command:?}\n{}", text.chars().take(3000).collect::<String>());
     output
 }
+
+/// True where `attack` of the laboratory runs the tests with all models and names.
+pub fn at_length() -> bool {
+    env::var_os("HYSID_AT_LENGTH").is_some()
+}

@@ -23,7 +23,7 @@ use crate::error::{Error, Result};
 use crate::fit::law::linear::{FoldSums, Sums, logarithmic, lowest};
 use crate::fit::network::start::{self, Capacities};
 use crate::network::scaling::Scaling;
-use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network, RowsOverRecords};
+use crate::network::{Architecture, Columns, Drive, GramOverRecords, Layout, Network, RowsOverRecords};
 use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
 use crate::options::classical::{ClassicalModel, Sign};
 use crate::stop_check::StopCheck;
@@ -184,10 +184,14 @@ fn architecture(
     Ok(architecture)
 }
 
-/// Random stops, with few digits: a thousand numbers with all of theirs would fill most of a model file.
+/// Random stops, with few digits: a thousand numbers with all of theirs would fill most of a model file. A bound that is
+/// rounded may be out of bounds, and keeps its digits.
 fn drawn(architecture: &Architecture, seed: u64) -> Vec<f64> {
     let short = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
-    start::draw(architecture, CAPACITIES, None, seed).into_iter().map(short).collect()
+    let mut values: Vec<f64> =
+        start::draw(architecture, CAPACITIES, None, seed).into_iter().map(short).collect();
+    Layout::new(*architecture).clamp(&mut values);
+    values
 }
 
 /// Draws the stops, and finds the output weights.
@@ -262,4 +266,29 @@ fn fold_sums(
     };
     let sums = FoldSums::new((0..folds.count).map(of_fold).collect(), folds.judged.clone());
     if stop.is_asked() { Err(Error::Stopped) } else { Ok(sums) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With few digits `ln 0.3` is out of its bounds: every fourth of these seeds drew such a stop.
+    #[test]
+    fn what_is_drawn_is_within_its_bounds() {
+        let architecture = Architecture {
+            inputs: 1,
+            rate: false,
+            stops: 200,
+            deterioration: true,
+            linear: true,
+            relaxation: 0,
+            hidden: 0,
+            direct: true,
+            constant: true,
+        };
+        let layout = Layout::new(architecture);
+        for seed in 0..40 {
+            layout.check(&drawn(&architecture, seed)).unwrap();
+        }
+    }
 }

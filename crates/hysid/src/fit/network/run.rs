@@ -151,9 +151,14 @@ impl TrainingRun {
         let Point { parameters, output, objective, mean_square } = &self.best;
         let is_point = frame.are_parameters(parameters)
             && Network::new(*frame.architecture, parameters.clone(), output.clone()).is_ok()
-            && are_finite(&[*objective, *mean_square]);
+            && are_finite(&[*objective, *mean_square])
+            && *mean_square >= 0.0;
         require(is_point, "best point of a run")?;
-        let point = |point: &HistoryPoint| !point.train_nrmse_percent.is_nan() && point.epoch <= MOST_COUNTED;
+        // Infinite before the first epoch.
+        let point = |point: &HistoryPoint| point.train_nrmse_percent >= 0.0 && point.epoch <= MOST_COUNTED;
+        require(point(&self.last), "last point of a run")?;
+        let errors = self.runs.iter().filter_map(|run| run.validation_nrmse_percent);
+        require(errors.into_iter().all(|error| error >= 0.0), "error of a run on new data")?;
         let histories = self.runs.iter().all(|run| !run.history.is_empty() && run.history.iter().all(point));
         require(!self.runs.is_empty() && self.runs.len() <= 2 && histories, "history of a run")
     }
