@@ -46,6 +46,7 @@ fn containers_stay_within_their_memory() {
         env!("CARGO_BIN_EXE_hysid-fuzz")
     );
     // An arena of memory for each thread is address space that is not used.
-    let output = std::process::Command::new("sh").env("MALLOC_ARENA_MAX", "2").args(["-c", &line]).output().unwrap();
+    let output =
+        std::process::Command::new("sh").env("MALLOC_ARENA_MAX", "2").args(["-c", &line]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }

@@ -39,7 +39,8 @@ pub fn run(request: &Request) -> Result<()> {
     succeeds(&mut limited(&fuzz, request))?;
     let numbers = [request.seconds, request.seed].map(|number| number.to_string());
     succeeds(Command::new(&fuzz).args(["--seconds", &numbers[0], "--seed", &numbers[1]]))?;
-    let tests = ["test", "--locked", "--package", "hysid-export", "--package", "hysid-cli", "--test", "suite", "--"];
+    let tests =
+        ["test", "--locked", "--package", "hysid-export", "--package", "hysid-cli", "--test", "suite", "--"];
     succeeds(cargo().env("HYSID_AT_LENGTH", "1").args(tests).args(TESTS))?;
     println!("nothing was found");
     Ok(())

@@ -140,7 +140,10 @@ mod tests {
         sums.add(&[0.0, 1e-310, 2e-310], &[0.5, 0.5, 0.5]);
         let errors = sums.errors("y").unwrap();
         assert_eq!(errors.rmse, 0.5);
-        assert_eq!((errors.nrmse_std_percent, errors.nrmse_range_percent, errors.fit_percent), (None, None, None));
+        assert_eq!(
+            (errors.nrmse_std_percent, errors.nrmse_range_percent, errors.fit_percent),
+            (None, None, None)
+        );
     }
 
     #[test]

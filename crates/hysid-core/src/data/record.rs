@@ -561,7 +561,9 @@ mod tests {
     fn ranges_that_no_slope_can_have_are_refused_with_a_remedy() {
         let of = |x: f64, y: f64| {
             let column = |scale: f64| (0..20).map(|k| scale * f64::from(k)).collect::<Vec<f64>>();
-            Dataset::from_columns(None, &[("x", &column(x))], ("y", &column(y))).unwrap().check_identifiable(10)
+            Dataset::from_columns(None, &[("x", &column(x))], ("y", &column(y)))
+                .unwrap()
+                .check_identifiable(10)
         };
         assert!(of(1e90, 1e90).is_ok() && of(1e-24, 1e24).is_ok());
         for (x, y) in [(1e-90, 1e90), (1e90, 1e-90)] {

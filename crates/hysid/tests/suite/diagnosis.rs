@@ -270,7 +270,8 @@ fn no_number_of_a_finding_is_infinite_or_none() {
     let mut count = 0;
     for (place, (x, y)) in signals.iter().enumerate() {
         let column = |signal: &Signal| (0..rows).map(signal).collect::<Vec<f64>>();
-        let (time, x, y) = ((0..rows).map(|row| 0.1 * row as f64).collect::<Vec<f64>>(), column(x), column(y));
+        let (time, x, y) =
+            ((0..rows).map(|row| 0.1 * row as f64).collect::<Vec<f64>>(), column(x), column(y));
         let data = Dataset::from_columns(Some(("t", &time)), &[("x", &x)], ("y", &y)).unwrap();
         let Ok(diagnosis) = Diagnosis::of(&data, &DiagnosisOptions::default()) else { continue };
         count += 1;

@@ -169,7 +169,8 @@ fn a_step_is_finite_for_any_input_and_rate_that_it_takes() {
         let rate = rate.filter(|_| model.uses_rate());
         let model = fitted(vec![record(150, "r")], &small(model, rate));
         let mut stepper = model.stepper();
-        let too_large = |error: hysid::Error| error.to_string().ends_with("too large: at most 1e100 in magnitude");
+        let too_large =
+            |error: hysid::Error| error.to_string().ends_with("too large: at most 1e100 in magnitude");
         assert!(stepper.step(&[1e200], 0.0, None).is_err_and(too_large), "{}", model.name().name());
         for (k, x) in [0.1, 1e100, -1e100, 0.0, 9e99, 5e-324, 0.3].into_iter().enumerate() {
             let given = [Some(0.5), Some(1e100), Some(-1e99)][k % 3];
