@@ -87,7 +87,7 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
     };
     // What noise leaves between two branches that are one line.
     let shown = slow.iter().max_by(|a, b| a.area.total_cmp(&b.area)).expect("the slowest is among them");
-    if !(shown.height > 0.0) {
+    if shown.height.is_nan() || shown.height <= 0.0 {
         let statement = "the output does not change within the largest loop of the input";
         return Finding::not_testable(Property::StaticHysteresis, statement, EXPERIMENT);
     }
