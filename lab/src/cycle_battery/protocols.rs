@@ -246,7 +246,6 @@ pub struct Trial {
     pub noise: (f64, f64),
     /// Rows of the shortest cycle.
     pub fewest_rows: usize,
-    pub is_magnet: bool,
 }
 
 /// Scale of the input.
@@ -299,7 +298,7 @@ impl Trial {
         let height = y.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
         let (share_x, share_y) = disturbance.noise();
         let noise = (share_x * UNIT, share_y * height);
-        let mut trial = Self { names: law.names(), x, y, cycles, noise, fewest_rows, is_magnet };
+        let mut trial = Self { names: law.names(), x, y, cycles, noise, fewest_rows };
         trial.disturb(disturbance, height);
         trial
     }
