@@ -16,7 +16,6 @@ use hysid::fit::{identify, memory_need};
 use hysid::options::FitSpec;
 use hysid_records::Data;
 use hysid_report::{Beforehand, Identified};
-use rayon::ThreadPoolBuilder;
 
 use latest::Latest;
 pub use preview::Preview;
@@ -81,7 +80,7 @@ impl Fits {
         if last.as_ref().is_some_and(|last| last.course.state().is_running) {
             bail!("a fit is running: stop it, or wait until it ends");
         }
-        let pool = ThreadPoolBuilder::new().build().context("cannot start the threads")?;
+        let pool = hysid::thread_pool(None).context("cannot start the threads")?;
         memory_need(&work.data.set, &work.request, pool.current_num_threads())
             .and_then(|need| need.check(hysid_files::available_memory()))
             .map_err(|error| work.data.explain(error))?;

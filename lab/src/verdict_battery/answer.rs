@@ -1,11 +1,11 @@
-//! What `hysid diagnose --json` says of the ten properties. Fields that are not needed here may come and go.
+//! What `hysid diagnose --json` says of the properties. Fields that are not needed here may come and go.
 
 use serde_json::Value;
 
-use super::property::PROPERTIES;
+use super::property::{OF_MEMBERS, PROPERTIES};
 
 /// What is said of one property.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Finding {
     /// Yes, no, or not testable.
     pub verdict: Option<bool>,
@@ -22,13 +22,13 @@ pub fn parse(text: &str) -> Result<Findings, String> {
     let value: Value =
         serde_json::from_str(text).map_err(|error| format!("the answer is not JSON: {error}"))?;
     let objects = value["properties"].as_array().ok_or("the answer has no properties")?;
-    PROPERTIES
-        .iter()
-        .map(|name| {
-            let object = objects.iter().find(|object| object["name"] == *name);
-            finding(object.ok_or_else(|| format!("the answer has no {name}"))?)
-        })
-        .collect()
+    let of_property =
+        |(property, name): (usize, &&str)| match objects.iter().find(|object| object["name"] == **name) {
+            Some(object) => finding(object),
+            None if property >= OF_MEMBERS => Ok(Finding::default()),
+            None => Err(format!("the answer has no {name}")),
+        };
+    PROPERTIES.iter().enumerate().map(of_property).collect()
 }
 
 fn finding(object: &Value) -> Result<Finding, String> {
@@ -55,7 +55,7 @@ mod tests {
         let object =
             |name: &str| format!(r#"{{"name": "{name}", "verdict": "not testable", "index": null}}"#);
         let mut objects: Vec<String> = PROPERTIES.iter().rev().map(|name| object(name)).collect();
-        objects[0] = r#"{"name": "loop-closure", "verdict": "no", "index": 0.2, "threshold": 0.01, "statement": "open"}"#.into();
+        objects[2] = r#"{"name": "loop-closure", "verdict": "no", "index": 0.2, "threshold": 0.01, "statement": "open"}"#.into();
         let text = |objects: &[String]| format!(r#"{{"properties": [{}]}}"#, objects.join(","));
         let findings = parse(&text(&objects)).unwrap();
         let open = Finding {
@@ -66,7 +66,8 @@ mod tests {
         };
         assert_eq!(findings[9], open);
         assert_eq!(findings[0].verdict, None);
-        assert_eq!(parse(&text(&objects[1..])).unwrap_err(), "the answer has no loop-closure");
+        assert_eq!(parse(&text(&objects[2..])).unwrap()[10..], [Finding::default(), Finding::default()]);
+        assert_eq!(parse(&text(&objects[3..])).unwrap_err(), "the answer has no loop-closure");
         assert_eq!(parse("{}").unwrap_err(), "the answer has no properties");
         assert!(parse("a table").unwrap_err().starts_with("the answer is not JSON: "));
     }

@@ -2,8 +2,8 @@
 
 use super::branches::{Branch, Branches};
 use super::property::{
-    CONGRUENCY, DETERIORATION, LOOP_CLOSURE, MASING, ODD_SYMMETRY, ORIENTATION, PROPERTIES, RATE_DEPENDENCE,
-    SATURATION, STATIC_HYSTERESIS, WIPING_OUT,
+    CONGRUENCY, DETERIORATION, LOOP_CLOSURE, MASING, ODD_SYMMETRY, ORIENTATION, PINCHING, PROPERTIES,
+    RATE_DEPENDENCE, SATURATION, STATIC_HYSTERESIS, STRENGTH_LOSS, WIPING_OUT,
 };
 
 /// Inputs closer than this share of the range are the same.
@@ -46,6 +46,8 @@ pub fn evidence(inputs: &[f64], outputs: &[f64], at_rest: &[f64], timed: bool) -
     evidence[SATURATION] = saturation(run);
     evidence[DETERIORATION] = deterioration(run, &cycles);
     evidence[LOOP_CLOSURE] = loop_closure(run, &cycles);
+    evidence[STRENGTH_LOSS] = strength_loss(run);
+    evidence[PINCHING] = pinching(run);
     evidence
 }
 
@@ -341,6 +343,41 @@ fn deterioration(run: &Branches, groups: &[Vec<usize>]) -> Option<f64> {
     let large = || ends.iter().filter(|end| end.0 >= 0.01 * most);
     let enough = large().map(|end| end.2).sum::<usize>() >= 3;
     largest(large().map(|end| end.1)).filter(|_| enough)
+}
+
+/// Largest loss of half the range of the output between the ends of branches that reach both furthest inputs so far, of the
+/// largest before; of three branches at least.
+fn strength_loss(run: &Branches) -> Option<f64> {
+    let near = SAME * run.width;
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let (mut strongest, mut loss, mut count) = (0.0_f64, 0.0_f64, 0);
+    for branch in &run.branches {
+        let (below, above) = branch.span();
+        (low, high) = (low.min(below), high.max(above));
+        if below > low + near || above < high - near {
+            continue;
+        }
+        let strength = 0.5 * (run.outputs[branch.last] - run.outputs[branch.first]).abs();
+        strongest = strongest.max(strength);
+        (loss, count) = (loss.max(1.0 - strength / strongest), count + 1);
+    }
+    (count >= 3).then_some(loss)
+}
+
+/// Slope of the tenth of a branch in which the output passes 0, over the largest slope of a later tenth; the median of the
+/// branches over more than half of the range.
+fn pinching(run: &Branches) -> Option<f64> {
+    let ratio = |branch: &Branch| {
+        let at = |part: usize| run.at(branch, branch.from + (branch.to - branch.from) * part as f64 / 10.0);
+        let heights: Vec<f64> = (0..=10).map(at).collect::<Option<_>>()?;
+        let passes = heights.windows(2).position(|pair| pair[0] * pair[1] <= 0.0)?;
+        let rises: Vec<f64> = heights.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+        Some(rises[passes] / rises[passes..].iter().copied().fold(0.0, f64::max))
+    };
+    let large = run.branches.iter().filter(|branch| branch.travel() > 0.5 * run.width);
+    let mut ratios: Vec<f64> = large.filter_map(ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios.get(ratios.len() / 2).copied()
 }
 
 /// Largest gap after a period that follows an equal one, over the range of the output.

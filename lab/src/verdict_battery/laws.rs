@@ -28,7 +28,8 @@ pub trait Specimen {
 pub struct Law {
     pub name: &'static str,
     /// Yes (`y`), no (`n`) or no clear answer (`-`) for static hysteresis, clockwise loops, rate dependence,
-    /// wiping-out, congruency, Masing's rule, odd symmetry, saturation, deterioration and closed loops.
+    /// wiping-out, congruency, Masing's rule, odd symmetry, saturation, deterioration and closed loops; of members also for
+    /// strength loss and pinching.
     pub answers: &'static str,
     /// Why these are the answers.
     pub why: &'static str,

@@ -1,7 +1,7 @@
-//! The ten properties, by the names that the program gives them.
+//! The twelve properties, by the names that the program gives them.
 
 /// Names in the order of the answers of a law.
-pub const PROPERTIES: [&str; 10] = [
+pub const PROPERTIES: [&str; 12] = [
     "static-hysteresis",
     "orientation",
     "rate-dependence",
@@ -12,6 +12,8 @@ pub const PROPERTIES: [&str; 10] = [
     "saturation",
     "deterioration",
     "loop-closure",
+    "strength-loss",
+    "pinching",
 ];
 
 pub const STATIC_HYSTERESIS: usize = 0;
@@ -24,6 +26,11 @@ pub const ODD_SYMMETRY: usize = 6;
 pub const SATURATION: usize = 7;
 pub const DETERIORATION: usize = 8;
 pub const LOOP_CLOSURE: usize = 9;
+pub const STRENGTH_LOSS: usize = 10;
+pub const PINCHING: usize = 11;
+
+/// Properties from here on are told of structural members alone.
+pub const OF_MEMBERS: usize = STRENGTH_LOSS;
 
 /// Yes, no, or no clear answer, for each property.
 pub type Answers = [Option<bool>; PROPERTIES.len()];

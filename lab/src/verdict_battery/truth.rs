@@ -25,15 +25,15 @@ use super::disturbances::Disturbance;
 use super::evidence::Evidence;
 use super::paths::Path;
 use super::property::{
-    Answers, CONGRUENCY, DETERIORATION, LOOP_CLOSURE, MASING, ODD_SYMMETRY, ORIENTATION, RATE_DEPENDENCE,
-    SATURATION, STATIC_HYSTERESIS, WIPING_OUT,
+    Answers, CONGRUENCY, DETERIORATION, LOOP_CLOSURE, MASING, ODD_SYMMETRY, ORIENTATION, PINCHING,
+    RATE_DEPENDENCE, SATURATION, STATIC_HYSTERESIS, STRENGTH_LOSS, WIPING_OUT,
 };
 
 /// A violation counts from this multiple of the effect that matters on.
 const CLEARLY: f64 = 2.0;
 
 /// Properties that a law violates, the answer of a law that does, and the effect that docs/diagnosis.md calls relevant.
-const VIOLATIONS: [(usize, bool, f64); 7] = [
+const VIOLATIONS: [(usize, bool, f64); 8] = [
     (RATE_DEPENDENCE, true, 0.01),
     (WIPING_OUT, false, 0.01),
     (CONGRUENCY, false, 0.05),
@@ -41,6 +41,7 @@ const VIOLATIONS: [(usize, bool, f64); 7] = [
     (ODD_SYMMETRY, false, 0.02),
     (DETERIORATION, true, 0.05),
     (LOOP_CLOSURE, false, 0.01),
+    (STRENGTH_LOSS, true, 0.05),
 ];
 
 /// Loops that fill less than this share of their box are none, if it is half of it; those that fill twice as much are.
@@ -51,6 +52,9 @@ const ONE_DIRECTION: f64 = 0.6;
 
 /// A slope at the end below half of this share of the largest is saturated; above twice, it is not.
 const SATURATED: f64 = 0.1;
+
+/// Branches whose slope near zero load is below half of this share of the largest are pinched; above it, they are not.
+const SOFT: f64 = 0.5;
 
 /// The answers that count.
 pub fn truth(law: Answers, evidence: &Evidence, path: &Path, disturbance: &Disturbance) -> Answers {
@@ -75,11 +79,13 @@ pub fn truth(law: Answers, evidence: &Evidence, path: &Path, disturbance: &Distu
     truth[STATIC_HYSTERESIS] = agrees(STATIC_HYSTERESIS, &|i| i > CLEARLY * FULL, &|i| i < FULL / CLEARLY);
     truth[ORIENTATION] = agrees(ORIENTATION, &|i| i > ONE_DIRECTION, &|i| i < -ONE_DIRECTION);
     truth[SATURATION] = agrees(SATURATION, &|i| i < SATURATED / CLEARLY, &|i| i > CLEARLY * SATURATED);
+    truth[PINCHING] = agrees(PINCHING, &|i| i < SOFT / CLEARLY, &|i| i > SOFT);
     if depends_on_rate && !path.timed {
         truth[STATIC_HYSTERESIS] = None;
     }
     if disturbance.wears() {
         truth[DETERIORATION] = None;
+        truth[STRENGTH_LOSS] = None;
     }
     truth
 }

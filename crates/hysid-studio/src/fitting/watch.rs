@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use hysid::fit::auto::{Standing, Tried};
 use hysid::fit::network::Progress;
 use hysid::model::Model;
-use hysid_document::progress::{Remaining, in_words};
+use hysid_document::progress::{Remaining, in_words, share_done};
 
 use super::latest::Latest;
 use super::{Candidate, Course, state};
@@ -102,11 +102,12 @@ impl<'c> Watch<'c> {
     fn tell(&mut self, progress: &Progress) {
         let seconds = self.began.elapsed().as_secs_f64();
         let most = self.limit.map(|limit| (limit.as_secs_f64() - seconds).max(0.0));
-        let remaining = self.remaining.after(seconds, progress.done, most);
+        let done = share_done(progress.done, seconds, self.limit.map(|limit| limit.as_secs_f64()));
+        let remaining = self.remaining.after(seconds, done, most);
         let (part, errors) = (self.words.part(progress), std::mem::take(&mut self.errors));
         self.course.change(|state| {
             state.seconds = seconds;
-            state.done = progress.done.max(state.done);
+            state.done = done.max(state.done);
             state.remaining_seconds = remaining;
             state.remaining = remaining.map(in_words);
             state.part = part;

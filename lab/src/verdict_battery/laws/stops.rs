@@ -91,7 +91,7 @@ pub fn laws() -> Vec<Law> {
     vec![
         Law {
             name: "stop",
-            answers: "y y n  y y y  y y  n y",
+            answers: "y y n  y y y  y y  n y  n n",
             why: "elastic and perfectly plastic: x minus a play",
             specimen: || Box::new(Parallel::even(1, 0.3)),
         },
@@ -109,7 +109,7 @@ pub fn laws() -> Vec<Law> {
         },
         Law {
             name: "masing-iwan",
-            answers: "y y n  y y y  y y  n y",
+            answers: "y y n  y y y  y y  n y  n n",
             why: "forty stops, all of which slip before a large branch ends",
             specimen: || Box::new(Parallel::even(40, 0.7)),
         },

@@ -4,19 +4,33 @@ use super::{Law, Specimen};
 
 /// Peak-oriented: from zero force a straight line to the largest deformation of that side. Clough & Johnston,
 /// Proceedings of the Japan Earthquake Engineering Symposium (1966) 227.
+///
+/// Reloading may first aim at a pinch point, at half the largest deformation and a share of the force there.
 struct Clough {
     x: f64,
     force: f64,
     /// Largest deformation of either side and the force there.
     peaks: [(f64, f64); 2],
+    /// The force of a first loading, by the deformation.
+    envelope: fn(f64) -> f64,
+    /// Share of the force at the pinch point.
+    pinch: Option<f64>,
 }
 
 impl Clough {
     const STIFFNESS: f64 = 4.0;
-    const HARDENING: f64 = 0.15;
 
-    fn new() -> Self {
-        Self { x: 0.0, force: 0.0, peaks: [(-0.15, -0.6), (0.15, 0.6)] }
+    fn new(envelope: fn(f64) -> f64, pinch: Option<f64>) -> Self {
+        Self { x: 0.0, force: 0.0, peaks: [(-0.15, -0.6), (0.15, 0.6)], envelope, pinch }
+    }
+
+    fn hardening(deformation: f64) -> f64 {
+        0.6 + 0.15 * (deformation - 0.15)
+    }
+
+    /// Softens beyond 0.45 to a fifth.
+    fn softening(deformation: f64) -> f64 {
+        Self::hardening(deformation.min(0.45)) * (1.0 - 1.6 * (deformation - 0.45).clamp(0.0, 0.5))
     }
 }
 
@@ -31,15 +45,22 @@ impl Specimen for Clough {
             let way = (-force / Self::STIFFNESS).min(left);
             (force, here, left) = (force + Self::STIFFNESS * way, here + way, left - way);
         }
-        // Towards the peak.
         let target = (sign * peak.0, sign * peak.1);
+        // Towards the pinch point.
+        let pinch = self.pinch.map_or((0.0, 0.0), |share| (0.5 * target.0, share * target.1));
+        if left > 0.0 && here < pinch.0 && force < pinch.1 {
+            let way = left.min(pinch.0 - here);
+            let slope = (pinch.1 - force) / (pinch.0 - here);
+            (force, here, left) = (force + slope * way, here + way, left - way);
+        }
+        // Towards the peak.
         if left > 0.0 && here < target.0 {
             let slope = ((target.1 - force) / (target.0 - here)).min(Self::STIFFNESS);
             let way = left.min(target.0 - here);
             (force, here, left) = (force + slope * way, here + way, left - way);
         }
         if left > 0.0 {
-            let on_envelope = target.1 + Self::HARDENING * (here + left - target.0);
+            let on_envelope = (self.envelope)(here + left);
             force = on_envelope.min(force + Self::STIFFNESS * left);
             here += left;
             *peak = (sign * here, sign * force);
@@ -117,17 +138,51 @@ impl Specimen for MenegottoPinto {
     }
 }
 
+/// Elastic-plastic, until a part of it breaks at a deformation of 0.7: the rest has two fifths of stiffness and strength.
+struct Fracturing {
+    x: f64,
+    slider: f64,
+    is_broken: bool,
+}
+
+impl Specimen for Fracturing {
+    fn advance(&mut self, x: f64, _: f64) -> f64 {
+        self.slider = (self.slider + x - self.x).clamp(-0.15, 0.15);
+        self.x = x;
+        self.is_broken |= x.abs() > 0.7;
+        (if self.is_broken { 1.6 } else { 4.0 }) * self.slider
+    }
+}
+
 pub fn laws() -> Vec<Law> {
     vec![
         Law {
             name: "clough",
-            answers: "y y n  n n n  - -  n -",
+            answers: "y y n  n n n  - -  n -  n -",
             why: "reloading aims at the largest deformation, not at where unloading began; loops of one amplitude are equal",
-            specimen: || Box::new(Clough::new()),
+            specimen: || Box::new(Clough::new(Clough::hardening, None)),
+        },
+        Law {
+            name: "softening-member",
+            answers: "y y n  - - -  - -  - -  y -",
+            why: "the force falls beyond a deformation of 0.45",
+            specimen: || Box::new(Clough::new(Clough::softening, None)),
+        },
+        Law {
+            name: "pinching-member",
+            answers: "y y n  - - -  - -  n -  n y",
+            why: "reloading first goes to a tenth of the force at half the largest deformation",
+            specimen: || Box::new(Clough::new(Clough::hardening, Some(0.1))),
+        },
+        Law {
+            name: "fracturing-member",
+            answers: "y y n  - - -  - -  - -  y n",
+            why: "at a deformation of 0.7 three fifths of stiffness and strength are lost",
+            specimen: || Box::new(Fracturing { x: 0.0, slider: 0.0, is_broken: false }),
         },
         Law {
             name: "menegotto-pinto",
-            answers: "y y n  n - n  - y  n -",
+            answers: "y y n  n - n  - y  n -  n n",
             why: "after a short excursion the curve begins anew and overshoots",
             specimen: || Box::new(MenegottoPinto::new()),
         },
