@@ -123,7 +123,7 @@ pub enum Command {
     Look(Look),
     /// Determine properties of hysteresis, from measured data or of a model
     Diagnose(Diagnose),
-    /// Tables of cycles: energy, damping, coercive field, losses, width, creep
+    /// Tabulate each cycle: energy, damping, coercive field, losses, width, creep
     Cycles(Cycles),
     /// Compute the restoring force of an element from measured motion and force
     Force(Box<Force>),
@@ -207,10 +207,10 @@ impl ColumnOptions {
 /// In how many data sets a band is to contain its share of the rows.
 #[derive(Debug, Clone, Args)]
 pub struct DataSetsOptions {
-    /// With --band: widen it to contain that share in K of ten data sets
+    /// With --band: how sure the band is, in K of ten data sets
     ///
-    /// From 5-of-10, where half of all data sets have that share within the band, to 9-of-10, where the band is about twice as
-    /// wide.
+    /// In K of ten new data sets, at least the share of `--band` lies within the band. 5-of-10 gives the narrowest band;
+    /// 9-of-10 one about twice as wide.
     #[arg(long = "in", id = "of_ten", value_name = "K-of-10", default_value = "5-of-10", value_parser = of_ten, requires = "band")]
     pub of_ten: usize,
 }
@@ -305,9 +305,9 @@ pub struct Fit {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Exchange the first input and the output, to fit a model of the inverse
+    /// Fit an inverse model: the first input and the output are exchanged
     ///
-    /// The model then gives the input for a wanted output, by `hysid simulate`. Rows without output before the first and
+    /// `hysid simulate` with this model computes the input for a wanted output. Rows without output before the first and
     /// after the last one are left out. See also `hysid invert`, which inverts a model of the system itself.
     #[arg(long, help_heading = "Columns", hide_short_help = true)]
     pub inverse: bool,
@@ -734,8 +734,9 @@ pub struct Export {
     pub fmi: Option<String>,
     /// Also export the inverse, which gives the input for a wanted output (c, fmu)
     ///
-    /// With `--to fmu`, the unit is the inverse alone: its inputs are the wanted output and the further inputs, its
-    /// outputs the first input of the model, the output of the model, and whether it is the wanted one.
+    /// With `--to fmu`, the FMU contains only the inverse. Its inputs are the wanted output and the further inputs of the
+    /// model. Its outputs are the first input of the model, the output of the model, and whether the wanted output is
+    /// reached.
     #[arg(long)]
     pub inverse: bool,
     /// Lowest and highest input that the inverse gives [default: trained range]

@@ -94,13 +94,19 @@ fn headline(plan: &Plan) -> String {
         let shown = number(duration, 4);
         unit.map_or_else(|| format!(" (duration {shown})"), |unit| format!(" ({shown} {unit})"))
     });
-    let (low, high) = plan.limits.range;
+    let driven = plan
+        .input
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+    let range = |(low, high): (f64, f64)| {
+        format!("{} to {}", number(low, 4), hysid_document::unit::with(&number(high, 4), input))
+    };
     format!(
-        "{} rows{duration}: {} from {} to {}, at most {} {}",
+        "{} rows{duration}: {} from {}, within the limits {} and {} {}",
         plan.rows(),
         hysid_document::unit::split(input).0,
-        number(low, 4),
-        hysid_document::unit::with(&number(high, 4), input),
+        range(driven),
+        range(plan.limits.range),
         number(plan.limits.max_rate, 3),
         rate_unit(plan)
     )

@@ -87,8 +87,8 @@ pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>) -> Advice {
     statement.extend(law(&found).map(String::from));
     if model.is_some() {
         statement.push(
-            "how well it fits is not known before its error on held-out data was seen: fit the default, which cross-validates \
-             many models, and compare them (command compare)"
+            "to learn how well a model fits, cross-validate it: the default fit does so with many models, and the command \
+             compare lists the errors of all"
                 .into(),
         );
     }
@@ -190,18 +190,15 @@ fn law(found: &Found) -> Option<&'static str> {
     }
     if found.degrades() {
         return Some(
-            "with fewer parameters, if its shape fits: bouc-wen with the option degradation (stiffness and strength that \
-             degrade, pinching), or peak-oriented with it (members and joints); compare fits every law in all its variants",
+            "models with fewer parameters: bouc-wen (pinching too) or peak-oriented (members and joints), both with the \
+             option degradation",
         );
     }
     if found.pinching {
-        return Some(
-            "with fewer parameters, if its shape fits: peak-oriented (members and joints, pinched or full)",
-        );
+        return Some("a model with fewer parameters: peak-oriented (members and joints, pinched or full)");
     }
     (found.rate_dependence == Verdict::Yes).then_some(
-        "with fewer parameters, if its shape fits: rate-dependent-prandtl-ishlinskii, or bouc-wen with the rate; \
-         compare fits every law in all its variants",
+        "models with fewer parameters: rate-dependent-prandtl-ishlinskii, or bouc-wen with the rate",
     )
 }
 

@@ -125,7 +125,7 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     // Far above the noise, but not above what matters.
     let is_close = |c: &Comparison| is_doubtful(c) && c.deviation < CLEAR * c.index;
     let doubt = match comparisons.iter().any(is_close) {
-        true => "the largest difference is close to the relevant size",
+        true => "with its uncertainty, the largest difference may be below or above the size that matters",
         false => "noise or widely spaced rows may hide a relevant difference",
     };
     Some(Judgement {

@@ -65,7 +65,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
         || !shrinking.is_empty() && 2.0 * sum(&shrinking) >= trends.iter().map(energy).sum()
     {
         let text = format!(
-            "repeated loops lose up to {:.0} % of their energy ({} of {} kinds of loop shrink; Mann-Kendall score {trend_score:.1})",
+            "the energy of repeated loops falls by up to {:.0} % (in {} of {} groups of equal loops; Mann-Kendall score {trend_score:.1})",
             100.0 * strongest.loss,
             shrinking.len(),
             trends.len()
@@ -77,7 +77,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
         (
             Verdict::NotTestable,
             format!(
-                "some repeated loops lose up to {:.0} % of their energy, most keep it: they may only settle",
+                "the energy of some repeated loops falls by up to {:.0} %, that of most does not: they may only settle",
                 100.0 * strongest.loss
             ),
         )

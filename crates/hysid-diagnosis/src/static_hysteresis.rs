@@ -141,8 +141,8 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
         (
             Verdict::Yes,
             format!(
-                "loops fill {percent:.0} % of their bounding box, more than a lag that fits their tips \
-                     explains"
+                "loops fill {percent:.0} % of their bounding box, more than a pure lag with the same tips \
+                     would"
             ),
         )
     } else if !may_be_a_lag(survey, noise) {

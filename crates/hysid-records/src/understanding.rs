@@ -33,8 +33,8 @@ pub fn understanding(
     let used = request.rate().filter(|_| request.model().uses_rate());
     let rate = match used {
         None if request.model().uses_rate() && data.set.has_time() && data.set.speeds() == Speeds::One => {
-            "none: the data pass each place at one speed, which shows no dependence on it (to use the rate: \
-             --rate backward)"
+            "none: each input value was passed at one speed only, so the data cannot show a rate dependence (to use the \
+             rate anyway: --rate backward)"
                 .into()
         }
         used => rate(&data.roles.inputs[0], data.roles.rate.as_deref(), used),

@@ -47,8 +47,8 @@ pub struct Cycles {
     pub divide: Option<Division>,
     /// Remove from the output first: slope, drift
     ///
-    /// The slope is a straight background of each record, the drift what its output gains from beginning to end. The slope is that of the outer 30 % of the input; the drift is the gain of the output from the beginning of the
-    /// record to its end, if the input comes back.
+    /// `slope` subtracts a straight line from each record, with the slope of the outer 30 % of the input. `drift` subtracts
+    /// the change of the output between the first and the last row of each record; the input must return to its first value.
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = named::<Correction>, help_heading = "Method")]
     pub subtract: Vec<Correction>,
     /// Remove the offset of the output first

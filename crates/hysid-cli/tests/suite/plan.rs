@@ -48,6 +48,18 @@ fn a_drive_has_the_columns_of_the_data_and_a_page_beside_it() {
         assert!(said.stdout.contains(expected), "{expected}: {}", said.stdout);
     }
     assert!(said.stdout.contains("random reversals: many pairs of turning points"), "{}", said.stdout);
+    // The range that is said is that of the drive.
+    let words: Vec<&str> = said.stdout.split_whitespace().collect();
+    let place = words
+        .windows(2)
+        .position(|pair| pair == ["disp_mm", "from"])
+        .or_else(|| words.windows(2).position(|pair| pair == ["disp", "from"]));
+    let number = |word: &str| word.replace('−', "-").parse::<f64>().unwrap();
+    let place = place.unwrap_or_else(|| panic!("{}", said.stdout));
+    let largest = x.iter().fold(f64::NEG_INFINITY, |largest, &x| largest.max(x));
+    let smallest = x.iter().fold(f64::INFINITY, |smallest, &x| smallest.min(x));
+    assert!((number(words[place + 2]) - smallest).abs() < 1e-3, "{smallest}: {}", said.stdout);
+    assert!((number(words[place + 4]) - largest).abs() < 1e-3, "{largest}: {}", said.stdout);
     let widest = said.stdout.lines().map(|line| line.chars().count()).max().unwrap();
     assert!(widest <= 80, "{}", said.stdout);
     // The same again replaces the files of before.

@@ -41,10 +41,10 @@ pub fn advice_text(advice: &Advice, fit: &str) -> String {
 /// What the model must be able to do, in a line.
 fn needs(advice: &Advice) -> String {
     let needs = [
-        ("rate", advice.needs_rate),
+        ("rate dependence", advice.needs_rate),
         ("deterioration", advice.needs_deterioration),
         ("asymmetry", advice.needs_asymmetry),
-        ("memory of time", advice.needs_memory_of_time),
+        ("relaxation over time", advice.needs_memory_of_time),
     ];
     let of = |wanted: Verdict| -> Option<String> {
         let names: Vec<&str> =
@@ -52,9 +52,9 @@ fn needs(advice: &Advice) -> String {
         (!names.is_empty()).then(|| names.join(", "))
     };
     let parts = [
-        of(Verdict::Yes).map(|names| format!("needed: {names}")),
-        of(Verdict::No).map(|names| format!("not needed: {names}")),
-        of(Verdict::NotTestable).map(|names| format!("not known: {names}")),
+        of(Verdict::Yes).map(|names| format!("the model must represent: {names}")),
+        of(Verdict::No).map(|names| format!("need not represent: {names}")),
+        of(Verdict::NotTestable).map(|names| format!("not known from these data: {names}")),
     ];
     sentence(&parts.into_iter().flatten().collect::<Vec<String>>().join("; "))
 }
