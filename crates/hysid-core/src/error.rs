@@ -276,9 +276,12 @@ pub enum DataProblem {
     /// The input goes one way only.
     #[error("never turns: one branch does not determine the parameters of {0} (measure a whole loop)")]
     NeverTurns(&'static str),
-    /// The output falls where the input rises.
-    #[error("falls where the input rises, which no magnetisation does (reverse the sign of one of them)")]
-    Falls,
+    /// The output has no part that is a magnetisation.
+    #[error(
+        "has no part that rises with the field and saturates on both sides of 0, as a magnetisation does (is the sign of \
+         one of them reversed, or is the input not measured from 0?)"
+    )]
+    NoMagnetisation,
     /// The output has one value throughout.
     #[error("is constant ({}): there is nothing to identify", Significant(*.0))]
     ConstantOutput(f64),

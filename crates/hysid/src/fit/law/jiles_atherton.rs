@@ -32,7 +32,7 @@ impl Identify for JilesAtherton {
         let effort = Effort::of(options);
         search(&family, &series, effort, observer, stop).map_err(|error| match error {
             // All that a search can leave invalid is M_s = 0.
-            Error::Parts(_) => first.defect(None, Some(Channel::Output), DataProblem::Falls),
+            Error::Parts(_) => first.defect(None, Some(Channel::Output), DataProblem::NoMagnetisation),
             other => other,
         })
     }
