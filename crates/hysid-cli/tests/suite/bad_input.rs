@@ -164,8 +164,8 @@ fn unusual_input_that_is_accepted() {
         ("decimal commas, tabs", csv("t\tx\ty", "\t", "\r\n", &commas)),
         ("quotes", with_cell(3, 1, "\"0.5\"").replacen("x", "\"x, across\"", 1)),
         ("blank outputs", with_cell(3, 2, "")),
-        ("small values", with_column(1, |cell| format!("{cell}e-80"))),
-        ("large values", with_column(2, |cell| format!("{cell}e90"))),
+        ("small values", with_column(1, |cell| format!("{cell}e-40"))),
+        ("large values", with_column(2, |cell| format!("{cell}e40"))),
     ];
     for (name, text) in accepted {
         bench.put("data.csv", text);
