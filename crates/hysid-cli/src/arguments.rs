@@ -162,7 +162,9 @@ pub struct Demo {
 /// Which files may be replaced.
 #[derive(Debug, Clone, Args)]
 pub struct Overwriting {
-    /// Replace also files that Hysid did not write; kept as NAME.bak
+    /// Replace also files that Hysid did not write
+    ///
+    /// Each of them is kept as `NAME.bak`, or as `NAME.bak2` and so on if that name exists.
     #[arg(long)]
     pub force: bool,
 }

@@ -364,15 +364,16 @@ fn strength_loss(run: &Branches) -> Option<f64> {
     (count >= 3).then_some(loss)
 }
 
-/// Slope of the tenth of a branch in which the output passes 0, over the largest slope of a later tenth; the median of the
-/// branches over more than half of the range.
+/// Slope of the tenth of a branch that follows where the output passes 0, over the largest slope of a tenth from there on;
+/// the median of the branches over more than half of the range.
 fn pinching(run: &Branches) -> Option<f64> {
     let ratio = |branch: &Branch| {
-        let at = |part: usize| run.at(branch, branch.from + (branch.to - branch.from) * part as f64 / 10.0);
-        let heights: Vec<f64> = (0..=10).map(at).collect::<Option<_>>()?;
-        let passes = heights.windows(2).position(|pair| pair[0] * pair[1] <= 0.0)?;
-        let rises: Vec<f64> = heights.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
-        Some(rises[passes] / rises[passes..].iter().copied().fold(0.0, f64::max))
+        let at = |part: usize| run.at(branch, branch.from + (branch.to - branch.from) * part as f64 / 100.0);
+        let heights: Vec<f64> = (0..=100).map(at).collect::<Option<_>>()?;
+        let behind = heights.windows(2).position(|pair| pair[0] * pair[1] <= 0.0)? + 1;
+        let rises: Vec<f64> =
+            heights[behind..].windows(11).map(|tenth| (tenth[10] - tenth[0]).abs()).collect();
+        Some(rises.first()? / rises.iter().copied().fold(0.0, f64::max))
     };
     let large = run.branches.iter().filter(|branch| branch.travel() > 0.5 * run.width);
     let mut ratios: Vec<f64> = large.filter_map(ratio).collect();
