@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn laws_that_wear_out_or_see_the_rate_are_named() {
         let statement = |verdicts| advise(&findings(verdicts), None).statement.concat();
-        assert!(statement([Yes, No, No, No, No, Yes, Yes]).contains("bouc-wen with the option degradation"));
+        assert!(statement([Yes, No, No, No, No, Yes, Yes]).contains("both with the option degradation"));
         assert!(statement([Yes, Yes, Yes, Yes, Yes, Yes, No]).contains("rate-dependent-prandtl-ishlinskii"));
         assert!(!statement([Yes, No, Yes, Yes, Yes, Yes, No]).contains("fewer parameters"));
     }
