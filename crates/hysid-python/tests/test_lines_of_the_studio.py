@@ -4,7 +4,8 @@ import json
 import subprocess
 import sys
 import urllib.request
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
+from http.client import HTTPConnection
 
 import pytest
 
@@ -13,12 +14,16 @@ class Studio:
     """A studio that runs, and its requests."""
 
     def __init__(self, address: str):
+        # As the page: the token gives a ticket, and the ticket the key.
         self.origin, token = address.split("/?token=")
-        self.cookie = f"hysid-studio-{self.origin.rsplit(':')[-1]}={token}"
+        with closing(HTTPConnection(self.origin.removeprefix("http://"))) as connection:
+            connection.request("GET", f"/?token={token}")
+            self.headers = {"Cookie": connection.getresponse().headers["set-cookie"].split(";")[0]}
+        self.headers = {"X-Hysid-Key": self.ask("/api/session", {})["key"]}
 
     def ask(self, path: str, body=None):
         data = None if body is None else json.dumps(body).encode()
-        headers = {"Cookie": self.cookie, "Origin": self.origin, "Content-Type": "application/json"}
+        headers = {"Origin": self.origin, "Content-Type": "application/json", **self.headers}
         with urllib.request.urlopen(urllib.request.Request(self.origin + path, data, headers)) as answer:
             return json.load(answer)
 

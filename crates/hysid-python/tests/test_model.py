@@ -35,12 +35,13 @@ def test_only_a_model_is_replaced_and_it_is_kept(quick_model, quick_ensemble, tm
         quick_model.save(path)
     assert path.read_text() == "measured"
     quick_model.save(path, force=True)
-    assert os.listdir(tmp_path) == ["model.json"]
+    assert (tmp_path / "model.json.bak").read_text() == "measured"
     quick_model.save(path)
-    assert os.listdir(tmp_path) == ["model.json"], "the same again"
+    assert sorted(os.listdir(tmp_path)) == ["model.json", "model.json.bak"], "the same again"
     quick_ensemble.save(path)
     assert hysid.Model.load(path) == quick_ensemble
-    assert hysid.Model.load(tmp_path / "model.json.bak") == quick_model
+    assert hysid.Model.load(tmp_path / "model.json.bak2") == quick_model
+    assert (tmp_path / "model.json.bak").read_text() == "measured"
     with pytest.raises(FileNotFoundError):
         quick_model.save(tmp_path / "missing" / "model.json")
     with pytest.raises(IsADirectoryError):
@@ -56,10 +57,12 @@ def test_an_export_is_compiled_and_passes_its_own_test(quick_model, tmp_path):
     sources = ["piezo_stage.c", "piezo_stage_test.c"]
     subprocess.run(["cc", "-std=c99", "-ffp-contract=off", "-o", "test", *sources, "-lm"], cwd=folder, check=True)
     subprocess.run(["./test"], cwd=folder, check=True)
+    (folder / "README.md").write_text("mine")
     with pytest.raises(FileExistsError, match="force=True"):
         quick_model.export("c", folder)
     quick_model.export("c", folder, name="stage", precision="f32", force=True)
-    assert "stage.c" in os.listdir(folder) and "test" not in os.listdir(folder)
+    assert (folder / "README.md.bak").read_text() == "mine"
+    assert {"stage.c", "test"} <= set(os.listdir(folder)) and "piezo_stage.c" not in os.listdir(folder)
     for arguments, message in [
         ({"to": "cobol"}, "target"),
         ({"name": "2 x"}, "identifier"),
