@@ -209,7 +209,7 @@ impl ColumnOptions {
 /// In how many data sets a band is to contain its share of the rows.
 #[derive(Debug, Clone, Args)]
 pub struct DataSetsOptions {
-    /// With --band: how sure the band is, in K of ten data sets
+    /// With --band: in how many of ten data sets the band holds
     ///
     /// In K of ten new data sets, at least the share of `--band` lies within the band. 5-of-10 gives the narrowest band;
     /// 9-of-10 one about twice as wide.

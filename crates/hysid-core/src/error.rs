@@ -250,7 +250,7 @@ pub enum DataProblem {
     LeadIn(f64),
     /// Ranges of an input and the output that no slope can have.
     #[error(
-        "its range is {:.2} and that of the output {:.2}: their ratio must be from 1e-50 to 1e50 (choose other units)",
+        "has a range of {:.2}, and the output one of {:.2}: their ratio must be from 1e-50 to 1e50 (choose other units)",
         Significant(*input), Significant(*output)
     )]
     Ranges {
@@ -307,6 +307,21 @@ pub enum DataProblem {
         /// Rows needed.
         needed: usize,
     },
+}
+
+impl DataProblem {
+    /// True for a problem of a column in all records, which is reported with the first of them.
+    pub fn is_of_whole_column(&self) -> bool {
+        matches!(
+            self,
+            Self::ConstantInput(_)
+                | Self::ConstantOutput(_)
+                | Self::NothingToScore
+                | Self::Ranges { .. }
+                | Self::NeverTurns(_)
+                | Self::NoMagnetisation
+        )
+    }
 }
 
 impl fmt::Display for DataError {

@@ -20,6 +20,13 @@ pub struct Export {
     pub note: Option<String>,
 }
 
+impl Export {
+    /// Path in the folder and content of each file.
+    pub fn contents(&self) -> Vec<(&str, &[u8])> {
+        self.files.iter().map(|file| (file.path.as_str(), file.content.as_slice())).collect()
+    }
+}
+
 /// Exports a model.
 ///
 /// # Errors

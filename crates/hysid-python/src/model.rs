@@ -83,9 +83,6 @@ impl Model {
             ..Options::named(name)
         };
         let exported = py.detach(|| hysid_export::export(&self.model, target, &options)).map_err(refused)?;
-        let files = exported.files;
-        let contents: Vec<(&str, &[u8])> =
-            files.iter().map(|file| (file.path.as_str(), file.content.as_slice())).collect();
         // The model is in memory, and the folder may hold the file that it was read from.
         let destination = Folder {
             path: &folder,
@@ -96,8 +93,8 @@ impl Model {
             inputs: &[],
             force,
         };
-        destination.write(&contents).map_err(not_written)?;
-        Ok((files.into_iter().map(|file| file.path).collect(), exported.note))
+        destination.write(&exported.contents()).map_err(not_written)?;
+        Ok((exported.files.into_iter().map(|file| file.path).collect(), exported.note))
     }
 
     /// Number of fitted parameters.

@@ -206,12 +206,8 @@ pub fn explained(file: &str, line: Option<u64>, error: hysid_core::Error, roles:
             anyhow!("{file}: only {found} rows have an output: at least {needed} are needed")
         }
         (problem @ DataProblem::TooFewForTests { .. }, ..) => anyhow!("{file}: {problem}"),
-        (
-            DataProblem::ConstantInput(_) | DataProblem::ConstantOutput(_) | DataProblem::NothingToScore,
-            _,
-            Some(column),
-        ) => {
-            anyhow!("{file}: column \"{}\" {}", clipped(column), error.problem)
+        (problem, _, Some(column)) if problem.is_of_whole_column() => {
+            anyhow!("{file}: column \"{}\" {problem}", clipped(column))
         }
         (problem, ..) => anyhow!("{file}: {problem}{}", advice(problem)),
     }
@@ -243,13 +239,7 @@ fn advice(problem: &DataProblem) -> &'static str {
 
 /// True for problems of the data set as a whole, which the library reports with its first record.
 fn concerns_all(error: &DataError) -> bool {
-    matches!(
-        error.problem,
-        DataProblem::ConstantInput(_)
-            | DataProblem::ConstantOutput(_)
-            | DataProblem::NothingToScore
-            | DataProblem::TooFewRows { .. }
-    )
+    error.problem.is_of_whole_column() || matches!(error.problem, DataProblem::TooFewRows { .. })
 }
 
 fn column(channel: Channel, roles: &Roles) -> Option<&str> {

@@ -64,8 +64,6 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         Error::Precision(_) => Usage(format!("--precision: {error}")).into(),
         error => anyhow!("{}: {error}", arguments.model.display()),
     })?;
-    let contents: Vec<(&str, &[u8])> =
-        exported.files.iter().map(|file| (file.path.as_str(), file.content.as_slice())).collect();
     let destination = Folder {
         path: &folder,
         what: "export of Hysid",
@@ -75,7 +73,7 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         inputs: &[&arguments.model],
         force: arguments.overwriting.force,
     };
-    let kept = destination.write(&contents).map_err(files::explained_folder)?;
+    let kept = destination.write(&exported.contents()).map_err(files::explained_folder)?;
     match arguments.json {
         true => json_results(&Printed::of(&folder, arguments, &options, &exported))?,
         false => {

@@ -124,6 +124,7 @@ fn values_that_nothing_can_be_learnt_from() {
             ("huge input", with_cell(4, 1, "1e200").into()),
             ("huge output", with_cell(4, 2, "-1e200").into()),
             ("tiny output", scaled(2, "e-200").into()),
+            ("ranges far apart", scaled(1, "e-90").into()),
         ],
         r#"
         one row => : only 1 row has an output: at least 10 are needed
@@ -135,9 +136,17 @@ fn values_that_nothing_can_be_learnt_from() {
         huge input => , line 6, column "x": 1e200 is too large: at most 1e100 in magnitude (choose another unit)
         huge output => , line 6, column "y": -1e200 is too large: at most 1e100 in magnitude (choose another unit)
         tiny output => : column "y" is constant (-9.95e-201): there is nothing to identify
+        ranges far apart => : column "x" has a range of 1.9e-90, and the output one of 1.9: their ratio must be from 1e-50 to 1e50 (choose other units)
     "#,
     );
     let bench = Workbench::new();
+    bench.put(
+        "branch.csv",
+        csv("H,B", ",", "\n", &(0..40).map(|k| vec![format!("-{k}"), format!("0.{k}")]).collect::<Vec<_>>()),
+    );
+    let ran = bench.run("fit branch.csv --input H --output B --model jiles-atherton");
+    let told = r#"error: branch.csv: column "H" never turns: one branch does not determine the parameters of jiles-atherton"#;
+    assert!(ran.last_line().starts_with(told), "{}", ran.stderr);
     bench.put("steps.csv", scaled(0, "e-300"));
     let ran = bench.run("fit steps.csv --model xpnn --rate backward");
     let told = r#"line 3, column "t": the rate here is "#;

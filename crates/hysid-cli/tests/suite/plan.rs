@@ -50,12 +50,9 @@ fn a_drive_has_the_columns_of_the_data_and_a_page_beside_it() {
     assert!(said.stdout.contains("random reversals: many pairs of turning points"), "{}", said.stdout);
     // The range that is said is that of the drive.
     let words: Vec<&str> = said.stdout.split_whitespace().collect();
-    let place = words
-        .windows(2)
-        .position(|pair| pair == ["disp_mm", "from"])
-        .or_else(|| words.windows(2).position(|pair| pair == ["disp", "from"]));
-    let number = |word: &str| word.replace('−', "-").parse::<f64>().unwrap();
+    let place = words.windows(2).position(|pair| pair == ["disp", "from"]);
     let place = place.unwrap_or_else(|| panic!("{}", said.stdout));
+    let number = |word: &str| word.replace('−', "-").parse::<f64>().unwrap();
     let largest = x.iter().fold(f64::NEG_INFINITY, |largest, &x| largest.max(x));
     let smallest = x.iter().fold(f64::INFINITY, |smallest, &x| smallest.min(x));
     assert!((number(words[place + 2]) - smallest).abs() < 1e-3, "{smallest}: {}", said.stdout);

@@ -513,8 +513,9 @@ impl Dataset {
             let problem = DataProblem::TooFewRows { found, needed };
             return Err(first.defect(None, Some(Channel::Output), problem));
         }
-        for input in 0..self.names.inputs.len() {
-            let (low, high) = self.input_range(input);
+        let ranges: Vec<(f64, f64)> =
+            (0..self.names.inputs.len()).map(|input| self.input_range(input)).collect();
+        for (input, &(low, high)) in ranges.iter().enumerate() {
             if high - low <= low.abs().max(high.abs()) * 1e-12 + 1e-100 {
                 let problem = DataProblem::ConstantInput(low);
                 return Err(first.defect(None, Some(Channel::Input(input)), problem));
@@ -525,11 +526,10 @@ impl Dataset {
             return Err(first.defect(None, Some(Channel::Output), DataProblem::ConstantOutput(low)));
         }
         let output = high - low;
-        for input in 0..self.names.inputs.len() {
-            let (low, high) = self.input_range(input);
-            let input_range = high - low;
-            if !(output / input_range <= LARGEST_RATIO && input_range / output <= LARGEST_RATIO) {
-                let problem = DataProblem::Ranges { input: input_range, output };
+        for (input, (low, high)) in ranges.into_iter().enumerate() {
+            let range = high - low;
+            if !(output / range <= LARGEST_RATIO && range / output <= LARGEST_RATIO) {
+                let problem = DataProblem::Ranges { input: range, output };
                 return Err(first.defect(None, Some(Channel::Input(input)), problem));
             }
         }
