@@ -1,7 +1,7 @@
 //! `cargo xtask test`: every test there is, one step after the other. A step that needs something installed
 //! installs it first, so that a fresh clone needs nothing but a Rust toolchain, and Python for the package.
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 
 use crate::cargo::{EVERYTHING, build_everything, cargo};
 use crate::environment::Environment;
@@ -11,11 +11,12 @@ use crate::{browser, python, site};
 pub fn run() -> Result<()> {
     let proofs = Proofs::begin()?;
     build_everything()?;
-    rust(&proofs)?;
-    python::test()?;
-    browser::test(&proofs)?;
-    site::run()?;
+    // What fails in one step does not hide what fails in the next.
+    let results = [rust(&proofs), python::test(), browser::test(&proofs), site::run()];
     proofs.show();
+    let failures: Vec<_> =
+        results.into_iter().filter_map(Result::err).map(|error| format!("{error:#}")).collect();
+    ensure!(failures.is_empty(), "{}", failures.join("\n"));
     Ok(())
 }
 
@@ -34,5 +35,5 @@ fn rust(proofs: &Proofs) -> Result<()> {
     let python = Environment::of_package()?.python_path();
     let environment =
         [("HYSID_PYTHON", &*python.to_string_lossy()), ("HYSID_UNPROVED", &*proofs.path().to_string_lossy())];
-    cargo(&[&["test"], &EVERYTHING[..]].concat(), &environment)
+    cargo(&[&["test", "--no-fail-fast"], &EVERYTHING[..]].concat(), &environment)
 }

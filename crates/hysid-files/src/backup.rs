@@ -4,7 +4,6 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::failure::Failure;
 use crate::kind::Kind;
 use crate::temporary::{beginning, builder, folder_of, plain, with_ending};
 
@@ -13,14 +12,12 @@ pub(crate) fn path_of(target: &Path) -> PathBuf {
     with_ending(target, ".bak")
 }
 
-/// Refuses a copy that would replace a file of another kind.
-pub(crate) fn check(target: &Path, kind: &Kind) -> Result<(), Failure> {
+/// True if `NAME.bak` is free, or holds an older file of the same kind.
+pub(crate) fn is_free(target: &Path, kind: &Kind) -> bool {
     let path = path_of(target);
     match fs::symlink_metadata(&path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        Ok(there) if there.is_file() && kind.recognises(&path).map_err(Failure::refused(&path))? => Ok(()),
-        Ok(_) => Err(Failure::NotOurs { path, expected: kind.words() }),
-        Err(error) => Err(Failure::refused(&path)(error)),
+        Ok(there) => there.is_file() && kind.recognises(&path).unwrap_or(false),
+        Err(error) => error.kind() == io::ErrorKind::NotFound,
     }
 }
 

@@ -112,7 +112,7 @@ impl Destination {
         Ok(match (self.kind.recognises(target)?, self.keep) {
             _ if fs::metadata(target)?.len() == 0 => Copy::None,
             (true, false) => Copy::None,
-            (true, true) if backup::check(target, &self.kind).is_ok() => Copy::Replacing,
+            (true, true) if backup::is_free(target, &self.kind) => Copy::Replacing,
             _ => Copy::Aside,
         })
     }
