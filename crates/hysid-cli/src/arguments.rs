@@ -236,8 +236,8 @@ fn of_ten(text: &str) -> Result<usize, String> {
 pub struct BeginningOptions {
     /// State of the memory at the beginning of each record [default: as trained]
     ///
-    /// One of virgin, saturated-up (after a visit of the upper end of the trained input range), saturated-down and
-    /// demagnetised. The default is the state of most training records.
+    /// One of virgin, saturated-up (after a visit of the upper end of the trained input range), saturated-down,
+    /// demagnetised and periodic (after one period of the record itself). The default is the state of most training records.
     #[arg(long, value_name = "NAME", value_parser = known_state)]
     pub initial_state: Option<InitialState>,
 }

@@ -198,12 +198,14 @@ impl Dimension {
         if powers.iter().any(|(power, unit)| *power != 0 && unit.is_none()) {
             return String::new();
         }
+        let is_alone = powers.iter().map(|(power, _)| power.abs()).sum::<i32>() == 1;
         let factors = |above: bool| -> Vec<String> {
             let wanted = powers.iter().filter(|(power, _)| *power != 0 && (*power > 0) == above);
             let factor = |&(power, unit): &(i32, Option<&str>)| {
                 let unit = unit.unwrap_or_default();
-                // A unit that is a quotient itself is bracketed, so that it is read as one.
-                let unit = if unit.contains('/') { format!("({unit})") } else { unit.to_string() };
+                // A quotient among other factors, or below, is bracketed, so that it is read as one.
+                let is_bracketed = unit.contains('/') && !(is_alone && above);
+                let unit = if is_bracketed { format!("({unit})") } else { unit.to_string() };
                 if power.abs() == 1 { unit } else { format!("{unit}^{}", power.abs()) }
             };
             wanted.map(factor).collect()

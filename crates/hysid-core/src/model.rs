@@ -67,6 +67,8 @@ pub struct Model {
     trained: TrainedRanges,
     /// Lead-in of records that have none of their own; empty for the virgin state.
     lead_in: Vec<f64>,
+    /// Records that have no lead-in begin after one period of themselves.
+    is_periodic: bool,
     band: Option<Band>,
     provenance: Provenance,
 }
@@ -126,8 +128,11 @@ fn errors(mut runner: Runner<'_>, data: &Dataset) -> Result<Errors> {
         .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))
 }
 
-/// The lead-ins of the records, if they differ.
+/// The lead-ins of the records, if they differ and do not follow from the records.
 fn lead_ins(data: &Dataset) -> Vec<RecordLeadIn> {
+    if data.begin_periodically() {
+        return Vec::new();
+    }
     let of = |record: &Record| RecordLeadIn {
         record: record.name().into(),
         lead_in: record.lead_in().unwrap_or_default().to_vec(),
@@ -330,6 +335,7 @@ impl Model {
             None => None,
         };
         let provenance = found.on(data, train, train_after_warm_up);
+        let is_periodic = data.begin_periodically();
         let mut model = Self {
             body,
             preprocessing,
@@ -341,7 +347,8 @@ impl Model {
                 output: data.output_range(),
                 records: remembered(data),
             },
-            lead_in: data.most_frequent_lead_in().to_vec(),
+            lead_in: if is_periodic { Vec::new() } else { data.most_frequent_lead_in().to_vec() },
+            is_periodic,
             band: None,
             provenance,
         };
@@ -514,10 +521,16 @@ impl Model {
         &self.lead_in
     }
 
+    /// True if a record that has no lead-in of its own begins after one period of itself
+    /// ([`InitialState::Periodic`]). Sample by sample the model then begins in the virgin state.
+    pub fn is_periodic(&self) -> bool {
+        self.is_periodic
+    }
+
     /// The lead-in of an initial state for this model, with the range of its training data and its origin.
     ///
     /// # Errors
-    /// An unknown state, which is found only in a fit.
+    /// An unknown state, which is found only in a fit, and a periodic one, which depends on the record.
     pub fn lead_in_of(&self, state: InitialState) -> Result<Vec<f64>> {
         let origins = match &self.body {
             Predictor::Ensemble(ensemble) => ensemble.members(),
@@ -526,9 +539,11 @@ impl Model {
         // Members that measure the input from the data have one origin, the others 0.
         let origin = origins.iter().map(|model| model.preprocessing.origin(0)).find(|origin| *origin != 0.0);
         state.lead_in(self.trained.inputs[0], origin.unwrap_or_default()).ok_or_else(|| {
+            let known =
+                InitialState::known().into_iter().filter(|name| *name != InitialState::Periodic.name());
             let needed = format!(
                 "choose one of {}; without it the initial state is that of the training",
-                InitialState::known().join(", ")
+                known.collect::<Vec<_>>().join(", ")
             );
             OptionError::value("initial_state", state.name(), needed).into()
         })
@@ -537,17 +552,21 @@ impl Model {
     /// The same model with another initial state for records that have none of their own.
     ///
     /// # Errors
-    /// As [`Model::lead_in_of`].
+    /// An unknown state.
     pub fn with_initial_state(mut self, state: InitialState) -> Result<Self> {
-        self.lead_in = self.lead_in_of(state)?;
+        self.is_periodic = state == InitialState::Periodic;
+        self.lead_in = if self.is_periodic { Vec::new() } else { self.lead_in_of(state)? };
         Ok(self)
     }
 
-    /// The training data with the lead-ins that their records had in training, where these differ.
+    /// The training data with the lead-ins that their records had in training, where these differ or are periodic.
     ///
     /// # Errors
     /// None for a model that was fitted or read from a file.
     pub fn as_trained<'d>(&self, data: &'d Dataset) -> Result<Cow<'d, Dataset>> {
+        if self.is_periodic {
+            return data.clone().with_periodic_lead_ins().map(Cow::Owned);
+        }
         if self.provenance.lead_ins.is_empty() {
             return Ok(Cow::Borrowed(data));
         }
@@ -717,6 +736,7 @@ impl Model {
     fn forget_records(&mut self) {
         self.trained.records.clear();
         self.lead_in.clear();
+        self.is_periodic = false;
         self.provenance.lead_ins.clear();
     }
 

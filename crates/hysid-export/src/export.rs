@@ -53,5 +53,9 @@ pub fn export(model: &Model, to: Target, options: &Options) -> Result<Export, Er
     }
     files.push(File::new("README.md", readme(&subject, to, &files)));
     files.push(File::new(MANIFEST, manifest(&subject, back_end.name, &files)));
+    let note = note
+        .into_iter()
+        .chain(model.stepping_note().map(String::from))
+        .reduce(|all, one| format!("{all}; {one}"));
     Ok(Export { files, note })
 }

@@ -1,5 +1,6 @@
 //! Fitted models.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -126,8 +127,8 @@ impl Model {
         rate: Option<Column<'_>>,
         initial_state: Option<&str>,
     ) -> PyResult<NewColumn<'py>> {
-        let lead_in = self.lead_in(initial_state)?;
-        let run = |excitation: &Excitation<'_>| self.model.response(&after(excitation, &lead_in)?);
+        let model = self.begun(initial_state)?;
+        let run = |excitation: &Excitation<'_>| model.response(excitation);
         Ok(PyArray1::from_vec(py, driven(py, name, time, inputs, rate, run)?))
     }
 
@@ -144,9 +145,9 @@ impl Model {
         of_ten: usize,
         initial_state: Option<&str>,
     ) -> PyResult<[NewColumn<'py>; 3]> {
-        let lead_in = self.lead_in(initial_state)?;
+        let model = self.begun(initial_state)?;
         let level = BandLevel { probability, of_ten };
-        let run = |excitation: &Excitation<'_>| self.model.predict(&after(excitation, &lead_in)?, level);
+        let run = |excitation: &Excitation<'_>| model.predict(excitation, level);
         let Prediction { output, low, high } = driven(py, name, time, inputs, rate, run)?;
         Ok([output, low, high].map(|column| PyArray1::from_vec(py, column)))
     }
@@ -165,15 +166,10 @@ impl Model {
         initial_state: Option<&str>,
     ) -> PyResult<String> {
         let set = Arc::clone(&data.set);
-        let state = initial_state.map(str::parse::<InitialState>).transpose().map_err(refused)?;
-        let evaluate = || {
-            let begun =
-                state.map(|state| model::Model::clone(&self.model).with_initial_state(state)).transpose()?;
-            let model = begun.as_ref().unwrap_or(&self.model);
-            match after_warm_up && model.warm_up() > 0 {
-                true => model.evaluate_after_warm_up(&set),
-                false => model.evaluate(&set).map(Some),
-            }
+        let model = self.begun(initial_state)?;
+        let evaluate = || match after_warm_up && model.warm_up() > 0 {
+            true => model.evaluate_after_warm_up(&set),
+            false => model.evaluate(&set).map(Some),
         };
         let errors = py.detach(evaluate).map_err(refused)?;
         let errors = errors.ok_or_else(|| refused("no row after the warm-up has a measured output"))?;
@@ -183,14 +179,11 @@ impl Model {
     /// Tests of the residual of free runs over all records, as JSON.
     fn residuals(&self, py: Python<'_>, data: &Dataset, initial_state: Option<&str>) -> PyResult<String> {
         let set = Arc::clone(&data.set);
-        let state = initial_state.map(str::parse::<InitialState>).transpose().map_err(refused)?;
+        let model = self.begun(initial_state)?;
         let test = || {
-            let begun =
-                state.map(|state| model::Model::clone(&self.model).with_initial_state(state)).transpose()?;
-            let model = begun.as_ref().unwrap_or(&self.model);
             let is_training = !model.known_records(&set).is_empty();
             let options = ResidualOptions { is_training, ..ResidualOptions::default() };
-            Residuals::of_model(model, &set, &options)
+            Residuals::of_model(&model, &set, &options)
         };
         serde_json::to_string(&py.detach(test).map_err(refused)?).map_err(refused)
     }
@@ -255,18 +248,11 @@ impl Model {
 }
 
 impl Model {
-    /// The lead-in of a named initial state; `None` for that of the model.
-    fn lead_in(&self, state: Option<&str>) -> PyResult<Option<Vec<f64>>> {
-        let of_name = |name: &str| self.model.lead_in_of(name.parse()?);
-        state.map(of_name).transpose().map_err(|error: hysid::Error| refused(error))
-    }
-}
-
-/// The excitation after a lead-in, if there is one.
-fn after<'e>(excitation: &Excitation<'e>, lead_in: &'e Option<Vec<f64>>) -> hysid::Result<Excitation<'e>> {
-    match lead_in {
-        Some(lead_in) => excitation.clone().with_lead_in(lead_in),
-        None => Ok(excitation.clone()),
+    /// The model, whose records begin in the named initial state if there is one.
+    fn begun(&self, state: Option<&str>) -> PyResult<Cow<'_, model::Model>> {
+        let Some(name) = state else { return Ok(Cow::Borrowed(&*self.model)) };
+        let begun = |name: &str| model::Model::clone(&self.model).with_initial_state(name.parse()?);
+        begun(name).map(Cow::Owned).map_err(refused)
     }
 }
 

@@ -134,6 +134,9 @@ pub fn page(report: &Report) -> Page {
 
 /// The state in which records begin, in a few words; `None` if it is the virgin one, in training too.
 pub fn initial_state(model: &Model) -> Option<String> {
+    if model.is_periodic() {
+        return Some("after one period of the record".into());
+    }
     let has_past = !model.lead_in().is_empty() || !model.provenance().lead_ins.is_empty();
     has_past.then(|| in_words(model.lead_in(), model.trained_ranges().inputs[0]))
 }

@@ -50,6 +50,10 @@ fn limits(report: &Report) -> Part {
             "It starts every record in the virgin state. If the specimen has a history that the record does not \
              contain, give its initial state (--initial-state)."
         }
+        Some(_) if report.model.is_periodic() => {
+            "It starts every record after one period of the record itself, and sample by sample (exports too) in the \
+             virgin state: its first period is then a transient."
+        }
         Some(_) => {
             "It starts every record in the state in which most training records begin. If the specimen is in \
              another state, give it (--initial-state)."

@@ -11,7 +11,7 @@
 //! - The law violates a property of the memory, but the record shows so only between branches of different speed, where
 //!   the rate could be the reason.
 //! - The slope at the end, the direction of the loops or their area at rest is close to the limit on this path.
-//! - The law neither wears nor depends on the rate, but its first loops shrink or move while it settles: the record
+//! - The law neither wears nor depends on the rate, but its first loops shrink, lose force or move while it settles: the record
 //!   shows what wear or an asymmetry would show.
 //! - A law that depends on the rate was recorded without time: a verdict on loops at rest then assumes that the record
 //!   was slow, and says so.
@@ -64,7 +64,7 @@ pub fn truth(law: Answers, evidence: &Evidence, path: &Path, disturbance: &Distu
         let Some(index) = evidence[property] else { continue };
         let hardly_shows = law[property] == Some(violated) && index < CLEARLY * effect;
         let settles = law[property] == Some(!violated)
-            && matches!(property, ODD_SYMMETRY | DETERIORATION)
+            && matches!(property, ODD_SYMMETRY | DETERIORATION | STRENGTH_LOSS)
             && !depends_on_rate
             && index > effect / CLEARLY;
         if hardly_shows || settles {

@@ -55,7 +55,9 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
 
     let understood = understood(arguments, &model, &roles, &inverted);
     note_labelled(&understood);
-    let warnings = warnings(&inverted);
+    let mut warnings = warnings(&inverted);
+    warnings
+        .extend(model.stepping_note().map(|note| format!("{note} (simulate with --initial-state virgin)")));
     warnings.iter().for_each(warning);
     let text = header.into_iter().chain(rows(&table, &wanted, &inverted)?).collect::<Vec<u8>>();
     match &drive {

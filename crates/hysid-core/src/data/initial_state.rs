@@ -5,6 +5,7 @@
 //! saturated-up       h
 //! saturated-down     l
 //! demagnetised       c + (-1)^k A (1 - k/40),  k = 0 .. 39,   A = max(h - c, c - l)     theory.md (11.10)
+//! periodic           the turning points of the record itself
 //! ```
 //!
 //! A *lead-in* is what the first input did before the first row of a record: its turning points, in its unit.
@@ -17,7 +18,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::data::turning_points::turning_points;
+use crate::error::{Error, MOST_TURNS, Result};
 use crate::significant::Significant;
 
 /// Half cycles of a demagnetisation.
@@ -39,14 +41,22 @@ pub enum InitialState {
     SaturatedDown,
     /// After cycles about the origin whose amplitude fell to 0.
     Demagnetised,
+    /// After one period: each record is one or more periods of a steady state.
+    Periodic,
     /// To be found for each record, from its output.
     Unknown,
 }
 
 impl InitialState {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::Virgin, Self::SaturatedUp, Self::SaturatedDown, Self::Demagnetised, Self::Unknown];
+    pub const ALL: [Self; 6] = [
+        Self::Virgin,
+        Self::SaturatedUp,
+        Self::SaturatedDown,
+        Self::Demagnetised,
+        Self::Periodic,
+        Self::Unknown,
+    ];
 
     /// The name on the command line, in Python and in model files.
     pub fn name(self) -> &'static str {
@@ -55,6 +65,7 @@ impl InitialState {
             Self::SaturatedUp => "saturated-up",
             Self::SaturatedDown => "saturated-down",
             Self::Demagnetised => "demagnetised",
+            Self::Periodic => "periodic",
             Self::Unknown => "unknown",
         }
     }
@@ -65,7 +76,7 @@ impl InitialState {
     }
 
     /// The lead-in, in the unit of the first input, for its trained range and its origin in that unit. `None`
-    /// for an unknown state.
+    /// for a state that depends on the record: a periodic and an unknown one.
     pub fn lead_in(self, (low, high): (f64, f64), origin: f64) -> Option<Vec<f64>> {
         match self {
             Self::Virgin => Some(Vec::new()),
@@ -79,7 +90,7 @@ impl InitialState {
                 };
                 Some((0..HALF_CYCLES).map(turn).collect())
             }
-            Self::Unknown => None,
+            Self::Periodic | Self::Unknown => None,
         }
     }
 }
@@ -93,6 +104,15 @@ impl FromStr for InitialState {
             Error::UnknownName { what: "initial state", name: name.into(), known }
         })
     }
+}
+
+/// The lead-in of a record that is one or more periods of a steady state, from its first input: all turning points of
+/// the way over the record and back to its first row, or the last 10,000 of them.
+pub fn lead_in_of_period(input: &[f64]) -> Vec<f64> {
+    let mut way = input.to_vec();
+    way.extend(input.first());
+    let turns = turning_points(&way, 0.0);
+    turns[turns.len().saturating_sub(MOST_TURNS)..].iter().map(|&row| way[row]).collect()
 }
 
 /// The lead-ins that are tried where the initial state is unknown, for this range of the first input, in its
@@ -138,6 +158,17 @@ mod tests {
         assert!(((turns[39] - 0.5).abs() - gap).abs() < 1e-12);
         // The larger end may be the lower one.
         assert_eq!(InitialState::Demagnetised.lead_in(range, 2.0).unwrap()[0], -1.0);
+    }
+
+    #[test]
+    fn a_period_is_gone_round_before_the_first_row() {
+        assert_eq!(lead_in_of_period(&[0.0, 1.0, 2.0, 1.0, -2.0, -1.0, -0.5]), [2.0, -2.0]);
+        // The way back to the first row may turn in the last one.
+        assert_eq!(lead_in_of_period(&[0.0, 3.0, 1.0, 2.0]), [3.0, 1.0, 2.0]);
+        assert_eq!(lead_in_of_period(&[2.0, -2.0, 2.0]), [-2.0]);
+        assert!(lead_in_of_period(&[]).is_empty() && lead_in_of_period(&[1.0, 1.0]).is_empty());
+        let many: Vec<f64> = (0..20_011).map(|row| f64::from(row % 2)).collect();
+        assert_eq!(lead_in_of_period(&many).len(), 10_000);
     }
 
     #[test]

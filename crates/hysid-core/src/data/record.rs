@@ -12,6 +12,7 @@ mod speeds;
 mod thinning;
 mod values;
 
+use crate::data::initial_state::lead_in_of_period;
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, Result};
 pub use copies::Likeness;
@@ -408,6 +409,23 @@ impl Dataset {
             })
             .collect::<Result<_>>()?;
         Ok(self)
+    }
+
+    /// The same data, each record after one period of itself.
+    ///
+    /// # Errors
+    /// None for data with an input.
+    pub fn with_periodic_lead_ins(self) -> Result<Dataset> {
+        self.with_lead_ins(|_, record| lead_in_of_period(&record.inputs()[0]))
+    }
+
+    /// True if each record begins after one period of itself.
+    pub fn begin_periodically(&self) -> bool {
+        let is_periodic = |record: &Record| {
+            let own = record.lead_in().filter(|lead_in| !lead_in.is_empty());
+            own.is_some_and(|own| *own == lead_in_of_period(&record.inputs()[0]))
+        };
+        self.records.iter().all(is_periodic)
     }
 
     /// The lead-in that most records with an output have; of several as frequent, that of the first of them.

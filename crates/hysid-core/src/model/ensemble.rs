@@ -27,6 +27,10 @@ const WAY_OUT: f64 = 0.06;
 /// Largest depth of nested groups.
 const DEEPEST: usize = 8;
 
+/// Most members of an ensemble, each counted as often as its groups name it. `auto` of the largest ensemble that its
+/// options allow has fewer.
+const MOST_MEMBERS: usize = 2_000;
+
 /// Several models whose predictions are combined by nested weighted medians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ensemble {
@@ -183,9 +187,14 @@ impl Ensemble {
     ///
     /// # Errors
     /// A group without nodes, a member that does not exist, an ensemble as a member, members of different
-    /// inputs, weights that are negative, not finite or all 0, inside and outside.
+    /// inputs, more than 2,000 members, weights that are negative, not finite or all 0, inside and outside.
     pub fn new(mut members: Vec<Model>, group: Group, range: (f64, f64)) -> Result<Self> {
         group.check(members.len(), DEEPEST)?;
+        let named = group.leaves().max(members.len());
+        if named > MOST_MEMBERS {
+            let problem = format!("an ensemble has {named} members, at most {MOST_MEMBERS} are possible");
+            return Err(Error::Parts(problem));
+        }
         if members.iter().any(|member| member.ensemble().is_some()) {
             return Err(Error::Parts("an ensemble cannot be a member of another".into()));
         }
@@ -287,6 +296,15 @@ impl Group {
             }
         }
         shares
+    }
+
+    /// Number of members that the group and those in it name, repeated ones included.
+    fn leaves(&self) -> usize {
+        let of_node = |node: &Node| match &node.kind {
+            NodeKind::Member(_) => 1,
+            NodeKind::Group(group) => group.leaves(),
+        };
+        self.nodes.iter().map(of_node).sum()
     }
 
     /// Sums of the weights inside and outside.

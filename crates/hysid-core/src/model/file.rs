@@ -38,6 +38,8 @@ struct File {
     trained_ranges: TrainedRanges,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     lead_in: Vec<f64>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    periodic: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     network: Option<NetworkParts>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -228,6 +230,7 @@ impl MemberParts {
             names: columns.clone(),
             trained: self.trained_ranges,
             lead_in: Vec::new(),
+            is_periodic: false,
             band: None,
             provenance: self.training,
         };
@@ -266,6 +269,7 @@ pub(super) fn write(model: &Model) -> String {
         preprocessing: model.preprocessing.clone(),
         trained_ranges: model.trained.clone(),
         lead_in: model.lead_in.clone(),
+        periodic: model.is_periodic,
         network,
         law,
         ensemble,
@@ -354,6 +358,7 @@ fn assemble(file: File) -> Result<Model> {
         names: file.columns,
         trained: file.trained_ranges,
         lead_in: file.lead_in,
+        is_periodic: file.periodic,
         band: file.band.map(Band::validated).transpose()?,
         provenance: file.training,
     };
@@ -372,6 +377,9 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
         return Err(Error::Parts(format!(
             "its lead-in has {found} turning points, at most {MOST_TURNS} are possible"
         )));
+    }
+    if model.is_periodic && !model.lead_in.is_empty() {
+        return Err(Error::Parts("its records begin in two states".into()));
     }
     let added = model.preprocessing.added_inputs();
     let inputs = match &model.body {

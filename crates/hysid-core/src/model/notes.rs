@@ -55,6 +55,20 @@ impl Model {
         if found.is_none() && provenance.options.initial_state() != Some(InitialState::Unknown) {
             return None;
         }
+        let why = found.map_or_else(String::new, |found| {
+            format!(
+                ", because the cross-validation error of quick models is {:.3} % of std with these states, and \
+                 {:.3} % from the virgin state",
+                Significant(found.found_percent),
+                Significant(found.virgin_percent)
+            )
+        });
+        if self.is_periodic() {
+            return Some(format!(
+                "initial state: each record begins after one period of itself{why}; so do new data, unless another \
+                 initial state is given (initial_state)"
+            ));
+        }
         let range = self.trained_ranges().inputs[0];
         let mut counts: Vec<(String, usize)> = Vec::new();
         for known in &provenance.lead_ins {
@@ -75,17 +89,18 @@ impl Model {
                 counts.iter().map(begin).collect::<Vec<String>>().join(", ")
             }
         };
-        let why = found.map_or_else(String::new, |found| {
-            format!(
-                ", because the cross-validation error of quick models is {:.3} % of std with these states, and \
-                 {:.3} % from the virgin state",
-                Significant(found.found_percent),
-                Significant(found.virgin_percent)
-            )
-        });
         Some(format!(
             "initial state: {begin}{why}; new data begin {all} unless another initial state is given (initial_state)"
         ))
+    }
+
+    /// What a caller must know that runs the model sample by sample, if its records begin after a period that is not
+    /// known then.
+    pub fn stepping_note(&self) -> Option<&'static str> {
+        self.is_periodic().then_some(
+            "records of this model begin after one period of themselves; here it begins in the virgin state, and its \
+             first period is a transient",
+        )
     }
 
     fn one_loop_note(&self) -> Option<String> {

@@ -3,6 +3,9 @@
 //! Each chunk has the rates of its first input and the time steps. They follow from the neighbouring rows, so
 //! the outputs are the same to the last bit for any division of a record.
 
+use std::borrow::Cow;
+
+use crate::data::initial_state::lead_in_of_period;
 use crate::data::rate::RateMethod;
 use crate::data::record::Excitation;
 use crate::error::{DataProblem, Result};
@@ -35,6 +38,8 @@ pub(super) struct Runner<'m> {
     steps: Vec<f64>,
     /// Lead-in of a record that has none of its own.
     lead_in: &'m [f64],
+    /// Such a record begins after one period of itself: its rows come all at once.
+    is_periodic: bool,
     /// The memory has been driven along the lead-in of the record.
     is_begun: bool,
     /// What the trained ranges are compared with, if that is wanted: its rate is that of this method.
@@ -88,7 +93,8 @@ impl<'m> Runner<'m> {
     pub fn of_model(model: &'m Model) -> Self {
         let run = Self::of_body(&model.body, Some(&model.preprocessing), model.rate);
         let range = model.first_input_range();
-        Self { range, excursion: Excursion::beyond(range), lead_in: &model.lead_in, ..run }
+        let excursion = Excursion::beyond(range);
+        Self { range, excursion, lead_in: &model.lead_in, is_periodic: model.is_periodic, ..run }
     }
 
     /// A run of what simulates alone, from the virgin state where a record has no other.
@@ -117,6 +123,7 @@ impl<'m> Runner<'m> {
             rates: methods.into_iter().map(|method| (method, Vec::new())).collect(),
             steps: Vec::new(),
             lead_in: &[],
+            is_periodic: false,
             is_begun: false,
             ranges: None,
         }
@@ -186,7 +193,11 @@ impl<'m> Runner<'m> {
         if std::mem::replace(&mut self.is_begun, true) {
             return;
         }
-        let lead_in = excitation.lead_in().unwrap_or(self.lead_in);
+        let lead_in = match excitation.lead_in() {
+            Some(lead_in) => Cow::Borrowed(lead_in),
+            None if self.is_periodic => Cow::Owned(lead_in_of_period(excitation.inputs()[0])),
+            None => Cow::Borrowed(self.lead_in),
+        };
         if lead_in.is_empty() {
             return;
         }

@@ -199,12 +199,13 @@ impl WarmUp {
     }
 }
 
-/// Effect of initial states that were found for the records: cross-validated errors of the better of two quick
+/// Effect of initial states that were found for the records, or of periodic ones: cross-validated errors of the better of two quick
 /// models, in percent of the standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FoundStates {
-    /// Error with the states that were found; held-out records begin in the most frequent one.
+    /// Error with these states; held-out records begin in the most frequent of those found, or after one period of
+    /// themselves.
     pub found_percent: f64,
     /// Error from the virgin state.
     pub virgin_percent: f64,

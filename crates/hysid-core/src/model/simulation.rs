@@ -11,7 +11,8 @@ use crate::model::{Band, BandLevel, Model, Prediction};
 /// A simulation that takes the rows of a record in blocks. The outputs are those of [`Model::response`] or
 /// [`Model::predict`] to the last bit, for any division into blocks.
 ///
-/// If the rate of a row depends on later rows, its output is returned with a later block.
+/// If the rate of a row depends on later rows, its output is returned with a later block. A record that begins after one
+/// period of itself ([`Model::is_periodic`]) is simulated when it ends.
 #[derive(Debug, Clone)]
 pub struct Simulation<'m> {
     model: &'m Model,
@@ -57,7 +58,8 @@ impl<'m> Simulation<'m> {
     pub fn take(&mut self, rows: &Excitation<'_>) -> Result<Prediction> {
         self.model.check_time(rows)?;
         self.window.append(rows)?;
-        let (_, behind) = self.runner.rows_around();
+        let waits = self.model.is_periodic() && self.window.lead_in.is_none();
+        let behind = if waits { usize::MAX } else { self.runner.rows_around().1 };
         self.simulate(self.window.len().saturating_sub(behind))
     }
 

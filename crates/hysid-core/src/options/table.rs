@@ -202,7 +202,8 @@ pub const OPTIONS: [FitOption; 31] = [
         name: "initial_state",
         group: Training,
         meaning: "State of the memory at the beginning of each record: without history, after a visit of the upper or \
-                  the lower end of the input range, demagnetised, or unknown and found for each record",
+                  the lower end of the input range, demagnetised, periodic (each record is a period of a steady state), \
+                  or unknown and found for each record",
         values: Values::Names(initial_states),
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::Chosen,

@@ -123,8 +123,8 @@ def fit(
         not begin in the virgin state. Default: chosen by cross-validation for auto; otherwise 0.
     initial_state : str, optional
         State of the memory at the beginning of each record: without history, after a visit of the upper or the
-        lower end of the input range, demagnetised, or unknown and found for each record. Default: chosen by
-        cross-validation for auto; otherwise virgin.
+        lower end of the input range, demagnetised, periodic (each record is a period of a steady state), or
+        unknown and found for each record. Default: chosen by cross-validation for auto; otherwise virgin.
     training : str, optional
         Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic
         algorithm, or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default:

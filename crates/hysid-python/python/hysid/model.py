@@ -162,8 +162,9 @@ class Model(StoredModel):
             A label for each row; where the label changes, a new record starts in the initial state.
         initial_state : str, optional
             State of the memory at the beginning of each record: ``"virgin"``, ``"saturated-up"`` (after a visit of the
-            upper end of the trained input range), ``"saturated-down"`` or ``"demagnetised"``. By default that of most
-            training records, which is ``"virgin"`` unless the fit found or was given another.
+            upper end of the trained input range), ``"saturated-down"``, ``"demagnetised"`` or ``"periodic"`` (after one
+            period of the record itself). By default that of most training records, which is ``"virgin"`` unless the
+            fit found or was given another.
         same_units : bool
             Do not convert units. Otherwise, units in the names of pandas objects are converted to those of the
             training, and a conversion that is not known is an error.
@@ -457,7 +458,7 @@ class Model(StoredModel):
         Parameters
         ----------
         initial_state : str, optional
-            As of `simulate`.
+            As of `simulate`, but not ``"periodic"``: a model with periodic records begins in the virgin state here.
         """
         state = name_of("initial_state", initial_state)
         stepper = self._native.stepper()

@@ -79,6 +79,9 @@ impl Wanted {
 /// # Errors
 /// None for data with an input.
 pub(crate) fn known(data: &Dataset, state: InitialState, measured_from: Origin) -> Result<Dataset> {
+    if state == InitialState::Periodic {
+        return data.clone().with_periodic_lead_ins();
+    }
     let origin = match measured_from {
         Origin::Zero => 0.0,
         Origin::OfData => origin(data, 0),

@@ -274,6 +274,8 @@ fn an_ensemble_that_makes_no_sense_is_refused() {
     assert!(refused(new(&[&member], vec![node(0)], (1.0, 1.0))).contains("no range"));
     let none = Node { weights: Weights { inside: 0.0, outside: 0.0 }, ..node(0) };
     assert!(refused(new(&[&member], vec![none], range)).contains("not all 0"));
+    let named_often = refused(new(&[&member], vec![node(0); 2_001], range));
+    assert!(named_often.contains("has 2001 members, at most 2000 are possible"), "{named_often}");
     let whole = shared();
     assert!(refused(new(&[whole], vec![node(0)], range)).contains("member of another"));
 }

@@ -1,7 +1,9 @@
 //! Initial states: lead-ins drive the memory as rows before the record do, unknown ones are found, and data that
 //! begin in the virgin state are not touched.
 
+use crate::model_file::with_fitting_checksum;
 use crate::scaffold::*;
+use hysid::data::initial_state::lead_in_of_period;
 use hysid::law::preisach::{Preisach, PreisachWeights};
 use hysid::law::series::run;
 
@@ -322,6 +324,52 @@ fn auto_finds_states_where_they_matter_and_says_so() {
     assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
 }
 
+/// A steady loop of the magnet from 0 upwards: what came before is not recorded.
+fn steady(amplitude: f64) -> Record {
+    const ROWS: usize = 160;
+    let x = |row: usize| amplitude * (std::f64::consts::TAU * row as f64 / ROWS as f64).sin();
+    let period: Vec<f64> = (0..ROWS).map(x).collect();
+    measured(&format!("to {amplitude}"), &period, period.clone())
+}
+
+#[test]
+fn steady_loops_begin_after_a_period_of_themselves() {
+    let data = untimed([0.3, 0.5, 0.7, 1.0].map(steady).into());
+    let unseen = untimed(vec![steady(0.6)]);
+    let auto = few_candidates();
+    let model = fitted(&data, &auto);
+    assert!(model.is_periodic() && model.lead_in().is_empty());
+    assert!(
+        model.notes().iter().any(|note| note.contains("after one period of itself")),
+        "{:?}",
+        model.notes()
+    );
+    let virgin = fitted(&data, &auto.with_initial_state(Some(InitialState::Virgin)));
+    let error = |model: &Model| model.evaluate(&unseen).unwrap().rmse;
+    assert!(error(&model) < 0.3 * error(&virgin), "{} of {}", error(&model), error(&virgin));
+
+    let named = request(serde_json::json!({ "model": "preisach", "initial_state": "periodic" }));
+    let record = &unseen.records()[0];
+    for model in [model, fitted(&data, &named)] {
+        assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
+        assert_eq!(model.evaluate(&data).unwrap(), model.provenance().train);
+        assert_eq!(model.as_trained(&data).unwrap().records()[1].lead_in().unwrap(), [0.5, -0.5]);
+        let whole = model.simulate(record).unwrap();
+        assert_eq!(bits(&in_blocks(&model, record, &[7, 50])), bits(&whole));
+        let told = record.clone().with_lead_in(lead_in_of_period(&record.inputs()[0])).unwrap();
+        let virgin = model.clone().with_initial_state(InitialState::Virgin).unwrap();
+        assert_eq!(bits(&virgin.simulate(&told).unwrap()), bits(&whole));
+        // Sample by sample the period ahead is not known.
+        let mut stepper = model.stepper();
+        let error = stepper.reset_to(InitialState::Periodic).unwrap_err().to_string();
+        assert!(error.starts_with("initial_state periodic: choose one of virgin, saturated-up"), "{error}");
+        let stepped: Vec<f64> =
+            record.inputs()[0].iter().map(|&x| stepper.step(&[x], 0.0, None).unwrap()).collect();
+        assert_eq!(bits(&stepped), bits(&virgin.simulate(record).unwrap()));
+        assert!(model.stepping_note().unwrap().contains("virgin") && virgin.stepping_note().is_none());
+    }
+}
+
 #[test]
 fn data_that_begin_virgin_keep_their_model() {
     let data = untimed(["a", "b", "c"].map(|name| without_time(&record(150, name))).into());
@@ -350,6 +398,12 @@ fn bad_values_are_one_clear_error() {
         let error = record.clone().with_lead_in(vec![0.0, value]).unwrap_err().to_string();
         assert!(error.starts_with("record \"r\", input: the lead-in has the value"), "{error}");
     }
+    record.clone().with_lead_in(vec![0.5; 10_000]).unwrap();
+    let error = record.clone().with_lead_in(vec![0.5; 10_001]).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "record \"r\", input: the lead-in has 10001 turning points: at most 10000 are possible"
+    );
     let named = serde_json::json!({ "initial_state": "saturated" });
     let serde_json::Value::Object(named) = named else { panic!("a map") };
     let error = NamedOptions::of(named).unwrap_err().to_string();
@@ -358,4 +412,7 @@ fn bad_values_are_one_clear_error() {
     let broken = up.replacen("\"lead_in\": [", "\"lead_in\": [1e200, ", 1);
     assert_ne!(broken, up);
     assert!(Model::from_json(&broken).is_err());
+    let long = up.replacen("\"lead_in\": [", &format!("\"lead_in\": [{}", "0.5, ".repeat(10_001)), 1);
+    let error = Model::from_json(&with_fitting_checksum(&long)).unwrap_err().to_string();
+    assert!(error.contains("turning points, at most 10000 are possible"), "{error}");
 }

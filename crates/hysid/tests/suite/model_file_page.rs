@@ -143,6 +143,8 @@ fn with_rare_parts(model: &Model) -> Model {
     selection["warm_up"] = json!({"rows": 4, "without_percent": 1.0, "with_percent": 2.0});
     selection["single"] =
         json!({"name": "lugre", "distilled": false, "distilled_percent": null, "plain_percent": 1.0});
+    file.as_object_mut().unwrap().remove("lead_in");
+    file["periodic"] = json!(true);
     let text = file.to_string();
     Model::from_json(&with_checksum(&text)).unwrap()
 }

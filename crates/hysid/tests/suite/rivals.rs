@@ -166,6 +166,7 @@ fn units_are_products_of_powers() {
     assert_eq!(unit(2, 0, -1), "mm^2/s");
     assert_eq!(unit(-1, 0, 0), "1/mm");
     assert_eq!(Dimension::SLOPE.unit(Some("A/m"), Some("T"), None), "T/(A/m)");
+    assert_eq!(Dimension::INPUT.unit(Some("A/m"), Some("T"), None), "A/m");
     assert_eq!(Dimension::SLOPE.unit(None, Some("T"), None), "");
 }
 

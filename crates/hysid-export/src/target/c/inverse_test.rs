@@ -6,6 +6,17 @@ use crate::subject::Subject;
 use crate::target::c::inverse::literal;
 use crate::target::template::filled;
 
+/// What the self-test prints.
+const SAID: &str = r#"    printf("%d of %d numbers of the inverse differ, its outputs by at most %.1e of half the trained range; "
+           "%d endings differ; %d outputs are not those of the model\n",
+           different, compared, (double)largest, reaches, wrong);
+"#;
+const SAID_SINGLE: &str = r#"    printf("the inverse in single precision: %d numbers, its outputs within %.1e of half the trained range of those in "
+           "double precision (an input may differ, where several give one output); %d endings differ; "
+           "%d outputs are not those of the model\n",
+           compared, (double)largest, reaches, wrong);
+"#;
+
 /// The text of its function `test_inverse`.
 pub(super) fn inverse_test(subject: &Subject<'_>, inverse: &Inverse) -> String {
     let precision = subject.precision();
@@ -32,9 +43,9 @@ pub(super) fn inverse_test(subject: &Subject<'_>, inverse: &Inverse) -> String {
         .collect();
     let (low, high) = subject.model().trained_ranges().output;
     // Where several inputs give an output, single precision may find another one: from there on the paths differ.
-    let agrees = match precision {
-        Precision::Double => " && reaches == 0 && largest <= 1e-9",
-        Precision::Single => "",
+    let (said, agrees) = match precision {
+        Precision::Double => (SAID, " && reaches == 0 && largest <= 1e-9"),
+        Precision::Single => (SAID_SINGLE, ""),
     };
     let given = |count: usize| (1..count).map(|index| format!(", a[{index}]")).collect::<String>();
     filled(
@@ -47,6 +58,7 @@ pub(super) fn inverse_test(subject: &Subject<'_>, inverse: &Inverse) -> String {
             ("@given@", &given(count)),
             ("@of_model@", &given(subject.argument_names().len())),
             ("@scale@", &number(0.5 * (high - low))),
+            ("@said@", said),
             ("@agrees@", agrees),
         ],
     )

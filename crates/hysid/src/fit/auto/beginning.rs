@@ -1,7 +1,9 @@
-//! How the records begin: in the virgin state, after a warm-up, or in states that are found for them.
+//! How the records begin: in the virgin state, after a warm-up, after one period of themselves, or in states that are
+//! found for them.
 //!
 //! Each way is judged by the validation error of candidates that take a moment to fit. The virgin state is kept
-//! unless a warm-up is better by 10 %, or the states that are found by 20 %: these have more ways to fit by chance.
+//! unless a warm-up is better by 10 %, or other states by 20 %: these have more ways to fit by chance. Records whose
+//! beginning and end meet are tried as periods, before states are looked for.
 
 use std::borrow::Cow;
 
@@ -24,8 +26,13 @@ use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::stop_check::StopCheck;
 use crate::validation::Fold;
 
-/// The validation error that states found must come to, as a share of that of the virgin state. Designed.
+/// The validation error that other states must come to, as a share of that of the virgin state. Designed.
 const WORTH: f64 = 0.8;
+
+/// The ends of a record meet if they differ, in input and output, by at most this share of the range and so many of the
+/// largest steps. Designed.
+const CLOSED: f64 = 0.1;
+const CLOSED_STEPS: f64 = 2.0;
 
 /// Share of a record that begins with a jump of the input whose rows are not scored. Designed.
 const AFTER_A_JUMP: f64 = 0.1;
@@ -70,22 +77,24 @@ impl Beginning {
             Some(rows) => WarmUp::decided(rows),
             None => better(quick.clone(), data, &folds, work),
         };
-        let unknown = match (options.initial_state, options.warm_up) {
+        let other = match (options.initial_state, options.warm_up) {
             (Some(InitialState::Unknown), _) => found(quick, data, &folds, options, work),
             (None, None) if is_open => {
-                found(quick, data, &folds, options, work).filter(|found| found.is_worth(warm_up))
+                let is_worth = |states: &OtherStates| states.is_worth(warm_up);
+                let periods = || periods(quick, data, &folds, options, work).filter(is_worth);
+                periods().or_else(|| found(quick, data, &folds, options, work).filter(is_worth))
             }
             _ => None,
         };
-        let Some(unknown) = unknown else {
+        let Some(other) = other else {
             return Self { data: data.clone(), folds, warm_up, is_changed: false, found: None };
         };
         Self {
-            data: unknown.data,
-            folds: unknown.folds,
+            data: other.data,
+            folds: other.folds,
             warm_up: if is_open { WarmUp::decided(0) } else { warm_up },
             is_changed: true,
-            found: unknown.errors.filter(|_| is_open),
+            found: other.errors.filter(|_| is_open),
         }
     }
 
@@ -130,15 +139,15 @@ fn jumps(record: &Record, range: f64) -> bool {
     first_second_difference(&record.inputs()[0]) > JUMP * range
 }
 
-/// Data and folds with the lead-ins that were found.
-struct Unknown {
+/// Data and folds with other lead-ins.
+struct OtherStates {
     data: Dataset,
     folds: Vec<Fold>,
     /// Errors on the folds; `None` where they are those of the virgin state, and without folds.
     errors: Option<FoundStates>,
 }
 
-impl Unknown {
+impl OtherStates {
     /// True if it is enough better than the virgin state, and no worse than a warm-up that is better too.
     fn is_worth(&self, warm_up: WarmUp) -> bool {
         let Some(FoundStates { found_percent, virgin_percent }) = self.errors else { return false };
@@ -166,7 +175,7 @@ fn found(
     folds: &[Fold],
     options: &AutoOptions,
     work: &Work,
-) -> Option<Unknown> {
+) -> Option<OtherStates> {
     let is_to_stop = || work.is_to_stop();
     let stop = StopCheck::new(&is_to_stop);
     let (rate, seed) = (options.rate, options.seed);
@@ -174,24 +183,69 @@ fn found(
         .into_iter()
         .collect::<Option<_>>()?;
     let data = initial_state::found(data, rate, seed, stop).ok()??;
-    let percent = |folds: &[Fold]| -> Option<f64> {
-        let held_out: Vec<HeldOut> = folds.iter().cloned().map(HeldOut::of).collect();
-        // A magnet is not seen by stops alone, nor deterioration by relays.
-        let judges = std::iter::once(quick.clone()).chain(relays(&data, options));
-        let mut trials: Vec<Trial> = judges.map(Trial::of).collect();
-        let places: Vec<usize> = (0..trials.len()).collect();
-        Bench { data: &data, folds: &held_out, work }.try_start(&mut trials, &places, 0);
-        let tried = trials.iter().filter(|trial| !trial.starts.is_empty());
-        let errors = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).mean_percent());
-        errors.min_by(f64::total_cmp)
+    Some(OtherStates::judged(quick, data, begun, folds, options, work))
+}
+
+/// All records after one period of themselves; `None` if the ends of a record do not meet.
+fn periods(
+    quick: &Candidate,
+    data: &Dataset,
+    folds: &[Fold],
+    options: &AutoOptions,
+    work: &Work,
+) -> Option<OtherStates> {
+    if !data.records().iter().all(is_closed) {
+        return None;
+    }
+    let begun = |data: &Dataset| data.clone().with_periodic_lead_ins().ok();
+    let of_fold = |fold: &Fold| {
+        Some(Fold { name: fold.name.clone(), train: begun(&fold.train)?, held_out: begun(&fold.held_out)? })
     };
-    let has_past = |record: &Record| !record.lead_in_rows().is_empty();
-    let is_changed = begun.iter().any(|fold| fold.train.records().iter().any(has_past));
-    let errors = || {
-        let (found_percent, virgin_percent) = (percent(&begun)?, percent(folds)?);
-        Some(FoundStates { found_percent, virgin_percent })
+    let begun_folds = folds.iter().map(of_fold).collect::<Option<_>>()?;
+    Some(OtherStates::judged(quick, begun(data)?, begun_folds, folds, options, work))
+}
+
+/// True if the end of a record and its beginning are one point of its loop.
+fn is_closed(record: &Record) -> bool {
+    let meet = |values: &[f64], share: f64| {
+        let known = || values.iter().filter(|value| !value.is_nan());
+        let (Some(first), Some(last)) = (known().next(), known().next_back()) else { return false };
+        let (low, high) = known().fold((*first, *first), |(low, high), &v| (low.min(v), high.max(v)));
+        let step = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        (last - first).abs() <= (CLOSED_STEPS * step).min(share * (high - low))
     };
-    // Folds with the same lead-ins as before have the same errors.
-    let errors = is_changed.then(errors).flatten();
-    Some(Unknown { data, folds: begun, errors })
+    meet(&record.inputs()[0], CLOSED) && meet(record.output(), CLOSED)
+}
+
+impl OtherStates {
+    /// Other states, with their errors on the folds beside those of the virgin state.
+    fn judged(
+        quick: &Candidate,
+        data: Dataset,
+        begun: Vec<Fold>,
+        folds: &[Fold],
+        options: &AutoOptions,
+        work: &Work,
+    ) -> Self {
+        let percent = |folds: &[Fold]| -> Option<f64> {
+            let held_out: Vec<HeldOut> = folds.iter().cloned().map(HeldOut::of).collect();
+            // A magnet is not seen by stops alone, nor deterioration by relays.
+            let judges = std::iter::once(quick.clone()).chain(relays(&data, options));
+            let mut trials: Vec<Trial> = judges.map(Trial::of).collect();
+            let places: Vec<usize> = (0..trials.len()).collect();
+            Bench { data: &data, folds: &held_out, work }.try_start(&mut trials, &places, 0);
+            let tried = trials.iter().filter(|trial| !trial.starts.is_empty());
+            let errors = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).mean_percent());
+            errors.min_by(f64::total_cmp)
+        };
+        let has_past = |record: &Record| !record.lead_in_rows().is_empty();
+        let is_changed = begun.iter().any(|fold| fold.train.records().iter().any(has_past));
+        let errors = || {
+            let (found_percent, virgin_percent) = (percent(&begun)?, percent(folds)?);
+            Some(FoundStates { found_percent, virgin_percent })
+        };
+        // Folds with the same lead-ins as before have the same errors.
+        let errors = is_changed.then(errors).flatten();
+        OtherStates { data, folds: begun, errors }
+    }
 }

@@ -30,11 +30,18 @@ impl Identify for JilesAtherton {
         }
         let (family, series) = posed(data, options)?;
         let effort = Effort::of(options);
-        search(&family, &series, effort, observer, stop).map_err(|error| match error {
+        let output = |problem| first.defect(None, Some(Channel::Output), problem);
+        let found = search(&family, &series, effort, observer, stop).map_err(|error| match error {
             // All that a search can leave invalid is M_s = 0.
-            Error::Parts(_) => first.defect(None, Some(Channel::Output), DataProblem::NoMagnetisation),
+            Error::Parts(_) => output(DataProblem::NoMagnetisation),
             other => other,
-        })
+        })?;
+        // A line that falls faster than the anhysteretic curve rises anywhere: a law that falls with the field.
+        let JilesAtherton { permeability, saturation, a, .. } = found.law;
+        if -permeability > saturation / (3.0 * a) {
+            return Err(output(DataProblem::NoMagnetisation));
+        }
+        Ok(found)
     }
 
     fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
