@@ -188,6 +188,35 @@ mod tests {
         names
     }
 
+    /// Killed at any moment: a file is the old one, gone for a moment, or the new one; the manifest is the old one.
+    #[test]
+    fn the_next_writer_finishes_what_a_killed_one_began() {
+        let next: [(&str, &[u8]); 3] =
+            [("a.txt", b"new"), ("b/c.txt", b"newer"), ("list", b"list:a.txt=new b/c.txt=newer")];
+        for (a, c) in [
+            (None, Some("two")),
+            (Some("new"), Some("two")),
+            (Some("new"), None),
+            (Some("new"), Some("newer")),
+        ] {
+            let place = tempfile::tempdir().unwrap();
+            let path = place.path().join("export");
+            folder(&path, false).write(&FILES).unwrap();
+            for (name, content) in [("a.txt", a), ("b/c.txt", c)] {
+                match content {
+                    Some(content) => fs::write(path.join(name), content).unwrap(),
+                    None => fs::remove_file(path.join(name)).unwrap(),
+                }
+            }
+            let waiting = path.join(".list.abcdEF12.hysid-partial/old");
+            fs::create_dir_all(&waiting).unwrap();
+            fs::write(waiting.join("a.txt"), "one").unwrap();
+            assert!(folder(&path, false).write(&next).unwrap().is_empty());
+            assert_eq!(names(&path), ["a.txt", "b", "list"]);
+            assert_eq!(fs::read(path.join("b/c.txt")).unwrap(), b"newer");
+        }
+    }
+
     #[test]
     fn a_folder_appears_whole_and_its_own_files_are_replaced() {
         let place = tempfile::tempdir().unwrap();
