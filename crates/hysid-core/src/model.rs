@@ -539,8 +539,7 @@ impl Model {
         // Members that measure the input from the data have one origin, the others 0.
         let origin = origins.iter().map(|model| model.preprocessing.origin(0)).find(|origin| *origin != 0.0);
         state.lead_in(self.trained.inputs[0], origin.unwrap_or_default()).ok_or_else(|| {
-            let known =
-                InitialState::known().into_iter().filter(|name| *name != InitialState::Periodic.name());
+            let known = InitialState::known().into_iter().filter(|name| *name != state.name());
             let needed = format!(
                 "choose one of {}; without it the initial state is that of the training",
                 known.collect::<Vec<_>>().join(", ")

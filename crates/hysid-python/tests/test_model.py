@@ -381,6 +381,16 @@ def test_a_record_begins_in_its_initial_state(spring_and_slider, tmp_path):
     with pytest.raises(TypeError, match="initial_state 3: a name is needed"):
         model.reset(3)
 
+    # After one period of the record itself, which nobody knows sample by sample.
+    x = np.sin(np.linspace(0, 2 * np.pi, 60, endpoint=False))
+    led = np.concatenate([[1, -1], x])
+    periodic = hysid.fit(x, y[:60], model="prandtl-ishlinskii", initial_state="periodic")
+    expected = periodic.simulate(led, initial_state="virgin")[2:]
+    assert np.array_equal(periodic.simulate(x), expected)
+    assert np.array_equal(model.simulate(x, initial_state="periodic"), model.simulate(led, initial_state="virgin")[2:])
+    with pytest.raises(ValueError, match="initial_state periodic: choose one of virgin"):
+        periodic.reset("periodic")
+
 
 @pytest.mark.parametrize("name", ["hysteretic-oscillator", "hysteretic-state-space"])
 def test_a_model_with_inertia_steps_in_time_as_it_simulates(name, tmp_path):

@@ -1,7 +1,7 @@
 //! What the program understood of the data, said before the work begins.
 
 use hysid_core::data::rate::RateMethod;
-use hysid_core::data::record::{Protocol, Speeds, protocols};
+use hysid_core::data::record::{Difference, Protocol, Speeds, protocols};
 use hysid_core::data::summary::Summary;
 use hysid_core::network::Architecture;
 use hysid_core::options::FitSpec;
@@ -173,14 +173,22 @@ fn repeats(data: &Data) -> Vec<String> {
     let repeated = protocols(records).into_iter().filter(|protocol| protocol.runs.len() > 1);
     let words = |protocol: Protocol| {
         let names: Vec<&str> = protocol.runs.iter().map(|&run| records[run].name()).collect();
-        let noise = match protocol.noise(records) {
-            Some(noise) if noise > 0.0 => format!(
-                "; their outputs differ by noise of {:.3} % of the range (standard deviation), the least error of any model",
-                Significant(100.0 * noise / (high - low))
+        let percent =
+            |deviation: f64| format!("{:.3} % of the range", Significant(100.0 * deviation / (high - low)));
+        let differ = match protocol.difference(records) {
+            Some(Difference { deviation: 0.0, .. }) => String::new(),
+            Some(Difference { deviation, is_noise: true }) => format!(
+                "; their outputs differ by noise of {} (standard deviation), the least error of any model",
+                percent(deviation)
             ),
-            _ => String::new(),
+            Some(Difference { deviation, is_noise: false }) => format!(
+                "; their outputs differ by {} (standard deviation), and not by noise alone: the conditions, the specimen \
+                 or the input differed; a model that does not know this has at least this error",
+                percent(deviation)
+            ),
+            None => String::new(),
         };
-        format!("{} are runs of one test, held out together{noise}", listed(&names))
+        format!("{} have the same input and are held out together{differ}", listed(&names))
     };
     repeated.take(MOST_REPEATS).map(words).collect()
 }

@@ -66,6 +66,7 @@ fn states_are_found_told_and_used() {
     assert_eq!(simulate("--initial-state saturated-up"), simulate(""));
     assert_ne!(simulate("--initial-state virgin"), simulate(""));
     assert_ne!(simulate("--initial-state demagnetised"), simulate(""));
+    assert_ne!(simulate("--initial-state periodic"), simulate(""));
 
     let validated = |state: &str| {
         let ran = bench.run(&format!("validate train.csv {MODEL} --initial-state {state} --json"));

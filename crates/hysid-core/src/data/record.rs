@@ -19,7 +19,7 @@ pub use copies::Likeness;
 pub use copies::{Copy, copies, likeness};
 pub use excitation::Excitation;
 pub use fingerprint::Fingerprint;
-pub use protocols::{Protocol, protocols};
+pub use protocols::{Difference, Protocol, protocols};
 pub use speeds::Speeds;
 pub use thinning::Thinning;
 pub use values::Values;

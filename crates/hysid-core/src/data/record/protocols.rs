@@ -24,6 +24,9 @@ const AS_FAST: f64 = 1.1;
 /// Inputs whose root mean square difference is at most this share of the range are at the same places.
 const SAME_PLACE: f64 = 0.005;
 
+/// Differences of neighbouring rows whose correlation is above this are not noise. Designed.
+const CORRELATED: f64 = 0.5;
+
 /// Numbers of rows of two runs that are compared row by row differ by less than this share.
 const AS_LONG: f64 = 0.02;
 
@@ -60,13 +63,22 @@ pub fn protocols(records: &[Record]) -> Vec<Protocol> {
     protocols
 }
 
+/// How the outputs of runs of one protocol differ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// Standard deviation of an output about the mean of two runs, in its unit.
+    pub deviation: f64,
+    /// Neighbouring rows differ independently. If not, the runs were made under other conditions, or the specimen changed.
+    pub is_noise: bool,
+}
+
 impl Protocol {
-    /// Standard deviation of the noise in the output, from the differences between runs row by row; `None` if there is
-    /// one run, or the runs have other numbers of rows, or their inputs differ by more than noise.
-    pub fn noise(&self, records: &[Record]) -> Option<f64> {
+    /// How the outputs of the first run and of the others differ, row by row; `None` if there is one run, or the runs have
+    /// other numbers of rows, or their inputs differ by more than noise.
+    pub fn difference(&self, records: &[Record]) -> Option<Difference> {
         let (&first, others) = self.runs.split_first()?;
         let first = &records[first];
-        let (mut square, mut count) = (0.0, 0.0);
+        let (mut square, mut shifted, mut count) = (0.0, 0.0, 0.0);
         for other in others.iter().map(|&run| &records[run]) {
             let x = || first.inputs[0].iter().zip(&*other.inputs[0]).map(|(a, b)| (a - b).powi(2));
             let near = SAME_PLACE * extent(&first.inputs[0]);
@@ -74,12 +86,16 @@ impl Protocol {
                 return None;
             }
             let y = first.output.iter().zip(&other.output).map(|(a, b)| a - b).filter(|d| !d.is_nan());
+            let mut before = 0.0;
             for difference in y {
                 square += difference * difference;
+                shifted += difference * before;
                 count += 1.0;
+                before = difference;
             }
         }
-        (count > 0.0).then(|| (0.5 * square / count).sqrt())
+        let deviation = (0.5 * square / count).sqrt();
+        (count > 0.0).then_some(Difference { deviation, is_noise: shifted <= CORRELATED * square })
     }
 }
 
@@ -239,9 +255,15 @@ mod tests {
         let [protocol] = &protocols(&[record(6, 100, 1.0, 0.02, 1), record(6, 100, 1.0, 0.02, 2)])[..] else {
             panic!("one protocol")
         };
-        let noise = protocol.noise(&[record(6, 100, 1.0, 0.02, 1), record(6, 100, 1.0, 0.02, 2)]).unwrap();
-        approx::assert_relative_eq!(noise, 0.01 / 3f64.sqrt(), max_relative = 0.05);
-        assert_eq!(protocol.noise(&[record(6, 100, 1.0, 0.0, 1), record(6, 100, 1.1, 0.0, 2)]), None);
+        let of = |other: Record| protocol.difference(&[record(6, 100, 1.0, 0.02, 1), other]);
+        let noise = of(record(6, 100, 1.0, 0.02, 2)).unwrap();
+        approx::assert_relative_eq!(noise.deviation, 0.01 / 3f64.sqrt(), max_relative = 0.05);
+        assert!(noise.is_noise);
+        assert_eq!(of(record(6, 100, 1.1, 0.0, 2)), None);
+        // A weaker specimen.
+        let weaker = record(6, 100, 1.0, 0.02, 2);
+        let output = weaker.output().iter().map(|y| 0.9 * y).collect();
+        assert!(!of(weaker.with_output(output).unwrap()).unwrap().is_noise);
     }
 
     #[test]
