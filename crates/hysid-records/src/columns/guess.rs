@@ -303,6 +303,9 @@ impl<'t> Guess<'t> {
                     match swapped {
                         Some(one) if follows_the_order => self.note = Some(self.order_believed(one, last)),
                         Some(one) => return Err(self.against_the_order(one, last)),
+                        None if self.free.len() > 2 && !kind::are_documented(&self.free) => {
+                            self.note = Some(self.taken_by_place(last));
+                        }
                         None => {}
                     }
                 }
@@ -334,6 +337,15 @@ impl<'t> Guess<'t> {
             clipped(last),
             clipped(one),
             shown(Path::new(one)),
+        )
+    }
+
+    fn taken_by_place(&self, last: &str) -> String {
+        format!(
+            "{}: the names do not tell input and output: \"{}\" is taken for the output, because it is the last column, and \
+             the others for inputs (to change it: --input, --output)",
+            self.table.file,
+            clipped(last)
         )
     }
 
@@ -460,8 +472,17 @@ impl<'t> Guess<'t> {
     fn refuse_other_drives(&self) -> Result<()> {
         let ([input], Some(output)) = (self.free.as_slice(), &self.output) else { return Ok(()) };
         let set_aside = || self.set_aside.iter().map(|(name, _)| name);
-        let has_capacity = set_aside().any(|name| Kind::of(name) == Kind::Integral);
-        if has_capacity && kind::is_current(output) && Kind::of(input) == Kind::Drives(Domain::Electricity) {
+        // A capacity, a temperature or hours beside voltage and current: a cell, which the current drives.
+        let is_of_cell = |name: &String| matches!(Kind::of(name), Kind::Integral | Kind::Condition);
+        let takes_long = || {
+            self.time
+                .as_deref()
+                .is_some_and(|time| matches!(unit::split(time).1.as_deref(), Some("h" | "hr" | "d")))
+        };
+        if kind::is_current(output)
+            && Kind::of(input) == Kind::Drives(Domain::Electricity)
+            && (set_aside().any(is_of_cell) || takes_long())
+        {
             return Err(self.against_the_order(input, output));
         }
         let changes_much = |name: &&String| {

@@ -48,6 +48,9 @@ const INTEGRALS: &str = "capacity capacité kapazität capacidad 容量 energy e
 const UNITS_OF_SUMS: [&str; 12] =
     ["Ah", "mAh", "uAh", "Wh", "mWh", "kWh", "A.h", "W.h", "mA.h", "A·h", "Ahr", "mAhr"];
 
+/// Units of a speed.
+const UNITS_OF_SPEED: [&str; 6] = ["mm/s", "m/s", "cm/s", "in/s", "deg/s", "rad/s"];
+
 /// Words of figures that are calculated from others.
 const DERIVED: &str = "power stiffness damping modulus permeability efficiency conductance impedance acr dcir \
     velocity vel speed acceleration acc rate tan phase derivative slope ratio steifigkeit leistung geschwindigkeit \
@@ -107,7 +110,8 @@ impl Kind {
             return Self::Integral;
         }
         // A change of one quantity with another: `dV/dt`, `dQ/dV`.
-        if quantity.contains("/d") && quantity.starts_with(['d', 'D']) || has(DERIVED) {
+        let is_speed = unit.is_some_and(|unit| UNITS_OF_SPEED.contains(&unit));
+        if quantity.contains("/d") && quantity.starts_with(['d', 'D']) || is_speed || has(DERIVED) {
             return Self::Derived;
         }
         if quantity == "T" && matches!(unit, None | Some("C" | "F")) || has("amplitude frequency freq") {
@@ -116,7 +120,11 @@ impl Kind {
         if let Some(kind) = Self::physical(quantity, unit, &has) {
             return kind;
         }
-        if has(CONDITIONS) || unit.is_some_and(|unit| matches!(unit, "Hz" | "kHz" | "mHz" | "%RH" | "%rh")) {
+        let is_temperature = words.iter().any(|word| word.ends_with("temperatur"));
+        if has(CONDITIONS)
+            || is_temperature
+            || unit.is_some_and(|unit| matches!(unit, "Hz" | "kHz" | "mHz" | "%RH" | "%rh"))
+        {
             return Self::Condition;
         }
         if has(COUNTERS) && unit.is_none_or(|unit| COUNTED.contains(&unit)) || quantity.trim() == "#" {
@@ -232,6 +240,13 @@ pub fn is_channel(name: &str) -> bool {
             letters.as_str(),
             "c" | "ch" | "chan" | "channel" | "ai" | "kanal" | "col" | "column" | "var" | "unnamed"
         )
+}
+
+/// True for names in the documented order: `x1`, `x2`, `y`.
+pub fn are_documented(names: &[&String]) -> bool {
+    let begins = |name: &String, letters: &[char]| name.to_lowercase().starts_with(letters);
+    let [inputs @ .., output] = names else { return false };
+    begins(output, &['y']) && inputs.iter().all(|input| begins(input, &['x', 'u']))
 }
 
 /// The column made of a raw one, by its name: `Adjusted Moment` of `Raw Moment`.
