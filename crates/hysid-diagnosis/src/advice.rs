@@ -42,10 +42,11 @@ struct Found {
     deterioration: Verdict,
     strength_loss: bool,
     pinching: bool,
+    resonates: bool,
 }
 
 impl Found {
-    fn of(findings: &[Finding]) -> Self {
+    fn of(findings: &[Finding], resonates: bool) -> Self {
         let verdict = |property| {
             let finding = findings.iter().find(|finding| finding.property == property);
             finding.map_or(Verdict::NotTestable, |finding| finding.verdict)
@@ -60,6 +61,7 @@ impl Found {
             deterioration: verdict(Property::Deterioration),
             strength_loss: verdict(Property::StrengthLoss) == Verdict::Yes,
             pinching: verdict(Property::Pinching) == Verdict::Yes,
+            resonates,
         }
     }
 
@@ -75,8 +77,8 @@ impl Found {
 }
 
 /// The simplest model that can hold what was found.
-pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>) -> Advice {
-    let found = Found::of(findings);
+pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>, resonates: bool) -> Advice {
+    let found = Found::of(findings, resonates);
     let (model, reason) = simplest(&found);
     let mut statement = vec![match model {
         Some(model) => {
@@ -125,6 +127,12 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
     use Verdict::{No, Yes};
     let network = |family| Some(ModelName::Network(family));
     let rival = |rival| Some(ModelName::Classical(rival));
+    if found.resonates {
+        return (
+            rival(ClassicalModel::HystereticOscillator),
+            "the data look like a resonance, which needs a mass",
+        );
+    }
     if found.is_a_function() {
         return (
             None,
@@ -185,7 +193,7 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
 /// A law with few parameters that holds what only networks hold otherwise. Whether its shape fits, only a fit
 /// tells.
 fn law(found: &Found) -> Option<&'static str> {
-    if found.is_a_function() {
+    if found.is_a_function() || found.resonates {
         return None;
     }
     if found.degrades() {
@@ -270,7 +278,7 @@ mod tests {
 
     #[test]
     fn laws_that_wear_out_or_see_the_rate_are_named() {
-        let statement = |verdicts| advise(&findings(verdicts), None).statement.concat();
+        let statement = |verdicts| advise(&findings(verdicts), None, false).statement.concat();
         assert!(statement([Yes, No, No, No, No, Yes, Yes]).contains("both with the option degradation"));
         assert!(statement([Yes, Yes, Yes, Yes, Yes, Yes, No]).contains("rate-dependent-prandtl-ishlinskii"));
         assert!(!statement([Yes, No, Yes, Yes, Yes, Yes, No]).contains("fewer parameters"));
@@ -292,7 +300,7 @@ mod tests {
             // Loops that vanish at rest are a matter of the rate, not of nothing.
             ([No, Yes, Yes, Yes, Yes, Yes, No], Some("xpnn")),
         ] {
-            let advice = advise(&findings(verdicts), None);
+            let advice = advise(&findings(verdicts), None, false);
             assert_eq!(name(&advice), expected, "{verdicts:?}");
             assert_eq!(assumed(&advice), 0, "{:?}", advice.statement);
         }
@@ -300,7 +308,8 @@ mod tests {
 
     #[test]
     fn what_is_not_testable_is_said_to_be_assumed() {
-        let advice = advise(&findings([NotTestable; 7]), None);
+        assert_eq!(name(&advise(&findings([Yes; 7]), None, true)), Some("hysteretic-oscillator"));
+        let advice = advise(&findings([NotTestable; 7]), None, false);
         assert_eq!(name(&advice), Some("prandtl-ishlinskii"));
         assert_eq!(advice.statement.len(), 9, "{:?}", advice.statement);
         assert!(advice.statement[2..].iter().all(|text| text.starts_with("not testable with these data: ")));
@@ -310,6 +319,7 @@ mod tests {
         let advice = advise(
             &findings([Yes, Yes, NotTestable, NotTestable, NotTestable, NotTestable, NotTestable]),
             None,
+            false,
         );
         assert_eq!(assumed(&advice), 0, "{:?}", advice.statement);
         assert_eq!(advice.needs_memory_of_time, NotTestable);

@@ -200,6 +200,21 @@ pub(crate) fn withhold_partial(findings: &mut [Finding]) {
     }
 }
 
+/// Withholds what the mass and the damping of a resonance make as well: open loops, and loops that shrink.
+pub(crate) fn withhold_what_inertia_makes(findings: &mut [Finding]) {
+    const MADE: [Property; 3] = [Property::StaticHysteresis, Property::Deterioration, Property::StrengthLoss];
+    let made = |finding: &&mut Finding| finding.verdict == Verdict::Yes && MADE.contains(&finding.property);
+    for finding in findings.iter_mut().filter(made) {
+        finding.verdict = Verdict::NotTestable;
+        finding.statement = format!(
+            "{} (the data look like a resonance, whose mass and damping do this too)",
+            finding.statement
+        );
+        finding.experiment =
+            Some("measure far below the resonance, or compare fits of models with inertia".into());
+    }
+}
+
 /// True if the noise in a difference is negligible.
 fn is_clear(finding: &Finding) -> bool {
     finding.index.zip(finding.noise).is_some_and(|(index, noise)| noise < CLEAR * index)

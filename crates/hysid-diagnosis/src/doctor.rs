@@ -25,6 +25,7 @@ use serde::Serialize;
 use super::artifact::Explanation;
 use super::branch::BranchSet;
 use super::{Cycle, CycleTable, Delay, DiagnosisOptions, FEWEST_ROWS, Finding, Piece};
+use crate::resonance::Resonance;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::unit;
 use hysid_core::error::Result;
@@ -133,17 +134,21 @@ pub(crate) fn examine(
     (cycles, table): (&[Cycle], &CycleTable),
     findings: &[Finding],
     delay: Option<&Delay>,
+    resonance: Option<&Resonance>,
     explanations: &[Explanation],
 ) -> Vec<DataIssue> {
+    let clipped = clipping::complaints(survey);
+    // A flat top turns earlier or later than the input.
+    let lags = if clipped.is_empty() { lag::complaints(survey, delay) } else { Vec::new() };
     let found = [
         marks::complaints(survey.data),
         spikes::complaints(survey),
-        artifacts::added(survey, lag::complaints(survey, delay), explanations, DataIssueKind::Lag),
+        artifacts::added(survey, lags, explanations, DataIssueKind::Lag),
         artifacts::added(survey, drift::complaints(survey, cycles), explanations, DataIssueKind::Drift),
         creep::complaints(survey),
-        hum::complaints(survey),
-        resonance::complaints(survey).into_iter().collect(),
-        clipping::complaints(survey),
+        if resonance.is_none() { hum::complaints(survey) } else { Vec::new() },
+        resonance.map(|found| resonance::complaint(survey, found)).into_iter().collect(),
+        clipped,
         repetition::complaints(survey),
         sampling::complaints(survey),
         closure::complaints(findings),

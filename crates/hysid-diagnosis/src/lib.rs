@@ -60,6 +60,7 @@ pub use hysid_core::property::Property;
 pub use model::ModelDiagnosis;
 pub use noise::resolution;
 pub use rate_dependence::delay::{self, Delay};
+use resonance::Resonance;
 pub use reversal_curves::{ReversalCurveOptions, ReversalCurves};
 
 /// Fewest scored rows that say anything about hysteresis.
@@ -280,6 +281,7 @@ impl Diagnosis {
         if !clipped.is_empty() {
             artifact::withhold_partial(&mut properties);
         }
+        let resonance = Resonance::of(data).filter(Resonance::is_found);
         let explanations =
             artifact::withhold(survey, options, &mut properties, |corrected, property| match property {
                 Property::WipingOut => wiping_out::test(corrected, equal_speed),
@@ -298,6 +300,9 @@ impl Diagnosis {
             properties.push(strength_loss::test(survey, &table.cycles, rate));
             properties.push(pinching::test(survey, &table.cycles));
         }
+        if resonance.is_some() {
+            artifact::withhold_what_inertia_makes(&mut properties);
+        }
         // Shares of no height or width are no numbers.
         if !(survey.height() > 0.0 && survey.width() > 0.0) {
             for finding in &mut properties {
@@ -306,8 +311,15 @@ impl Diagnosis {
         }
         let turning_rows = survey.turning_rows();
         Ok(Self {
-            doctor: doctor::examine(&measured, (&cycles, &table), &properties, delay.as_ref(), &explanations),
-            advice: advice::advise(&properties, delay.as_ref()),
+            doctor: doctor::examine(
+                &measured,
+                (&cycles, &table),
+                &properties,
+                delay.as_ref(),
+                resonance.as_ref(),
+                &explanations,
+            ),
+            advice: advice::advise(&properties, delay.as_ref(), resonance.is_some()),
             properties,
             delay,
             output_noise: survey.output_noise.deviation(),

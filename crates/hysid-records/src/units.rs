@@ -38,7 +38,17 @@ impl Factors {
         }
         let mut conversions = Vec::new();
         let mut column = |found: &str, trained: &str| -> Result<Option<f64>> {
-            let Some(factor) = factor(file, found, trained)? else { return Ok(None) };
+            let Some(factor) = factor(file, found, trained)? else {
+                if let (None, Some(unit)) = (unit::of_column(found), unit::of_column(trained)) {
+                    let (found, trained) = (clipped(found), clipped(trained));
+                    conversions.push(format!(
+                        "not converted: {found}, whose name tells no known unit, is taken in {}, the unit of the model's \
+                         {trained}",
+                        clipped(&unit)
+                    ));
+                }
+                return Ok(None);
+            };
             conversions.push(conversion(found, trained, factor));
             Ok(Some(factor))
         };

@@ -1,6 +1,6 @@
 //! The table of cycles of a data set.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, SQRT_2};
 
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
@@ -60,6 +60,13 @@ const ADDS: f64 = 0.01;
 
 /// An opening of a loop that is said, as a share of its height.
 const OPEN: f64 = 0.02;
+
+/// Levels at which the ways down and up are compared, and the share of their distance by which they change sides.
+const LEVELS: u32 = 32;
+const CROSSED: f64 = 0.15;
+
+/// A cycle whose ways there and back last unequally by this factor, between others that do not, has no frequency.
+const UNEVEN: f64 = 1.5;
 
 /// Deviations of the noise below which a figure is not told from noise.
 const SURE: f64 = 3.0;
@@ -191,7 +198,22 @@ fn rows_of(
         }
         rows.push(row);
     }
+    leave_out_mixed_frequencies(&mut rows);
     rows
+}
+
+/// A cycle whose halves are of two frequencies has none.
+fn leave_out_mixed_frequencies(rows: &mut [CycleRow]) {
+    let unevenness: Vec<f64> = rows.iter().map(|row| row.faults.unevenness).collect();
+    let is_uneven = |ratio: f64| !(UNEVEN.recip()..=UNEVEN).contains(&ratio);
+    for (place, row) in rows.iter_mut().enumerate() {
+        let beside = [place.checked_sub(1), Some(place + 1)];
+        let mut beside = beside.into_iter().flatten().filter_map(|place| unevenness.get(place));
+        if is_uneven(unevenness[place]) && beside.all(|ratio| !is_uneven(*ratio)) && unevenness.len() > 1 {
+            (row.frequency, row.power) = (None, None);
+            row.notes.push("no frequency: its two halves last unequally".into());
+        }
+    }
 }
 
 /// A turning point where a cycle ends belongs to the next one.
@@ -247,6 +269,7 @@ impl Reader<'_> {
             ..CycleRow::default()
         };
         row.frequency = row.period.map(f64::recip);
+        row.faults.unevenness = self.unevenness().unwrap_or(1.0);
         let tips = self.tips();
         row.peak_input = tips.peak.map(|tip| tip.input);
         row.valley_input = tips.valley.map(|tip| tip.input);
@@ -259,6 +282,14 @@ impl Reader<'_> {
             SpanPart::All => row.notes.push("incomplete: the record has no whole cycle".into()),
         }
         row
+    }
+
+    /// How many times as long the way back lasts as the way there, of a cycle from turning point to turning point.
+    fn unevenness(&self) -> Option<f64> {
+        let Span { from, to, ref branches, .. } = *self.span;
+        let time = self.record.time().filter(|_| branches.len() == 2)?;
+        let turn = at(time, (self.branches[branches.start].rows.end - 1) as f64);
+        Some((at(time, to) - turn) / (turn - at(time, from)))
     }
 
     /// The time that a cycle lacks because its record ends a step before the level is passed: at the speed with which it was
@@ -316,10 +347,22 @@ impl Reader<'_> {
         let valley = row.valley_input.zip(row.valley_output);
         let peak = row.peak_input.zip(row.peak_output);
         if let (true, Some((valley, peak))) = (self.field.has_structures(), valley.zip(peak)) {
-            row.secant_stiffness = Some(secant(valley, peak)).filter(|slope| slope.is_finite());
+            let rise = (peak.1 - valley.1).abs();
+            let noise = SURE * SQRT_2 * self.survey.output_noise.deviation();
+            let (lowest, highest) = range(&path.y);
+            if rise <= noise || rise < ROUNDING * (highest - lowest) {
+                row.notes.push(
+                    "no secant stiffness: the outputs at peak and valley do not differ by more than noise"
+                        .into(),
+                );
+            } else {
+                row.secant_stiffness = Some(secant(valley, peak)).filter(|slope| slope.is_finite());
+            }
         }
         if self.field != Field::Actuator && path.blanks() == 0 {
-            self.read_area(row, &path, high - low);
+            let crosses =
+                strands.as_ref().is_some_and(|(falling, rising)| cross(falling, rising, (low, high)));
+            self.read_area(row, &path, high - low, crosses);
         }
         // Where the input passes its zero, the cycles of growing tests are open by their nature.
         let should_close = self.field != Field::Structure
@@ -360,7 +403,7 @@ impl Reader<'_> {
     }
 
     /// Energy, loss per time and damping.
-    fn read_area(&self, row: &mut CycleRow, path: &Path, swing: f64) {
+    fn read_area(&self, row: &mut CycleRow, path: &Path, swing: f64, crosses: bool) {
         // A loop without area has no sign.
         let energy = self.field.sense_of_energy() * area(&path.x, &path.y) + 0.0;
         let deviation = self.survey.output_noise.of_sum(&weights(&path.x));
@@ -371,12 +414,15 @@ impl Reader<'_> {
         }
         if energy.abs() < SURE * deviation {
             row.notes.push("the energy is within three deviations of the noise".into());
+        } else if crosses {
+            row.notes.push("the loop crosses itself: the energy is the difference of its parts".into());
         }
         let Some(stiffness) = row.secant_stiffness else { return };
         let (low, high) = range(&path.y);
         let is_line = energy.abs() < LINE * swing * (high - low);
         match damping(if is_line { energy.abs() } else { energy }, stiffness, swing) {
             Some(ratio) => row.damping_percent = Some(100.0 * ratio),
+            None if crosses => row.notes.push("no equivalent damping: the loop crosses itself".into()),
             None if energy < 0.0 => {
                 row.notes.push("no equivalent damping: the loop is passed anticlockwise".into());
             }
@@ -449,7 +495,9 @@ impl Reader<'_> {
             found.iter().copied().min_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()))
         };
         let (after_peak, after_valley) = (innermost(&down), innermost(&up));
-        row.coercive_input = after_peak.zip(after_valley).map(|(down, up)| 0.5 * (up - down).abs());
+        let told = |value: f64, range: f64| if value < ROUNDING * range { 0.0 } else { value };
+        row.coercive_input =
+            after_peak.zip(after_valley).map(|(down, up)| told(0.5 * (up - down).abs(), swing));
         match missed(after_peak.is_some(), after_valley.is_some()) {
             Some(which) => row.notes.push(format!("{which} the output 0")),
             None if down.len() > 1 && up.len() > 1 => {
@@ -473,7 +521,7 @@ impl Reader<'_> {
             ));
         }
         let (down, up) = (falling.output_at(0.0, CLOSED * swing), rising.output_at(0.0, CLOSED * swing));
-        row.remanent_output = down.zip(up).map(|(down, up)| 0.5 * (down - up).abs());
+        row.remanent_output = down.zip(up).map(|(down, up)| told(0.5 * (down - up).abs(), height));
         if row.remanent_output.is_none() {
             row.notes.push("a branch does not pass the input 0: no remanence".into());
         }
@@ -481,7 +529,12 @@ impl Reader<'_> {
 
     /// A loop whose output does not come back with the input.
     fn note_open_loop(&self, row: &mut CycleRow, path: &Path) {
-        let Some(gap) = gap(&path.x, &path.y) else { return };
+        let (Some(near), Some((first, last))) = (gap(&path.x, &path.y), path.y.first().zip(path.y.last()))
+        else {
+            return;
+        };
+        // Rows near a tip that is rounded lie apart on both sides although the tip is one point.
+        let gap = if near.abs() < (last - first).abs() { near } else { last - first };
         let (low, high) = range(&path.y);
         let noise = SURE * self.survey.output_noise.deviation();
         // A drift adds up to half of the gap over the whole swing to the area.
@@ -595,6 +648,20 @@ fn end_without_noise(x: &[f64], branch: &Branch, is_last: bool) -> Option<f64> {
     let places: Vec<Place> = rows.map(|row| Place { station: row as f64, x: x[row], y: x[row] }).collect();
     let parabola = Parabola::over(&places, end);
     Some(places.iter().map(|place| parabola.weight(place) * place.x).sum())
+}
+
+/// True if the ways down and up change sides between their ends, by more than a small part of what is between them.
+fn cross(falling: &Strand, rising: &Strand, (low, high): (f64, f64)) -> bool {
+    let (mut above, mut below) = (0.0, 0.0);
+    for place in 1..LEVELS {
+        let x = low + (high - low) * f64::from(place) / f64::from(LEVELS);
+        let within = CLOSED * (high - low);
+        if let Some((down, up)) = falling.output_at(x, within).zip(rising.output_at(x, within)) {
+            above += (down - up).max(0.0);
+            below += (up - down).max(0.0);
+        }
+    }
+    f64::min(above, below) > CROSSED * (above + below)
 }
 
 /// Which branch does not pass a level.

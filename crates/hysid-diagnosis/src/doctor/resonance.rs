@@ -8,8 +8,7 @@ use hysid_core::significant::Significant;
 /// Records that are shown.
 const SHOWN: usize = 3;
 
-pub(super) fn complaints(survey: &BranchSet) -> Option<DataIssue> {
-    let found = Resonance::of(survey.data).filter(Resonance::is_found)?;
+pub(super) fn complaint(survey: &BranchSet, found: &Resonance) -> DataIssue {
     let seconds = Units::of(survey).time.as_deref() == Some("s");
     let (what, models) = match found.oscillator.compared {
         Compared::Output => ("", "--model hysteretic-oscillator or hysteretic-state-space"),
@@ -28,7 +27,7 @@ pub(super) fn complaints(survey: &BranchSet) -> Option<DataIssue> {
         found.ratio,
         models
     );
-    Some(DataIssue {
+    DataIssue {
         record: None,
         value: Some(found.oscillator.natural_frequency),
         unit: seconds.then(|| "Hz".into()),
@@ -36,7 +35,7 @@ pub(super) fn complaints(survey: &BranchSet) -> Option<DataIssue> {
             DataIssueKind::Resonance,
             Severity::Warning,
             statement,
-            found.rows.into_iter().take(SHOWN).collect(),
+            found.rows.iter().take(SHOWN).cloned().collect(),
         )
-    })
+    }
 }
