@@ -188,7 +188,8 @@ pub(crate) mod tests {
             ("worn", Verdict::Yes, None, |_, travel| 10.0 * (-travel / 2000.0).exp()),
         ];
         for (name, expected, loss, strength) in strength {
-            for noise in [0.0, 0.004] {
+            // The last hides a loss of more than the one that matters.
+            for noise in [0.0, 0.004, 0.03] {
                 let (mut force, mut largest, mut travel) = (0.0f64, 0.0f64, 0.0);
                 let data = member(noise, |x, dx| {
                     (largest, travel) = (largest.max(x.abs()), travel + dx.abs());
@@ -198,6 +199,12 @@ pub(crate) mod tests {
                 });
                 let diagnosis = diagnosed(&data);
                 let finding = diagnosis.finding(Property::StrengthLoss);
+                let expected = if noise > 0.01 && finding.verdict == Verdict::NotTestable {
+                    assert!(finding.statement.starts_with("the noise hides losses of up to"));
+                    continue;
+                } else {
+                    expected
+                };
                 assert_eq!(finding.verdict, expected, "{name}, {noise}: {}", finding.statement);
                 if let Some(loss) = loss {
                     assert!(

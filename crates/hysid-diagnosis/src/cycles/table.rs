@@ -269,7 +269,7 @@ impl Reader<'_> {
             ..CycleRow::default()
         };
         row.frequency = row.period.map(f64::recip);
-        row.faults.unevenness = self.unevenness().unwrap_or(1.0);
+        row.faults.unevenness = self.unevenness().filter(|_| complete).unwrap_or(1.0);
         let tips = self.tips();
         row.peak_input = tips.peak.map(|tip| tip.input);
         row.valley_input = tips.valley.map(|tip| tip.input);
@@ -414,7 +414,8 @@ impl Reader<'_> {
         }
         if energy.abs() < SURE * deviation {
             row.notes.push("the energy is within three deviations of the noise".into());
-        } else if crosses {
+        }
+        if crosses {
             row.notes.push("the loop crosses itself: the energy is the difference of its parts".into());
         }
         let Some(stiffness) = row.secant_stiffness else { return };

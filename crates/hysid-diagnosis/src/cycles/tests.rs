@@ -523,3 +523,67 @@ fn a_rippled_loop_has_its_coercive_field() {
         assert!(row.remanent_output.is_some(), "{:?}", row.notes);
     }
 }
+
+/// A phase that lags behind the field at 1, 5 and 20 Hz, three periods each: no cycle is of 3 or of 12 Hz, and all close.
+#[test]
+fn a_cycle_of_two_frequencies_has_none_and_round_tips_are_closed() {
+    let (mut t, mut x, mut y) = (vec![0.0], vec![0.0], vec![-(0.3_f64.sin())]);
+    for frequency in [1.0, 5.0, 20.0] {
+        let begin = t[t.len() - 1];
+        for row in 1..=600 {
+            let phase = TAU * f64::from(row) / 200.0;
+            t.push(begin + phase / (TAU * frequency));
+            x.push(phase.sin());
+            y.push((phase - 0.3).sin());
+        }
+    }
+    let options = CycleOptions {
+        field: Some(Field::Magnet),
+        division: Some(Division::Reversals),
+        ..CycleOptions::default()
+    };
+    let table = CycleTable::of(&timed(t, x, y), &options).unwrap();
+    let found: Vec<f64> = table.losses.iter().map(|loss| loss.frequency.round()).collect();
+    assert_eq!(found, [1.0, 5.0, 20.0]);
+    let mixed: Vec<&CycleRow> = table.complete().filter(|row| row.frequency.is_none()).collect();
+    assert_eq!(mixed.len(), 2);
+    assert!(mixed.iter().all(|row| row.notes.iter().any(|note| note.contains("last unequally"))));
+    for row in table.complete() {
+        assert!(!row.notes.iter().any(|note| note.contains("open by")), "{:?}", row.notes);
+        assert_relative_eq!(row.energy.unwrap(), PI * 0.3_f64.sin(), max_relative = 1e-3);
+    }
+}
+
+/// Viscous forces are 0 at the tips: what noise leaves there is no stiffness, and damps nothing.
+#[test]
+fn noise_at_the_tips_is_no_stiffness() {
+    let noise = |row: usize| 0.04 * (mix(row as u64) as f64 / u64::MAX as f64 - 0.5);
+    let phase = |row: usize| TAU * row as f64 / 200.0;
+    let x: Vec<f64> = (0..=1000).map(|row| phase(row).sin()).collect();
+    for size in [0.0, 1.0] {
+        let y = (0..=1000).map(|row| phase(row).cos() + size * noise(row)).collect();
+        let table = table_of(&data(x.clone(), y), Field::Structure);
+        assert!(table.complete().count() >= 4);
+        for row in table.complete() {
+            assert_eq!((row.secant_stiffness, row.damping_percent), (None, None));
+            assert!(row.notes.iter().any(|note| note.starts_with("no secant stiffness")), "{:?}", row.notes);
+            assert_relative_eq!(row.energy.unwrap(), PI, max_relative = 0.01);
+        }
+    }
+}
+
+/// A memristor's loop passes through the origin: its lobes are of opposite sense.
+#[test]
+fn a_loop_that_crosses_itself_says_so() {
+    let phase = |row: usize| TAU * row as f64 / 400.0;
+    let x: Vec<f64> = (0..=1600).map(|row| phase(row).sin()).collect();
+    let y = (0..=1600).map(|row| phase(row).sin() * (1.0 + 0.3 * phase(row).cos())).collect();
+    for row in table_of(&data(x, y), Field::General).complete() {
+        assert!(
+            row.notes.iter().any(|note| note.contains("crosses itself: the energy is")),
+            "{:?}",
+            row.notes
+        );
+        assert!(row.energy.unwrap().abs() < 1e-3 && row.coercive_input.unwrap() < 1e-9, "{row:?}");
+    }
+}

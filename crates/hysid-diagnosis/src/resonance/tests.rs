@@ -4,7 +4,7 @@ use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::operator::{Operator, Stop};
 
 use super::*;
-use crate::{DataIssue, DataIssueKind, Diagnosis, DiagnosisOptions};
+use crate::{DataIssue, DataIssueKind, Diagnosis, DiagnosisOptions, Property, Verdict};
 
 /// Steps of the integration in a row.
 const STEPS: usize = 20;
@@ -85,6 +85,21 @@ fn record((time, input, output): (Vec<f64>, Vec<f64>, Vec<f64>)) -> Record {
 
 fn dataset(columns: (Vec<f64>, Vec<f64>, Vec<f64>)) -> Dataset {
     named("t_s", vec![record(columns)])
+}
+
+/// A linear oscillator has no static hysteresis, does not wear, and its frequency is no hum of the mains.
+#[test]
+fn what_a_mass_makes_is_no_verdict_on_memory() {
+    let diagnosis = Diagnosis::of(&dataset(linear()), &DiagnosisOptions::default()).unwrap();
+    for property in [Property::StaticHysteresis, Property::Deterioration] {
+        let finding = diagnosis.finding(property);
+        assert_ne!(finding.verdict, Verdict::Yes, "{}", finding.statement);
+    }
+    assert!(diagnosis.doctor.iter().all(|issue| issue.kind != DataIssueKind::Hum), "{:?}", diagnosis.doctor);
+    assert_eq!(
+        diagnosis.advice.model.map(hysid_core::options::ModelName::name),
+        Some("hysteretic-oscillator")
+    );
 }
 
 fn complaint(data: &Dataset) -> Option<DataIssue> {

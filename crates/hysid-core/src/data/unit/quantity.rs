@@ -157,6 +157,8 @@ mod tests {
             ("mm/s^2", 1e-3, [1, 0, -2, 0, 0, 0]),
             ("uC/cm2", 1e-2, [-2, 0, 1, 1, 0, 0]),
             ("kN m", 1e3, MOMENT),
+            ("kgf", 9.80665, FORCE),
+            ("tf", 9806.65, FORCE),
             ("um/m", 1e-6, NONE),
         ] {
             let found = Quantity::of(unit).unwrap_or_else(|| panic!("{unit}"));
