@@ -45,6 +45,9 @@ fn time_has_many_names() {
     }
     let data = table("t,Zeit,x,y", |_, [t, x, y]| texts(&[&t, &(2.0 * t), &x, &y]));
     told(data, "", &["time     t: ", "input    x: ", "ignored  Zeit: a second time"]);
+    // An hour that comes twice.
+    let data = table("timestamp,x,y", |k, [t, x, y]| texts(&[&(t - if k > 40 { 3.0 } else { 0.0 }), &x, &y]));
+    told(data, "", &["input    x: ", "ignored  timestamp: time that falls back from one row to the next"]);
     // The name alone does not decide.
     let data = table("t,tempo,y", |_, [t, x, y]| texts(&[&t, &x, &y]));
     told(data, "", &["input    tempo: "]);
@@ -210,4 +213,17 @@ fn what_names_and_values_do_not_tell_is_asked() {
     );
     let lines = ["input    Displacement (mm): ", "ignored  Force2 [kN]: another output"];
     told(outputs, "--output Force1", &lines);
+    // A sweep of voltage, or a cell: hours and a temperature are those of a cell, which the current drives.
+    let swept = |header: &str| table(header, |_, [t, x, y]| texts(&[&t, &x, &y]));
+    told(swept("t [s],U [V],I [mA]"), "", &["input    U [V]: ", "output   I [mA]: "]);
+    refused(
+        swept("t [h],U [V],I [A]"),
+        "",
+        "error: data.csv: \"I [A]\" is the last column, but \"U [V]\" looks more like the output: choose with --output \
+         'U [V]' or --output 'I [A]'",
+    );
+    let unknown = |header: &str| table(header, |_, [t, x, y]| texts(&[&t, &x, &y, &(y * y + x)]));
+    let by_place = "warning: data.csv: the names do not tell input and output: \"c\" is taken for the output";
+    told(unknown("t,a,b,c"), "", &[by_place, "input    a: ", "output   c: "]);
+    told(unknown("t,x1,x2,y"), "--rate none", &["input    x1: ", "output   y: "]);
 }

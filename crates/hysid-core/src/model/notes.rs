@@ -7,6 +7,9 @@ use crate::model::selection::{Selection, WarmUp};
 use crate::model::{Ensemble, Model};
 use crate::significant::Significant;
 
+/// A validation error below this share of the training error tells of rows that are easier than the others. Designed.
+const EASIER: f64 = 0.8;
+
 /// Weights of a law that a row may stand for.
 const WEIGHTS_A_ROW: usize = 2;
 
@@ -16,7 +19,7 @@ impl Model {
     pub fn notes(&self) -> Vec<String> {
         let size = self.size_warning().map(|warning| warning.to_string());
         let beginning = self.warm_up_note().into_iter().chain(self.initial_state_note());
-        beginning.chain(self.one_loop_note()).chain(size).collect()
+        beginning.chain(self.one_loop_note()).chain(self.easy_rows_note()).chain(size).collect()
     }
 
     /// A note on more parameters than rows; for an ensemble, of its largest member. For a single network
@@ -92,6 +95,21 @@ impl Model {
         Some(format!(
             "initial state: {begin}{why}; new data begin {all} unless another initial state is given (initial_state)"
         ))
+    }
+
+    /// A note on a validation error that promises too much.
+    fn easy_rows_note(&self) -> Option<String> {
+        let provenance = self.provenance();
+        let train = provenance.train_after_warm_up.as_ref().unwrap_or(&provenance.train);
+        let held_out = provenance.validation.as_ref()?;
+        (held_out.rmse < EASIER * train.rmse).then(|| {
+            format!(
+                "validation: the rows held out ({}) have a smaller error than all training rows ({}): they are easier than \
+                 the others, so expect at least the training error of new data",
+                percent(held_out),
+                percent(train)
+            )
+        })
     }
 
     /// What a caller must know that runs the model sample by sample, if its records begin after a period that is not

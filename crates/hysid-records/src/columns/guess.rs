@@ -184,6 +184,9 @@ impl<'t> Guess<'t> {
                 if is_time { "text, and no time stamp that Hysid reads" } else { "text" },
             );
         };
+        if unit::may_be_time(name) && seen.running == Running::No && kind == Kind::Unknown {
+            return doubt(Rank::Text, "time that falls back from one row to the next");
+        }
         match seen.course {
             Course::Constant => return doubt(Rank::Constant, "constant"),
             Course::Counts => return doubt(Rank::Counts, "counts the rows"),
