@@ -241,6 +241,10 @@ pub struct Diagnosis {
 const ONLY_DEFECTS: &str =
     "beside what looks like a defect of the record, the input or the output does not change";
 
+const TOO_LARGE: &str = "the numbers are too large or too small to compute with";
+
+const OTHER_UNITS: &str = "give the columns in other units";
+
 const RECORD_ANEW: &str = "record an output that follows an input over its whole range";
 
 impl Diagnosis {
@@ -303,10 +307,13 @@ impl Diagnosis {
         if resonance.is_some() {
             artifact::withhold_what_inertia_makes(&mut properties);
         }
-        // Shares of no height or width are no numbers.
-        if !(survey.height() > 0.0 && survey.width() > 0.0) {
-            for finding in &mut properties {
+        // Shares of no height or width are no numbers, nor are those of areas beyond all numbers.
+        let has_size = survey.height() > 0.0 && survey.width() > 0.0;
+        for finding in &mut properties {
+            if !has_size {
                 *finding = Finding::not_testable(finding.property, ONLY_DEFECTS, RECORD_ANEW);
+            } else if finding.index.is_some_and(|index| !index.is_finite()) {
+                *finding = Finding::not_testable(finding.property, TOO_LARGE, OTHER_UNITS);
             }
         }
         let turning_rows = survey.turning_rows();

@@ -15,6 +15,10 @@ const OWN_SUM: &str = "manifest_sha256";
 
 const NO_SUM: &str = "";
 
+/// Endings of files that exports have and nobody else's folder is likely to: what a manifest names otherwise is not removed.
+const ENDINGS: [&str; 12] =
+    [".c", ".h", ".cpp", ".tcl", ".m", ".py", ".onnx", ".fmu", ".csv", ".xml", "README.md", "manifest.json"];
+
 /// The files of an export with their checksums, from the text of its manifest; `None` if Hysid did not write it so.
 pub fn files_of(manifest: &str) -> Option<Vec<(String, String)>> {
     let value: serde_json::Value = serde_json::from_str(manifest).ok()?;
@@ -24,7 +28,9 @@ pub fn files_of(manifest: &str) -> Option<Vec<(String, String)>> {
         return None;
     }
     let entry = |file: &serde_json::Value| {
-        Some((file["path"].as_str()?.to_string(), file["sha256"].as_str()?.to_string()))
+        let path =
+            file["path"].as_str().filter(|path| ENDINGS.iter().any(|ending| path.ends_with(ending)))?;
+        Some((path.to_string(), file["sha256"].as_str()?.to_string()))
     };
     value["files"].as_array()?.iter().map(entry).collect()
 }

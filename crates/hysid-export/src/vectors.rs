@@ -159,9 +159,14 @@ impl Path<'_> {
             Argument::TimeStep => 0.01 * (1.0 + 0.5 * (0.7 * t).sin()),
             Argument::Rate => self.rate * (0.37 * t).cos(),
         };
-        // Single precision has these numbers too.
-        self.arguments.iter().map(|argument| f64::from(value(argument) as f32)).collect()
+        self.arguments.iter().map(|argument| of_both_precisions(value(argument))).collect()
     }
+}
+
+/// The nearest number that single precision has too, where it has one.
+pub(crate) fn of_both_precisions(value: f64) -> f64 {
+    let single = value as f32;
+    if single.is_normal() { f64::from(single) } else { value }
 }
 
 /// The place between -1 and 1 in a range.

@@ -8,6 +8,7 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use crate::failure::Failure;
+use crate::lock::Lock;
 use crate::{leftovers, temporary};
 use changes::Changes;
 
@@ -48,6 +49,9 @@ impl Folder<'_> {
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
             found => Some(found.map_err(refused())?),
         };
+        if self.path.file_name().is_none() && found.is_none() {
+            return Err(refused()(io::ErrorKind::NotFound.into()));
+        }
         match found {
             Some(found) if !found.is_dir() => {
                 Err(Failure::NotOurs { path: self.path.to_path_buf(), expected: self.what })
@@ -83,9 +87,13 @@ impl Folder<'_> {
         if let Some(input) = self.inputs.iter().find(holds) {
             return Err(Failure::HoldsInput { folder: self.path.into(), input: input.to_path_buf() });
         }
+        // Others that write here at the same moment would mix their files with these.
+        let _lock = Lock::acquire(&root.join(self.manifest))?;
         let mut changes = Changes::begin(root, self.manifest).map_err(refused())?;
         let listed = self.listed_in(root);
-        let is_empty = fs::read_dir(root).map_err(refused())?.flatten().all(|entry| changes.is_own(&entry));
+        let is_lock = |entry: &fs::DirEntry| *entry.file_name() == *format!(".{}.lock", self.manifest);
+        let mut found = fs::read_dir(root).map_err(refused())?.flatten();
+        let is_empty = found.all(|entry| changes.is_own(&entry) || is_lock(&entry));
         if listed.is_none() && !is_empty && !self.force {
             return Err(Failure::NotOurs { path: self.path.into(), expected: self.what });
         }

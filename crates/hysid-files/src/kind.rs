@@ -32,8 +32,13 @@ pub enum Kind {
     Page,
     /// A drawing, as SVG, PDF or PNG.
     Drawing,
-    /// A text that begins like this, such as a table with this header line.
+    /// A text that begins like this.
     Beginning(Vec<u8>),
+    /// A table that begins with this header line. One that is replaced is kept as `NAME.bak`: a table of the user's may
+    /// have the same header.
+    Table(Vec<u8>),
+    /// A project of the studio.
+    Project,
     /// A text that begins with the first of these and contains the second soon after.
     Marked(&'static str, String),
     /// A file with exactly this content.
@@ -48,15 +53,16 @@ impl Kind {
             Self::Checkpoint => "checkpoint of Hysid",
             Self::Page => "page of Hysid",
             Self::Drawing => "drawing of Hysid",
-            Self::Beginning(_) => "table of this command",
-            Self::Marked(..) => "result of this command",
+            Self::Table(_) => "table of this command",
+            Self::Project => "project of Hysid",
+            Self::Beginning(_) | Self::Marked(..) => "result of this command",
             Self::Content(_) => "copy of what this command writes",
         }
     }
 
     /// True if a replaced file is kept.
     pub(crate) fn is_kept(&self) -> bool {
-        *self == Self::Model
+        matches!(self, Self::Model | Self::Table(_))
     }
 
     /// True for a file that Hysid may replace: one of its own, or one without content.
@@ -76,26 +82,28 @@ impl Kind {
 
     fn is_begun_by(&self, text: &[u8]) -> bool {
         match self {
-            Self::Model => is_model(text),
+            Self::Model => has_format(text, "hysid-model"),
+            Self::Project => has_format(text, "hysid-project"),
             Self::Checkpoint => text.starts_with(b"hysid checkpoint "),
             Self::Page => text.starts_with(PAGE_MARK.as_bytes()),
             Self::Drawing => {
                 DRAWINGS.iter().any(|(beginning, mark)| text.starts_with(beginning) && contains(text, mark))
             }
-            Self::Beginning(beginning) => text.starts_with(beginning),
+            Self::Beginning(beginning) | Self::Table(beginning) => text.starts_with(beginning),
             Self::Marked(beginning, mark) => text.starts_with(beginning.as_bytes()) && contains(text, mark),
             Self::Content(content) => text == content,
         }
     }
 }
 
-/// A JSON object whose first field names the format, as of every version's model files.
-fn is_model(text: &[u8]) -> bool {
-    let tokens = [&b"{"[..], b"\"format\"", b":", b"\"hysid-model\""];
+/// A JSON object whose first field names the format, however it is laid out.
+fn has_format(text: &[u8], format: &str) -> bool {
+    let format = format!("\"{format}\"");
+    let tokens = [&b"{"[..], b"\"format\"", b":", format.as_bytes()];
     let mut rest = text;
-    tokens.iter().all(|token| {
+    tokens.into_iter().all(|token| {
         rest = rest.trim_ascii_start();
-        rest.strip_prefix(*token).map(|after| rest = after).is_some()
+        rest.strip_prefix(token).map(|after| rest = after).is_some()
     })
 }
 

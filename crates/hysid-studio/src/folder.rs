@@ -22,9 +22,6 @@ const MOST_FOLDERS: usize = 100;
 /// The file with what was chosen and made.
 const PROJECT: &str = "project.json";
 
-/// How that file begins.
-const BEGINNING: &[u8] = b"{\n  \"format\": \"hysid-project\"";
-
 /// Longest name of a file that is kept.
 const LONGEST_NAME: usize = 120;
 
@@ -208,7 +205,7 @@ impl Folder {
     /// # Errors
     /// A folder that cannot be written to.
     pub fn write_project(&self, text: &str) -> Result<()> {
-        self.write(&self.root.join(PROJECT), Kind::Beginning(BEGINNING.to_vec()), text.as_bytes())
+        self.write(&self.root.join(PROJECT), Kind::Project, text.as_bytes())
     }
 }
 

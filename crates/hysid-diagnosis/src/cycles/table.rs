@@ -268,7 +268,7 @@ impl Reader<'_> {
             output_max: measured.map(|range| range.1),
             ..CycleRow::default()
         };
-        row.frequency = row.period.map(f64::recip);
+        row.frequency = row.period.map(f64::recip).filter(|frequency| frequency.is_finite());
         row.faults.unevenness = self.unevenness().filter(|_| complete).unwrap_or(1.0);
         let tips = self.tips();
         row.peak_input = tips.peak.map(|tip| tip.input);

@@ -3,7 +3,7 @@
 use hysid_core::model::{Inverse, Inverted, Model};
 
 use crate::description::Argument;
-use crate::vectors::{Action, within};
+use crate::vectors::{Action, of_both_precisions, within};
 
 /// Rows of the path, and the fewest of a model whose steps need much work.
 const ROWS: usize = 200;
@@ -82,12 +82,11 @@ impl Row {
         let ranges = model.trained_ranges();
         let t = row as f64;
         let wave = 1.05 * ((0.23 * t).sin() * (0.6 + 0.4 * (0.031 * t).cos()) + 0.1 * (1.9 * t).sin());
-        // Single precision has these numbers too.
-        let single = |value: f64| f64::from(value as f32);
-        let other =
-            |(input, range): (usize, &(f64, f64))| single(within(*range, (0.11 * t + input as f64).sin()));
+        let other = |(input, range): (usize, &(f64, f64))| {
+            of_both_precisions(within(*range, (0.11 * t + input as f64).sin()))
+        };
         Self {
-            wanted: single(within(ranges.output, wave)),
+            wanted: of_both_precisions(within(ranges.output, wave)),
             others: ranges.inputs.iter().enumerate().skip(1).map(other).collect(),
             // Sums and differences of such times are exact.
             time_step: (10 + (row * 7919) % 13) as f64 / 1024.0,

@@ -269,7 +269,7 @@ scale = {scale:?};
 state = {name}();
 saved = state;
 next = state;
-largest = 0;
+differences = [];
 for row = 1:size(vectors, 1)
     v = vectors(row, :);
     switch v(1)
@@ -277,25 +277,25 @@ for row = 1:size(vectors, 1)
             state = {name}();
         case 2
             [y, next, slope] = {name}(state{given});
-            largest = max([largest, abs(y - v({output})) / scale]);
-            largest = max([largest, abs(slope - v({tangent})) / (scale + abs(v({tangent})))]);
+            differences(end + 1) = abs(y - v({output})) / scale;
+            differences(end + 1) = abs(slope - v({tangent})) / (scale + abs(v({tangent})));
             [y, next] = {name}(state{given});
-            largest = max([largest, abs(y - v({output})) / scale]);
+            differences(end + 1) = abs(y - v({output})) / scale;
         case 3
             state = next;
         case 4
             next = state;
         case 5
             [y, state] = {name}(state{given});
-            largest = max([largest, abs(y - v({output})) / scale]);
+            differences(end + 1) = abs(y - v({output})) / scale;
         case 6
             saved = state;
         case 7
             state = saved;
     end
 end
-fprintf('%d test vectors, largest difference %.1e of half the trained range\\n', size(vectors, 1), largest);
-if ~(largest <= 1e-9)
+fprintf('%d test vectors, largest difference %.1e of half the trained range\\n', size(vectors, 1), max(differences));
+if ~all(differences <= 1e-9)
     error('{name} differs from its test vectors');
 end
 end

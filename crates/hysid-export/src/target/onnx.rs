@@ -190,7 +190,8 @@ with (folder / \"test_vectors.csv\").open(newline=\"\") as file:
             saved = state
         elif action == \"restore\":
             state = saved
-largest = max(float(difference) for difference in differences)
+# One that is not a number is the largest.
+largest = max(map(float, differences), key=lambda difference: (difference != difference, difference))
 print(f\"{{len(differences)}} numbers differ by at most {{largest:.1e}} of half the trained range\")
 sys.exit(0 if largest <= 1e-9 else 1)
 ",

@@ -1,6 +1,6 @@
 //! The names and units above the rows of a table.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use anyhow::{Result, bail};
 use hysid_core::data::unit;
@@ -248,13 +248,17 @@ fn joined(above: &[String], names: &[String]) -> Vec<String> {
 /// Names of which none is empty and no two are equal.
 pub fn distinct(names: Vec<String>) -> Vec<String> {
     let mut seen: HashSet<String> = HashSet::new();
+    // The next number of a name, so that many equal names cost no more than others.
+    let mut next: HashMap<String, usize> = HashMap::new();
     let mut all = Vec::with_capacity(names.len());
     for (place, name) in names.into_iter().enumerate() {
         let name = if name.is_empty() { format!("c{}", place + 1) } else { name };
-        let numbered = (2..).map(|count| format!("{name} ({count})"));
-        let free = std::iter::once(name.clone()).chain(numbered).find(|name| !seen.contains(name));
-        let free = free.unwrap_or(name);
-        seen.insert(free.clone());
+        let mut free = name.clone();
+        let count = next.entry(name.clone()).or_insert(2);
+        while !seen.insert(free.clone()) {
+            free = format!("{name} ({count})");
+            *count += 1;
+        }
         all.push(free);
     }
     all

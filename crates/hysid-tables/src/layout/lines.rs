@@ -36,6 +36,9 @@ impl<'t> Line<'t> {
     }
 }
 
+/// Comments that are kept: names and units stand in the first or the last of them.
+const MOST_COMMENTS: usize = 10_000;
+
 /// What comments begin with.
 const COMMENTS: [&str; 4] = ["#", "%", "//", "!"];
 
@@ -50,7 +53,7 @@ pub fn is_comment(line: &str) -> bool {
 pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<Line<'_>> {
     let mut physical = Vec::new();
     // Comments may be of any length, and the table comes behind them.
-    let (mut start, mut number, mut others) = (0, 1, 0);
+    let (mut start, mut number, mut others, mut comments) = (0, 1, 0, 0);
     while start < text.len() && others < MOST_LINES + skip + LONGEST_QUOTE {
         let rest = &text[start..];
         let end = rest.find(['\n', '\r']);
@@ -60,8 +63,13 @@ pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<Line<'_>> {
         let length = end.unwrap_or(rest.len());
         let both = usize::from(rest[length..].starts_with("\r\n"));
         let next = start + length + both + usize::from(end.is_some());
-        physical.push((start, start + length, next, number));
-        others += usize::from(!is_comment(&rest[..length]));
+        let is_other = !is_comment(&rest[..length]);
+        others += usize::from(is_other);
+        comments += usize::from(!is_other);
+        // What is behind the first comments is not looked at, so that they need no memory.
+        if is_other || comments <= MOST_COMMENTS + skip {
+            physical.push((start, start + length, next, number));
+        }
         start = next;
         number += 1;
     }
