@@ -132,7 +132,12 @@ impl Output<'_> {
     fn finish(mut self) -> Result<()> {
         self.write()?;
         match self.sink {
-            Some(file) => file.commit().map(drop).map_err(files::explained),
+            Some(file) => {
+                let path = file.path().to_path_buf();
+                let kept = file.commit().map_err(files::explained)?;
+                files::say_kept(&path, kept.as_deref());
+                Ok(())
+            }
             None => std::io::stdout().lock().flush().map_err(stdout_failed),
         }
     }

@@ -71,11 +71,21 @@ fn the_drive_goes_straight_into_a_simulation() {
     assert_eq!(simulated, numbers(&bench, "drive.csv", "F_kN_reached"));
     assert!(column(&bench.text("drive.csv"), "extrapolated", ',').iter().all(|cell| cell == "no"));
 
-    // Its own result is replaced, and the report.
+    // Its own result is replaced, and the report; the table could be the user's, and is kept.
+    let first = bench.text("drive.csv");
     succeeds(&bench, "invert stage.json wanted.csv -o drive.csv --limits=-1:1");
+    assert_eq!(bench.text("drive.csv.bak"), first);
     assert_eq!(
         bench.files(""),
-        ["drive.csv", "drive.html", "simulated.csv", "stage.json", "train.csv", "wanted.csv"]
+        [
+            "drive.csv",
+            "drive.csv.bak",
+            "drive.html",
+            "simulated.csv",
+            "stage.json",
+            "train.csv",
+            "wanted.csv"
+        ]
     );
 }
 

@@ -45,6 +45,11 @@ impl<'d> NewFile<'d> {
         Ok(Self { destination, sink })
     }
 
+    /// Where it is to be.
+    pub fn path(&self) -> &Path {
+        self.destination.path()
+    }
+
     /// What is to be said of an error while writing.
     pub fn failed(&self, error: io::Error) -> Failure {
         Failure::refused(self.destination.path())(error)
