@@ -164,7 +164,9 @@ fn a_studio_that_was_killed_between_model_and_project_takes_the_finished_model()
     // A project that cannot be written opens all the same, and keeps what there is.
     let file = path.join("project.json");
     let text = fs::read_to_string(&file).unwrap();
-    fs::write(&file, format!(" {text}")).unwrap();
+    let field = "\"format\": \"hysid-project\"";
+    let elsewhere = text.replacen(&format!("{field},"), "", 1);
+    fs::write(&file, format!("{}, {field}}}", elsewhere.trim_end().trim_end_matches('}'))).unwrap();
     let state = opened(&path).fit().unwrap();
     assert!(state.made.is_none() && state.problem.unwrap().contains("project.json"));
     fs::write(&file, text).unwrap();
