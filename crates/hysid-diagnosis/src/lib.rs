@@ -315,6 +315,7 @@ impl Diagnosis {
             } else if finding.index.is_some_and(|index| !index.is_finite()) {
                 *finding = Finding::not_testable(finding.property, TOO_LARGE, OTHER_UNITS);
             }
+            finding.noise = finding.noise.filter(|noise| noise.is_finite());
         }
         let turning_rows = survey.turning_rows();
         Ok(Self {

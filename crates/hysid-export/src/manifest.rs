@@ -114,4 +114,18 @@ mod tests {
         assert_eq!(files_of(&ours), Some(vec![("a.c".into(), "1".into())]));
         assert_eq!(files_of(&ours.replace("a.c", "b.c")), None);
     }
+
+    #[test]
+    fn a_manifest_lists_files_of_exports_alone() {
+        let listed = |path: &str| {
+            let entry = format!("{{\"path\": \"{path}\", \"sha256\": \"00\"}}");
+            let text = format!("{{\"format\": \"{FORMAT}\", {}, \"files\": [{entry}]}}", field(NO_SUM));
+            let own = checksum(text.as_bytes());
+            files_of(&text.replacen(&field(NO_SUM), &field(&own), 1))
+        };
+        assert_eq!(listed("stage.c"), Some(vec![("stage.c".into(), "00".into())]));
+        for other in ["LICENSE", ".git/HEAD", "thesis.doc"] {
+            assert_eq!(listed(other), None, "{other}");
+        }
+    }
 }

@@ -177,6 +177,14 @@ pub(crate) fn within((low, high): (f64, f64), place: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_beyond_single_precision_stay() {
+        assert_eq!(of_both_precisions(0.1), f64::from(0.1f32));
+        for value in [0.0, -1e99, 1e-60, 3e-42] {
+            assert_eq!(of_both_precisions(value), value);
+        }
+    }
     use crate::program::expression::Real;
     use crate::program::{Builder, Precision};
 

@@ -8,7 +8,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
-use crate::kind::Kind;
+use crate::kind::{Kind, is_page_as_written};
 use crate::target::Target;
 use crate::{backup, leftovers, temporary};
 pub use new_file::NewFile;
@@ -109,8 +109,11 @@ impl Destination {
 
     /// How what is at the target is kept: what Hysid did not write in any case, under a name of its own.
     pub(crate) fn copy_of_the_old(&self, target: &Path) -> io::Result<Copy> {
+        let is_edited =
+            || Ok::<_, io::Error>(self.kind == Kind::Page && !is_page_as_written(&fs::read(target)?));
         Ok(match (self.kind.recognises(target)?, self.keep) {
             _ if fs::metadata(target)?.len() == 0 => Copy::None,
+            (true, _) if is_edited()? => Copy::Aside,
             (true, false) => Copy::None,
             (true, true) if backup::is_free(target, &self.kind) => Copy::Replacing,
             _ => Copy::Aside,

@@ -226,6 +226,21 @@ mod tests {
     }
 
     #[test]
+    fn writers_wait_for_nobody_and_go_nowhere_else() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("export");
+        folder(&path, false).write(&FILES).unwrap();
+        let held = Lock::acquire(&path.join("list")).unwrap();
+        assert!(matches!(folder(&path, false).write(&FILES), Err(Failure::InUse(_))));
+        drop(held);
+        folder(&path, false).write(&FILES).unwrap();
+        assert_eq!(names(&path), ["a.txt", "b", "list"]);
+        // The folder is not the one that the path names before its end.
+        assert!(folder(&place.path().join("new/.."), false).write(&FILES).is_err());
+        assert_eq!(names(place.path()), ["export"]);
+    }
+
+    #[test]
     fn a_folder_appears_whole_and_its_own_files_are_replaced() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("new/export");

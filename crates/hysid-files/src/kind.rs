@@ -11,6 +11,9 @@ pub const GENERATOR: &str = concat!("Hysid ", env!("CARGO_PKG_VERSION"));
 pub const PAGE_MARK: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
                              <meta name=\"generator\" content=\"Hysid ";
 
+/// The line of a page with its checksum, by which a page that somebody edited is known.
+const PAGE_SUM: &str = "<meta name=\"checksum\" content=\"";
+
 /// How drawings begin, as SVG, PDF and PNG, and the mark that each carries soon after.
 const DRAWINGS: [(&[u8], &str); 3] = [
     (b"<svg class=\"plot\" role=\"img\" aria-label=\"", " data-generator=\"Hysid "),
@@ -96,6 +99,29 @@ impl Kind {
     }
 }
 
+/// A page with a line behind its mark that has the checksum of the rest.
+pub fn with_page_sum(page: &str) -> String {
+    let place = line_behind_mark(page).unwrap_or(0);
+    let sum = crc32fast::hash(page.as_bytes());
+    format!("{}{PAGE_SUM}{sum:08x}\">\n{}", &page[..place], &page[place..])
+}
+
+/// The place behind the line with the mark of a page.
+fn line_behind_mark(page: &str) -> Option<usize> {
+    let rest = page.strip_prefix(PAGE_MARK)?;
+    Some(PAGE_MARK.len() + rest.find('\n')? + 1)
+}
+
+/// True for a page that nobody changed since Hysid wrote it.
+pub(crate) fn is_page_as_written(page: &[u8]) -> bool {
+    let Ok(page) = std::str::from_utf8(page) else { return false };
+    let Some((before, rest)) = line_behind_mark(page).map(|place| page.split_at(place)) else { return false };
+    let Some((sum, after)) = rest.strip_prefix(PAGE_SUM).and_then(|rest| rest.split_once("\">\n")) else {
+        return false;
+    };
+    sum == format!("{:08x}", crc32fast::hash([before, after].concat().as_bytes()))
+}
+
 /// A JSON object whose first field names the format, however it is laid out.
 fn has_format(text: &[u8], format: &str) -> bool {
     let format = format!("\"{format}\"");
@@ -148,6 +174,17 @@ mod tests {
         let ours = format!("{PAGE_MARK}0.1.0\">");
         assert!(Kind::Page.is_begun_by(ours.as_bytes()));
         assert!(!Kind::Page.is_begun_by(format!("<html><pre>{ours}").as_bytes()));
+    }
+
+    #[test]
+    fn an_edited_page_is_known() {
+        let page = with_page_sum(&format!("{PAGE_MARK}0.1.0\">\n<title>t</title>\n</head>\n<p>text</p>\n"));
+        assert!(Kind::Page.is_begun_by(page.as_bytes()) && is_page_as_written(page.as_bytes()), "{page}");
+        assert!(page.contains("0.1.0\">\n<meta name=\"checksum\" content=\""), "{page}");
+        assert!(!is_page_as_written(page.replace("text", "my text").as_bytes()));
+        assert!(!is_page_as_written(
+            page.replace("<meta name=\"checksum\"", "<meta name=\"sum\"").as_bytes()
+        ));
     }
 
     #[test]

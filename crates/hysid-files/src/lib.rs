@@ -26,7 +26,7 @@ pub use destination::Destination;
 pub use destination::NewFile;
 pub use failure::{Failure, reason};
 pub use folder::Folder;
-pub use kind::{GENERATOR, Kind, PAGE_MARK};
+pub use kind::{GENERATOR, Kind, PAGE_MARK, with_page_sum};
 pub use leftovers::remove_leftovers;
 pub use lock::Lock;
 pub use reading::{open, unreadable};

@@ -32,7 +32,7 @@ use hysid::diagnosis::residuals::Residuals;
 use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::{Model, Prediction};
 use hysid_document::{Page, html, number, unit};
-use hysid_files::PAGE_MARK;
+use hysid_files::{PAGE_MARK, with_page_sum};
 
 pub use band_coverage::BandCoverage;
 pub use course::Course;
@@ -107,9 +107,9 @@ impl<'a> ReportSet<'a> {
     }
 }
 
-/// The text of a page, with the mark by which Hysid knows its own.
+/// The text of a page, with the mark and the checksum by which Hysid knows its own.
 pub fn page_text(page: &Page) -> String {
-    html::page(page, &format!("{PAGE_MARK}{}\">", env!("CARGO_PKG_VERSION")))
+    with_page_sum(&html::page(page, &format!("{PAGE_MARK}{}\">", env!("CARGO_PKG_VERSION"))))
 }
 
 /// The whole page.

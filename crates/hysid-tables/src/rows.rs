@@ -24,6 +24,9 @@ const LONGEST_ROW: usize = 1 << 29;
 /// Lines from which a layout can be found.
 const FEWEST_LINES: usize = 6;
 
+/// Most columns of a table.
+const MOST_COLUMNS: usize = 10_000;
+
 /// Bytes at the end of a file that are looked through for rows, if they begin like none.
 const LONGEST_END: usize = 1 << 16;
 
@@ -135,6 +138,8 @@ impl Rows {
         };
         let is_cut = first.len() - valid.len() < 4 && !is_all;
         let layout = Layout::find(&file, valid, is_all || !is_cut && valid.len() < first.len(), reading)?;
+        let width = layout.names.len();
+        ensure!(width <= MOST_COLUMNS, "{file}: has {width} columns: at most {MOST_COLUMNS} are read");
         let mut lines = LineCounter::new();
         lines.pass(&first[..layout.start]);
         let mut rest = Cursor::new(first);
@@ -365,6 +370,20 @@ fn grow<T: Default + Clone>(room: &mut Vec<T>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn comments_without_end_and_equal_names_cost_little() {
+        let lines = "#\n".repeat(300_000);
+        let text = format!("{lines}# t;x\nt,x\n1,2\n3,4\n5,6\n");
+        assert_eq!(read(text.as_bytes(), 1 << 20).unwrap()[1].0, 300_003);
+        let row = |cell: &str, columns: usize| vec![cell; columns].join(",") + "\n";
+        let wide = |columns: usize| [row("a", columns), row("1", columns), row("2", columns)].concat();
+        // Each name was compared with all before it.
+        let names = &read(wide(10_000).as_bytes(), 1 << 20).unwrap()[0].1;
+        assert_eq!((names[1].as_str(), names[9_999].as_str()), ("a (2)", "a (10000)"));
+        let error = read(wide(10_001).as_bytes(), 1 << 20).unwrap_err().to_string();
+        assert!(error.ends_with("has 10001 columns: at most 10000 are read"), "{error}");
+    }
 
     #[test]
     fn a_table_behind_long_comments_is_read() {

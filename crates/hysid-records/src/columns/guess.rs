@@ -306,13 +306,17 @@ impl<'t> Guess<'t> {
                     match swapped {
                         Some(one) if follows_the_order => self.note = Some(self.order_believed(one, last)),
                         Some(one) => return Err(self.against_the_order(one, last)),
-                        None if self.free.len() > 2 && !kind::are_documented(&self.free) => {
-                            self.note = Some(self.taken_by_place(last));
-                        }
                         None => {}
                     }
                 }
                 _ => {}
+            }
+            let is_known = self.free.iter().any(|name| Kind::of(name).drives());
+            if output == last
+                && self.free.len() > 2
+                && !(self.has_inputs() || is_known || kind::are_documented(&self.free))
+            {
+                self.note = Some(self.taken_by_place(last));
             }
         }
         self.free.retain(|name| *name != output);
