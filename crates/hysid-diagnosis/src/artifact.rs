@@ -189,29 +189,37 @@ pub(crate) fn withhold(
 
 /// Withholds a "no" about loops of which a part is unknown because the output is clipped.
 pub(crate) fn withhold_partial(findings: &mut [Finding]) {
-    const SHAPES: [Property; 3] = [Property::StaticHysteresis, Property::Congruency, Property::Masing];
-    let contradicted =
-        |finding: &&mut Finding| finding.verdict == Verdict::No && SHAPES.contains(&finding.property);
-    for finding in findings.iter_mut().filter(contradicted) {
-        finding.verdict = Verdict::NotTestable;
-        finding.statement =
-            format!("{} (clipped outputs omitted, so the loops are incomplete)", finding.statement);
-        finding.experiment = Some("measure with a larger range of the output channel".into());
-    }
+    withhold_all(
+        findings,
+        (Verdict::No, &[Property::StaticHysteresis, Property::Congruency, Property::Masing]),
+        "clipped outputs omitted, so the loops are incomplete",
+        "measure with a larger range of the output channel",
+    );
 }
 
 /// Withholds what the mass and the damping of a resonance make as well: open loops, and loops that shrink.
 pub(crate) fn withhold_what_inertia_makes(findings: &mut [Finding]) {
-    const MADE: [Property; 3] = [Property::StaticHysteresis, Property::Deterioration, Property::StrengthLoss];
-    let made = |finding: &&mut Finding| finding.verdict == Verdict::Yes && MADE.contains(&finding.property);
-    for finding in findings.iter_mut().filter(made) {
+    withhold_all(
+        findings,
+        (Verdict::Yes, &[Property::StaticHysteresis, Property::Deterioration, Property::StrengthLoss]),
+        "the data look like a resonance, whose mass and damping do this too",
+        "measure far below the resonance, or compare fits of models with inertia",
+    );
+}
+
+/// Withholds this verdict on these properties.
+fn withhold_all(
+    findings: &mut [Finding],
+    (verdict, properties): (Verdict, &[Property]),
+    why: &str,
+    experiment: &str,
+) {
+    let is_withheld =
+        |finding: &&mut Finding| finding.verdict == verdict && properties.contains(&finding.property);
+    for finding in findings.iter_mut().filter(is_withheld) {
         finding.verdict = Verdict::NotTestable;
-        finding.statement = format!(
-            "{} (the data look like a resonance, whose mass and damping do this too)",
-            finding.statement
-        );
-        finding.experiment =
-            Some("measure far below the resonance, or compare fits of models with inertia".into());
+        finding.statement = format!("{} ({why})", finding.statement);
+        finding.experiment = Some(experiment.into());
     }
 }
 

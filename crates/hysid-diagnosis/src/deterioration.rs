@@ -23,9 +23,6 @@ const SMALLEST: f64 = 0.1;
 /// Loops of this share of the largest repeated area are the largest.
 const NEARLY_LARGEST: f64 = 0.95;
 
-/// A loss up to so many times the one that matters may be hidden by noise where none is found. Designed.
-const HIDDEN: f64 = 1.5;
-
 const EXPERIMENT: &str = "repeat a large loop five times or more, without changing its ends";
 
 /// What the cycles between two inputs say.
@@ -74,7 +71,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
             trends.len()
         );
         (Verdict::Yes, text)
-    } else if limit > HIDDEN * EFFECT {
+    } else if limit > significance::HIDDEN * EFFECT {
         (
             Verdict::NotTestable,
             format!("the noise hides losses of up to {:.0} % of the energy", 100.0 * limit),

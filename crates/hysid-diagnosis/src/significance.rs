@@ -1,5 +1,8 @@
 //! Quantiles of the normal distribution: what is noise, and what is not.
 
+/// A loss up to so many times the one that matters may be hidden by noise where none is found. Designed.
+pub const HIDDEN: f64 = 1.5;
+
 /// Median of the magnitude of a standard normal number.
 pub const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 

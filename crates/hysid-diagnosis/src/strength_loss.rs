@@ -15,9 +15,6 @@ const EFFECT: f64 = 0.05;
 /// Fewest cycles that are compared.
 const FEWEST: usize = 3;
 
-/// A loss up to so many times the one that matters may be hidden by noise where none is found. Designed.
-const HIDDEN: f64 = 1.5;
-
 const EXPERIMENT: &str =
     "run cycles of growing amplitude up to the largest deformation that matters, two of each";
 
@@ -78,7 +75,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[CycleRow], rate: Verdict) -> Fi
             Significant(after.amplitude)
         );
         (Verdict::Yes, text)
-    } else if limit > HIDDEN * EFFECT {
+    } else if limit > significance::HIDDEN * EFFECT {
         (Verdict::NotTestable, format!("the noise hides losses of up to {:.0} % of the force", 100.0 * limit))
     } else {
         let most = if limit > EFFECT { 100.0 * limit } else { percent.max(0.0) };
@@ -199,12 +196,10 @@ pub(crate) mod tests {
                 });
                 let diagnosis = diagnosed(&data);
                 let finding = diagnosis.finding(Property::StrengthLoss);
-                let expected = if noise > 0.01 && finding.verdict == Verdict::NotTestable {
+                if noise > 0.01 && finding.verdict == Verdict::NotTestable {
                     assert!(finding.statement.starts_with("the noise hides losses of up to"));
                     continue;
-                } else {
-                    expected
-                };
+                }
                 assert_eq!(finding.verdict, expected, "{name}, {noise}: {}", finding.statement);
                 if let Some(loss) = loss {
                     assert!(

@@ -177,6 +177,8 @@ pub(crate) fn within((low, high): (f64, f64), place: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::program::expression::Real;
+    use crate::program::{Builder, Precision};
 
     #[test]
     fn numbers_beyond_single_precision_stay() {
@@ -185,8 +187,6 @@ mod tests {
             assert_eq!(of_both_precisions(value), value);
         }
     }
-    use crate::program::expression::Real;
-    use crate::program::{Builder, Precision};
 
     /// A program with so many sums in a step.
     fn of_sums(count: f64) -> Program {

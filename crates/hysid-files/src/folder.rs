@@ -91,7 +91,7 @@ impl Folder<'_> {
         let _lock = Lock::acquire(&root.join(self.manifest))?;
         let mut changes = Changes::begin(root, self.manifest).map_err(refused())?;
         let listed = self.listed_in(root);
-        let is_lock = |entry: &fs::DirEntry| *entry.file_name() == *format!(".{}.lock", self.manifest);
+        let is_lock = |entry: &fs::DirEntry| *entry.file_name() == *Lock::name_beside(self.manifest);
         let mut found = fs::read_dir(root).map_err(refused())?.flatten();
         let is_empty = found.all(|entry| changes.is_own(&entry) || is_lock(&entry));
         if listed.is_none() && !is_empty && !self.force {

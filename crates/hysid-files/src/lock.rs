@@ -17,6 +17,11 @@ pub struct Lock {
 }
 
 impl Lock {
+    /// Name of the empty file that is locked for a file of this name.
+    pub(crate) fn name_beside(name: &str) -> String {
+        format!(".{name}.lock")
+    }
+
     /// Locks a file. Devices and pipes, and files on systems without locks, need none and get none.
     ///
     /// # Errors
@@ -27,7 +32,7 @@ impl Lock {
             Target::Stream(_) | Target::Stdout => return Ok(Self { held: None }),
         };
         let name = target.file_name().unwrap_or_default().to_string_lossy();
-        let place = folder_of(&target).join(format!(".{name}.lock"));
+        let place = folder_of(&target).join(Self::name_beside(&name));
         for _ in 0..ATTEMPTS {
             let file = open(&place).map_err(Failure::refused(path))?;
             match file.try_lock() {

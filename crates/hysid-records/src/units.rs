@@ -39,14 +39,7 @@ impl Factors {
         let mut conversions = Vec::new();
         let mut column = |found: &str, trained: &str| -> Result<Option<f64>> {
             let Some(factor) = factor(file, found, trained)? else {
-                if let (None, Some(unit)) = (unit::of_column(found), unit::of_column(trained)) {
-                    let (found, trained) = (clipped(found), clipped(trained));
-                    conversions.push(format!(
-                        "not converted: {found}, whose name tells no known unit, is taken in {}, the unit of the model's \
-                         {trained}",
-                        clipped(&unit)
-                    ));
-                }
+                conversions.extend(no_conversion(found, trained));
                 return Ok(None);
             };
             conversions.push(conversion(found, trained, factor));
@@ -117,6 +110,17 @@ fn conversion(found: &str, trained: &str, factor: f64) -> String {
         clipped(trained),
         Significant(factor),
     )
+}
+
+/// What is said of a column without a known unit, if that of the model has one.
+fn no_conversion(found: &str, trained: &str) -> Option<String> {
+    let unit = unit::of_column(trained).filter(|_| unit::of_column(found).is_none())?;
+    Some(format!(
+        "not converted: {}, whose name tells no known unit, is taken to be in {}, the unit of the model's {}",
+        clipped(found),
+        clipped(&unit),
+        clipped(trained)
+    ))
 }
 
 fn unit_of(name: &str) -> String {

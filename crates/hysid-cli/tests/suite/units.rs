@@ -41,7 +41,7 @@ fn known_units_are_converted_to_the_model_s() {
     }
     bench.put("unknown.csv", scaled("t_s,disp_mm,force_xy", [1.0, 1.0, 1.0]));
     let ran = bench.run("evaluate model.json unknown.csv --output force_xy --json");
-    let told = "not converted: force_xy, whose name tells no known unit, is taken in kN, the unit of the model's force_kN";
+    let told = "not converted: force_xy, whose name tells no known unit, is taken to be in kN, the unit of the model's force_kN";
     assert!(ran.stderr.contains(told), "{}", ran.stderr);
     // The same quantity in another unit is found without being named.
     bench.put("found.csv", scaled("t_ms,disp_m,force_N", [1e3, 1e-3, 1e3]));

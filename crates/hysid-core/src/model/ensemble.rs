@@ -29,7 +29,7 @@ const DEEPEST: usize = 8;
 
 /// Most members of an ensemble, each counted as often as its groups name it. `auto` of the largest ensemble that its
 /// options allow has fewer.
-const MOST_MEMBERS: usize = 2_000;
+const MOST_LEAVES: usize = 2_000;
 
 /// Several models whose predictions are combined by nested weighted medians.
 #[derive(Debug, Clone, PartialEq)]
@@ -191,8 +191,8 @@ impl Ensemble {
     pub fn new(mut members: Vec<Model>, group: Group, range: (f64, f64)) -> Result<Self> {
         group.check(members.len(), DEEPEST)?;
         let named = group.leaves().max(members.len());
-        if named > MOST_MEMBERS {
-            let problem = format!("an ensemble has {named} members, at most {MOST_MEMBERS} are possible");
+        if named > MOST_LEAVES {
+            let problem = format!("an ensemble has {named} members, at most {MOST_LEAVES} are possible");
             return Err(Error::Parts(problem));
         }
         if members.iter().any(|member| member.ensemble().is_some()) {

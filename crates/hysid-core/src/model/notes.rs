@@ -105,7 +105,7 @@ impl Model {
         (held_out.rmse < EASIER * train.rmse).then(|| {
             format!(
                 "validation: the rows held out ({}) have a smaller error than all training rows ({}): they are easier than \
-                 the others, so expect at least the training error of new data",
+                 the others, so expect at least the training error on new data",
                 percent(held_out),
                 percent(train)
             )
@@ -116,8 +116,8 @@ impl Model {
     /// known then.
     pub fn stepping_note(&self) -> Option<&'static str> {
         self.is_periodic().then_some(
-            "records of this model begin after one period of themselves; here it begins in the virgin state, and its \
-             first period is a transient",
+            "this model was trained on steady periods: sample by sample it begins in the virgin state, so its first period \
+             is a transient",
         )
     }
 

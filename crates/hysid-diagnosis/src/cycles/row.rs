@@ -92,8 +92,6 @@ pub(crate) struct LoopFaults {
     pub opening: Option<f64>,
     /// How often both branches pass the middle of the outputs, if more than once.
     pub passings: usize,
-    /// How many times as long its second half lasts as its first, 1 where halves are not known.
-    pub unevenness: f64,
     /// The middle of the outputs of a loop about the input 0, if it is not 0.
     pub offset: Option<f64>,
 }

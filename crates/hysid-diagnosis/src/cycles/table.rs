@@ -179,7 +179,7 @@ fn rows_of(
     let holds = if field.has_actuators() { holds(survey, record) } else { Vec::new() };
     let spans = divide(survey, record, division);
     let mut cumulative = Some(0.0);
-    let mut rows = Vec::new();
+    let (mut rows, mut unevenness) = (Vec::new(), Vec::new());
     for (place, span) in spans.iter().enumerate() {
         let reader =
             Reader { survey, record: &survey.data.records()[record], branches, span, field, division };
@@ -196,15 +196,16 @@ fn rows_of(
         if let Some(hold) = longest {
             set_creep(&mut row, hold, survey.height());
         }
+        unevenness.push(reader.unevenness().filter(|_| row.complete).unwrap_or(1.0));
         rows.push(row);
     }
-    leave_out_mixed_frequencies(&mut rows);
+    leave_out_mixed_frequencies(&mut rows, &unevenness);
     rows
 }
 
-/// A cycle whose halves are of two frequencies has none.
-fn leave_out_mixed_frequencies(rows: &mut [CycleRow]) {
-    let unevenness: Vec<f64> = rows.iter().map(|row| row.faults.unevenness).collect();
+/// A cycle whose halves are of two frequencies has none. `unevenness` is how many times as long the second half of each
+/// cycle lasts as its first, 1 where that is not known.
+fn leave_out_mixed_frequencies(rows: &mut [CycleRow], unevenness: &[f64]) {
     let is_uneven = |ratio: f64| !(UNEVEN.recip()..=UNEVEN).contains(&ratio);
     for (place, row) in rows.iter_mut().enumerate() {
         let beside = [place.checked_sub(1), Some(place + 1)];
@@ -269,7 +270,6 @@ impl Reader<'_> {
             ..CycleRow::default()
         };
         row.frequency = row.period.map(f64::recip).filter(|frequency| frequency.is_finite());
-        row.faults.unevenness = self.unevenness().filter(|_| complete).unwrap_or(1.0);
         let tips = self.tips();
         row.peak_input = tips.peak.map(|tip| tip.input);
         row.valley_input = tips.valley.map(|tip| tip.input);

@@ -1,9 +1,10 @@
 //! Hum: noise of the output with a period of its own, mostly that of the mains.
 
+use std::f64::consts::TAU;
+
 use super::{DataIssue, DataIssueKind, Severity, Units};
 use crate::branch::BranchSet;
 use hysid_core::data::record::Record;
-use std::f64::consts::TAU;
 
 /// An amplitude that matters, as a share of the range of the output.
 const EFFECT: f64 = 0.002;

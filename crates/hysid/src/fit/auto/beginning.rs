@@ -77,12 +77,12 @@ impl Beginning {
             Some(rows) => WarmUp::decided(rows),
             None => better(quick.clone(), data, &folds, work),
         };
+        let ways = Ways { quick, data, folds: &folds, options, work };
         let other = match (options.initial_state, options.warm_up) {
-            (Some(InitialState::Unknown), _) => found(quick, data, &folds, options, work),
+            (Some(InitialState::Unknown), _) => ways.found(),
             (None, None) if is_open => {
                 let is_worth = |states: &OtherStates| states.is_worth(warm_up);
-                let periods = || periods(quick, data, &folds, options, work).filter(is_worth);
-                periods().or_else(|| found(quick, data, &folds, options, work).filter(is_worth))
+                ways.periods().filter(is_worth).or_else(|| ways.found().filter(is_worth))
             }
             _ => None,
         };
@@ -157,95 +157,89 @@ impl OtherStates {
     }
 }
 
-/// A Preisach plane that takes a moment to fit, for data of one input.
-fn relays(data: &Dataset, options: &AutoOptions) -> Option<Candidate> {
-    let preisach = ClassicalOptions {
-        operators: Some(QUICK_INTERVALS),
-        seed: options.seed,
-        ..ClassicalOptions::of(ClassicalModel::Preisach)
-    };
-    (data.names().inputs.len() == 1).then(|| Candidate::alone(&FitSpec::Classical(preisach)))
+/// What other states are tried on.
+struct Ways<'a, 'o, 'w> {
+    quick: &'a Candidate,
+    data: &'a Dataset,
+    folds: &'a [Fold],
+    options: &'a AutoOptions,
+    work: &'a Work<'o, 'w>,
 }
 
-/// The lead-ins of all records, and those found on the training part of each fold; `None` if there was no time,
-/// or the quick candidate cannot be fitted.
-fn found(
-    quick: &Candidate,
-    data: &Dataset,
-    folds: &[Fold],
-    options: &AutoOptions,
-    work: &Work,
-) -> Option<OtherStates> {
-    let is_to_stop = || work.is_to_stop();
-    let stop = StopCheck::new(&is_to_stop);
-    let (rate, seed) = (options.rate, options.seed);
-    let begun: Vec<Fold> = parallel::each(folds, |fold| found_on(fold, rate, seed, stop).ok()?)
-        .into_iter()
-        .collect::<Option<_>>()?;
-    let data = initial_state::found(data, rate, seed, stop).ok()??;
-    Some(OtherStates::judged(quick, data, begun, folds, options, work))
-}
-
-/// All records after one period of themselves; `None` if the ends of a record do not meet.
-fn periods(
-    quick: &Candidate,
-    data: &Dataset,
-    folds: &[Fold],
-    options: &AutoOptions,
-    work: &Work,
-) -> Option<OtherStates> {
-    if !data.records().iter().all(is_closed) {
-        return None;
+impl Ways<'_, '_, '_> {
+    /// The lead-ins of all records, and those found on the training part of each fold; `None` if there was no time,
+    /// or the quick candidate cannot be fitted.
+    fn found(&self) -> Option<OtherStates> {
+        let is_to_stop = || self.work.is_to_stop();
+        let stop = StopCheck::new(&is_to_stop);
+        let (rate, seed) = (self.options.rate, self.options.seed);
+        let folds = parallel::each(self.folds, |fold| found_on(fold, rate, seed, stop).ok()?);
+        let folds = folds.into_iter().collect::<Option<_>>()?;
+        Some(self.judged(initial_state::found(self.data, rate, seed, stop).ok()??, folds))
     }
-    let begun = |data: &Dataset| data.clone().with_periodic_lead_ins().ok();
-    let of_fold = |fold: &Fold| {
-        Some(Fold { name: fold.name.clone(), train: begun(&fold.train)?, held_out: begun(&fold.held_out)? })
-    };
-    let begun_folds = folds.iter().map(of_fold).collect::<Option<_>>()?;
-    Some(OtherStates::judged(quick, begun(data)?, begun_folds, folds, options, work))
-}
 
-/// True if the end of a record and its beginning are one point of its loop.
-fn is_closed(record: &Record) -> bool {
-    let meet = |values: &[f64], share: f64| {
-        let known = || values.iter().filter(|value| !value.is_nan());
-        let (Some(first), Some(last)) = (known().next(), known().next_back()) else { return false };
-        let (low, high) = known().fold((*first, *first), |(low, high), &v| (low.min(v), high.max(v)));
-        let step = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
-        (last - first).abs() <= (CLOSED_STEPS * step).min(share * (high - low))
-    };
-    meet(&record.inputs()[0], CLOSED) && meet(record.output(), CLOSED)
-}
-
-impl OtherStates {
-    /// Other states, with their errors on the folds beside those of the virgin state.
-    fn judged(
-        quick: &Candidate,
-        data: Dataset,
-        begun: Vec<Fold>,
-        folds: &[Fold],
-        options: &AutoOptions,
-        work: &Work,
-    ) -> Self {
-        let percent = |folds: &[Fold]| -> Option<f64> {
-            let held_out: Vec<HeldOut> = folds.iter().cloned().map(HeldOut::of).collect();
-            // A magnet is not seen by stops alone, nor deterioration by relays.
-            let judges = std::iter::once(quick.clone()).chain(relays(&data, options));
-            let mut trials: Vec<Trial> = judges.map(Trial::of).collect();
-            let places: Vec<usize> = (0..trials.len()).collect();
-            Bench { data: &data, folds: &held_out, work }.try_start(&mut trials, &places, 0);
-            let tried = trials.iter().filter(|trial| !trial.starts.is_empty());
-            let errors = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).mean_percent());
-            errors.min_by(f64::total_cmp)
+    /// All records after one period of themselves; `None` if the ends of a record do not meet.
+    fn periods(&self) -> Option<OtherStates> {
+        if !self.data.records().iter().all(is_closed) {
+            return None;
+        }
+        let begun = |data: &Dataset| data.clone().with_periodic_lead_ins().ok();
+        let of_fold = |fold: &Fold| {
+            Some(Fold {
+                name: fold.name.clone(),
+                train: begun(&fold.train)?,
+                held_out: begun(&fold.held_out)?,
+            })
         };
+        Some(self.judged(begun(self.data)?, self.folds.iter().map(of_fold).collect::<Option<_>>()?))
+    }
+
+    /// Other states, with their errors on the folds beside those of the virgin state.
+    fn judged(&self, data: Dataset, folds: Vec<Fold>) -> OtherStates {
         let has_past = |record: &Record| !record.lead_in_rows().is_empty();
-        let is_changed = begun.iter().any(|fold| fold.train.records().iter().any(has_past));
+        let is_changed = folds.iter().any(|fold| fold.train.records().iter().any(has_past));
         let errors = || {
-            let (found_percent, virgin_percent) = (percent(&begun)?, percent(folds)?);
+            let (found_percent, virgin_percent) =
+                (self.percent(&data, &folds)?, self.percent(&data, self.folds)?);
             Some(FoundStates { found_percent, virgin_percent })
         };
         // Folds with the same lead-ins as before have the same errors.
         let errors = is_changed.then(errors).flatten();
-        OtherStates { data, folds: begun, errors }
+        OtherStates { data, folds, errors }
     }
+
+    /// The validation error of the better of two quick candidates.
+    fn percent(&self, data: &Dataset, folds: &[Fold]) -> Option<f64> {
+        let held_out: Vec<HeldOut> = folds.iter().cloned().map(HeldOut::of).collect();
+        // A magnet is not seen by stops alone, nor deterioration by relays.
+        let judges = std::iter::once(self.quick.clone()).chain(self.relays());
+        let mut trials: Vec<Trial> = judges.map(Trial::of).collect();
+        let places: Vec<usize> = (0..trials.len()).collect();
+        Bench { data, folds: &held_out, work: self.work }.try_start(&mut trials, &places, 0);
+        let tried = trials.iter().filter(|trial| !trial.starts.is_empty());
+        let errors = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).mean_percent());
+        errors.min_by(f64::total_cmp)
+    }
+
+    /// A Preisach plane that takes a moment to fit, for data of one input.
+    fn relays(&self) -> Option<Candidate> {
+        let preisach = ClassicalOptions {
+            operators: Some(QUICK_INTERVALS),
+            seed: self.options.seed,
+            ..ClassicalOptions::of(ClassicalModel::Preisach)
+        };
+        (self.data.names().inputs.len() == 1).then(|| Candidate::alone(&FitSpec::Classical(preisach)))
+    }
+}
+
+/// True if the end of a record and its beginning are one point of its loop.
+fn is_closed(record: &Record) -> bool {
+    let meet = |values: &[f64]| {
+        let known = || values.iter().filter(|value| !value.is_nan());
+        let (Some(first), Some(last)) = (known().next(), known().next_back()) else { return false };
+        let (low, high) = known().fold((*first, *first), |(low, high), &v| (low.min(v), high.max(v)));
+        let step = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        (last - first).abs() <= (CLOSED_STEPS * step).min(CLOSED * (high - low))
+    };
+    meet(&record.inputs()[0]) && meet(record.output())
 }
