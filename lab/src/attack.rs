@@ -40,7 +40,7 @@ pub fn run(request: &Request) -> Result<()> {
     let numbers = [request.seconds, request.seed].map(|number| number.to_string());
     succeeds(Command::new(&fuzz).args(["--seconds", &numbers[0], "--seed", &numbers[1]]))?;
     let tests =
-        ["test", "--locked", "--package", "hysid-export", "--package", "hysid-cli", "--test", "suite", "--"];
+        "test --locked --no-fail-fast --package hysid-export --package hysid-cli --test suite --".split(' ');
     succeeds(cargo().env("HYSID_AT_LENGTH", "1").args(tests).args(TESTS))?;
     println!("nothing was found");
     Ok(())

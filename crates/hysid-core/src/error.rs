@@ -516,7 +516,7 @@ fn one_line(text: &str) -> Cow<'_, str> {
 /// direction of text or have no width, and those that are none.
 pub fn is_hidden(letter: char) -> bool {
     letter.is_control()
-        || matches!(letter, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')
+        || matches!(letter, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')
         || matches!(letter, '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fdd0}'..='\u{fdef}' | '\u{fff9}'..='\u{fffb}')
         || matches!(letter, '\u{e0000}'..='\u{e007f}')
         || u32::from(letter) & 0xfffe == 0xfffe

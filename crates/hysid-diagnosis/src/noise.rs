@@ -95,7 +95,7 @@ impl Noise {
 
     /// The noise of a channel, from its values in runs of rows on which the course is smooth: between two turning
     /// points. No difference is taken across their ends.
-    pub fn of<'a>(runs: impl Iterator<Item = Run<'a>> + Clone) -> Self {
+    pub fn of<'a>(runs: impl Iterator<Item = Run<'a>>) -> Self {
         differences::noise(runs)
     }
 

@@ -3,12 +3,16 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use crate::target::Target;
 use crate::temporary::{folder_of, plain};
 
 /// Writes the content under a new name: beside the file that could not be written, in the system's folder for temporary
 /// files, or in the user's home. Gives its path; `None` if that failed everywhere.
 pub fn rescue(path: &Path, content: &[u8]) -> Option<PathBuf> {
-    let folders = [Some(folder_of(path).to_path_buf()), Some(std::env::temp_dir()), std::env::home_dir()];
+    // Nothing is put beside a device or a pipe.
+    let is_stream = matches!(Target::of(path), Ok(Target::Stream(_) | Target::Stdout));
+    let beside = (!is_stream).then(|| folder_of(path).to_path_buf());
+    let folders = [beside, Some(std::env::temp_dir()), std::env::home_dir()];
     folders.into_iter().flatten().find_map(|folder| write_new(&folder, path, content).ok())
 }
 

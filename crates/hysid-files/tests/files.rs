@@ -263,4 +263,7 @@ fn what_cannot_be_written_where_it_should_is_written_elsewhere() {
     assert_eq!(fs::read(&elsewhere).unwrap(), MODEL);
     assert_eq!(elsewhere.extension().unwrap(), "json");
     fs::remove_file(elsewhere).unwrap();
+    let of_a_device = rescue(Path::new("/dev/null"), MODEL).unwrap();
+    assert_ne!(of_a_device.parent(), Some(Path::new("/dev")), "nothing is put among devices");
+    fs::remove_file(of_a_device).unwrap();
 }

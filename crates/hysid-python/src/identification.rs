@@ -192,7 +192,7 @@ fn attended<T: Send + 'static>(
 ) -> PyResult<(T, bool)> {
     let deadline = match time_limit {
         Some(limit) if !(limit > 0.0 && limit < 1e9) => {
-            return Err(refused("time_limit: a number of seconds above 0 is needed"));
+            return Err(refused("time_limit: a number of seconds above 0, below 1e9, is needed"));
         }
         limit => limit.map(|limit| Instant::now() + Duration::from_secs_f64(limit)),
     };

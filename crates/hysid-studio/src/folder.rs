@@ -7,6 +7,7 @@ use std::fs::{self, DirBuilder};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
+use hysid_document::visible::is_hidden;
 use hysid_files::{Destination, Failure, Kind, Lock};
 use hysid_records::Usage;
 
@@ -288,7 +289,7 @@ pub fn plain(file: &str) -> &str {
 pub fn safe_name(given: &str, taken: &[&str]) -> String {
     let kept: String = plain(given)
         .chars()
-        .map(|letter| if letter.is_control() || "<>:\"|?*".contains(letter) { '_' } else { letter })
+        .map(|letter| if is_hidden(letter) || "<>:\"|?*".contains(letter) { '_' } else { letter })
         .collect();
     let kept = kept.trim().trim_start_matches('.').trim_end_matches(['.', ' ']);
     let (stem, ending) = match kept.rsplit_once('.') {
@@ -338,6 +339,7 @@ mod tests {
         assert_eq!(safe_name(".hidden", &[]), "hidden");
         assert_eq!(safe_name("<script>.csv", &[]), "_script_.csv");
         assert_eq!(safe_name("con.csv", &[]), "datacon.csv");
+        assert_eq!(safe_name("a\u{202e}vsc.exe", &[]), "a_vsc.exe");
         assert_eq!(safe_name("../..", &[]), "_");
         assert!(safe_name(&"x".repeat(500), &[]).len() <= LONGEST_NAME);
     }

@@ -12,6 +12,9 @@ use crate::folder::{Folder, plain};
 /// Version of the project's file.
 const VERSION: u32 = 1;
 
+/// Largest number of a file or a model, far below those that a page in a browser rounds.
+const LARGEST_ID: u64 = 1 << 48;
+
 /// What is stored of a project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -201,7 +204,10 @@ impl Project {
             bail!("the number {} is there twice", twice[0]);
         }
         let last = ids.into_iter().chain(self.unfinished.iter().map(|begun| begun.id)).max().unwrap_or(0);
-        self.next = self.next.max(last.checked_add(1).ok_or_else(|| anyhow!("a number is too large"))?);
+        self.next = self.next.max(last.saturating_add(1));
+        if self.next > LARGEST_ID {
+            bail!("a number is too large");
+        }
         let of_data = self.files.iter().map(|file| file.name.as_str());
         let of_models =
             self.models.iter().flat_map(|model| std::iter::once(&model.file).chain(&model.report));
@@ -321,10 +327,15 @@ mod tests {
             (vec![file(1, "a.csv"), file(2, "a.csv")], "the file \"a.csv\" is there twice"),
             (vec![file(1, "../a.csv")], "is no name of a file"),
             (vec![file(u64::MAX, "a.csv")], "a number is too large"),
+            (vec![file(1 << 53, "a.csv")], "a number is too large"),
         ] {
             let error = with(files).unwrap_err().to_string();
             assert!(error.contains(said), "{error}");
         }
+        assert!(
+            Project { next: u64::MAX, ..Project::default() }.checked().is_err(),
+            "the next number has no next"
+        );
     }
 
     #[test]

@@ -85,7 +85,7 @@ fn command_lines() {
             2 fit data.csv --stops 0 => invalid value '0' for '--stops <N>': choose a whole number from 1 to 1000
             2 fit data.csv --starts 0 => invalid value '0' for '--starts <N>': choose a whole number from 1 to 10000
             2 fit data.csv --validation 2 => invalid value '2' for '--validation <SHARE>': a number between 0 and 1 is needed
-            2 fit data.csv --time-limit 0 => invalid value '0' for '--time-limit <SECONDS>': a number of seconds above 0 is needed
+            2 fit data.csv --time-limit 0 => invalid value '0' for '--time-limit <SECONDS>': a number of seconds above 0, below 1e9, is needed
             2 fit data.csv --training guess => invalid value 'guess' for '--training <NAME>' [possible values: subgradient, levenberg-marquardt, hybrid, genetic]
             2 fit data.csv -o data.html => data.html: use .json for the model file: the report gets the same name with .html
             1 fit data.csv => data.csv: cannot be read: no such file or directory
@@ -100,7 +100,7 @@ fn negative_numbers_are_refused_by_the_option_that_they_are_for() {
     let whole = "a whole number, 0 or more, is needed";
     let companding = "choose 0 for off, or 1e-6 to 1e3";
     let thresholds = "numbers above 0 are needed, such as 0.1, 0.2, 0.5";
-    let seconds = "a number of seconds above 0 is needed";
+    let seconds = "a number of seconds above 0, below 1e9, is needed";
     let probability = "a probability from 0.5 to 0.99 is needed";
     let percent = "a number of percent, 0 or more, is needed";
     let epochs = "choose a whole number from 0 to 1000000";

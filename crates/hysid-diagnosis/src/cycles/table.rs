@@ -68,6 +68,9 @@ const CROSSED: f64 = 0.15;
 /// A cycle whose ways there and back last unequally by this factor, between others that do not, has no frequency.
 const UNEVEN: f64 = 1.5;
 
+/// Share of the way through a loop, before its middle, to which the input goes back on smaller loops.
+const BACK: f64 = 0.1;
+
 /// Deviations of the noise below which a figure is not told from noise.
 const SURE: f64 = 3.0;
 
@@ -445,9 +448,12 @@ impl Reader<'_> {
     fn strand(&self, tip: &Tip, target: f64, limit: f64) -> Strand {
         let falls = target < tip.input;
         let is_past = |x: f64, level: f64| if falls { x <= level } else { x >= level };
+        // A smaller loop that goes through the middle is not on the way.
+        let back = (0.5 - BACK) * target + (0.5 + BACK) * tip.input;
         let mut strand = Strand::default();
         for branch in self.branches.get(tip.leaves..).unwrap_or_default() {
-            if is_past(limit, branch.to) {
+            let turns_back = is_past(branch.from, back) && !is_past(branch.to, back);
+            if is_past(limit, branch.to) || turns_back {
                 return strand;
             }
             strand.extend(branch);
@@ -491,6 +497,14 @@ impl Reader<'_> {
             return;
         };
         let (middle, swing, height) = (0.5 * (low + high), high - low, (peak - valley).abs());
+        if let Some(jump) = self.jump_at_the_end().filter(|jump| jump.abs() > OPEN * height) {
+            row.notes.push(format!(
+                "no coercive field and no remanence: the output jumps by {:.2} where the cycle ends, as between \
+                 records one after the other (--record names a column that tells them apart)",
+                Significant(jump.abs())
+            ));
+            return;
+        }
         let (down, up) = (falling.crossings(0.0), rising.crossings(0.0));
         let innermost = |found: &[f64]| {
             found.iter().copied().min_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()))
@@ -526,6 +540,21 @@ impl Reader<'_> {
         if row.remanent_output.is_none() {
             row.notes.push("a branch does not pass the input 0: no remanence".into());
         }
+    }
+
+    /// By how much a step of the output at the end of the cycle differs from those before and after, if they are smaller.
+    fn jump_at_the_end(&self) -> Option<f64> {
+        let y = self.record.output();
+        // The passing of the level is rounded to this row or to the next.
+        let row = self.span.to.round() as usize;
+        let steps: Vec<f64> =
+            y.get(row.checked_sub(3)?..row + 4)?.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let place = (2..4).max_by(|&a, &b| steps[a].abs().total_cmp(&steps[b].abs()))?;
+        let beside = || steps[..place].iter().chain(&steps[place + 1..]);
+        let jump = steps[place] - beside().sum::<f64>() / beside().count() as f64;
+        let usual = beside().fold(0.0, |most: f64, step| most.max(step.abs()));
+        let noise = SURE * SQRT_2 * self.survey.output_noise.deviation();
+        (jump.abs() > usual + noise).then_some(jump)
     }
 
     /// A loop whose output does not come back with the input.

@@ -555,6 +555,69 @@ fn a_cycle_of_two_frequencies_has_none_and_round_tips_are_closed() {
 }
 
 /// Viscous forces are 0 at the tips: what noise leaves there is no stiffness, and damps nothing.
+/// `x = a sin φ`, `y = a sin(φ - δ)`: coercive field and remanence `a sin δ`. Steady loops one after the other.
+#[test]
+fn smaller_loops_and_jumps_behind_a_cycle_are_not_in_its_figures() {
+    let after = |lag: f64| {
+        let loops = [(2.0, 0.3), (1.0, lag)];
+        let row = |(a, lag): (f64, f64), row: usize| {
+            let phase = TAU * row as f64 / 100.0;
+            (a * phase.sin(), a * (phase - lag).sin())
+        };
+        let rows = loops.into_iter().flat_map(|of| (0..300).map(move |number| row(of, number)));
+        let (x, y) = rows.unzip();
+        let options = CycleOptions {
+            field: Some(Field::Magnet),
+            division: Some(Division::Zero),
+            ..CycleOptions::default()
+        };
+        CycleTable::of(&data(x, y), &options).unwrap()
+    };
+    let least: f64 = 2.0 * 0.3_f64.sin();
+    let table = after(least.asin());
+    assert_eq!(table.cycles.len(), 6);
+    for row in &table.cycles {
+        assert_relative_eq!(row.coercive_input.unwrap(), least, max_relative = 0.01);
+        assert_relative_eq!(row.remanent_output.unwrap(), least, max_relative = 0.01);
+    }
+    // The output of the second loop begins elsewhere.
+    let table = after(0.3);
+    for (number, row) in table.cycles.iter().enumerate() {
+        let expected = if number < 3 { least } else { 0.5 * least };
+        let found = (row.coercive_input, row.remanent_output);
+        match number {
+            2 => {
+                assert_eq!(found, (None, None));
+                assert!(row.notes[0].contains("jumps by 0.3"), "{:?}", row.notes);
+            }
+            _ => {
+                assert_relative_eq!(found.0.unwrap(), expected, max_relative = 0.01);
+                assert_relative_eq!(found.1.unwrap(), expected, max_relative = 0.01);
+            }
+        }
+    }
+}
+
+/// A logger that is faster than its sensor writes some values twice.
+#[test]
+fn repeated_rows_hide_no_cycles() {
+    let amplitudes = [0.4, 0.8, 10.0, 10.0, 20.0, 20.0];
+    let mut turning = vec![0.0];
+    turning.extend(amplitudes.iter().flat_map(|amplitude| [*amplitude, -amplitude]));
+    turning.push(0.0);
+    let repeated = |row: usize| 1 + usize::from(mix(row as u64).is_multiple_of(2));
+    let x: Vec<f64> = path(&turning, 0.2)
+        .into_iter()
+        .enumerate()
+        .flat_map(|(row, x)| std::iter::repeat_n(x, repeated(row)))
+        .collect();
+    let y = Stop::new(5.0).unwrap().run(&x);
+    let found: Vec<f64> =
+        table_of(&data(x, y), Field::Structure).complete().map(|row| row.amplitude.unwrap()).collect();
+    assert_eq!(found.len(), amplitudes.len(), "{found:?}");
+    found.iter().zip(amplitudes).for_each(|(a, b)| assert_relative_eq!(a, &b, max_relative = 2e-3));
+}
+
 #[test]
 fn noise_at_the_tips_is_no_stiffness() {
     let noise = |row: usize| 0.04 * (mix(row as u64) as f64 / u64::MAX as f64 - 0.5);

@@ -70,10 +70,38 @@ struct Difference {
 const FEWEST: usize = 8;
 
 /// Deviation of white noise by which neighbouring rows differ as much; 0 for hardly any values.
-pub(crate) fn roughness<'a>(columns: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
-    let rows: usize = columns.clone().map(<[f64]>::len).sum();
-    let runs = columns.map(|values| Run { values, beside: &[] });
+pub(crate) fn roughness<'a>(columns: impl Iterator<Item = &'a [f64]>) -> f64 {
+    let columns: Vec<Rows> = columns.map(|values| Rows::new(Run { values, beside: &[] })).collect();
+    let rows: usize = columns.iter().map(|column| column.values.len()).sum();
+    let runs = columns.iter().map(Rows::run);
     if rows < FEWEST { 0.0 } else { least(&differences(runs, rows, 0), 1).sqrt() }
+}
+
+/// The rows of a run without those that repeat the one before: a logger that is faster than its sensor makes them, and they
+/// tell nothing of noise.
+struct Rows {
+    values: Vec<f64>,
+    beside: Vec<f64>,
+}
+
+impl Rows {
+    fn new(Run { values, beside }: Run) -> Self {
+        let is_new = |row: &usize| {
+            let before = row.wrapping_sub(1);
+            *row == 0 || values[*row] != values[before] || beside.get(*row) != beside.get(before)
+        };
+        let kept: Vec<usize> = (0..values.len()).filter(is_new).collect();
+        // An input in steps rests most of the time.
+        if 2 * kept.len() <= values.len() {
+            return Self { values: values.to_vec(), beside: beside.to_vec() };
+        }
+        let of = |channel: &[f64]| kept.iter().filter_map(|row| channel.get(*row).copied()).collect();
+        Self { values: of(values), beside: of(beside) }
+    }
+
+    fn run(&self) -> Run<'_> {
+        Run { values: &self.values, beside: &self.beside }
+    }
 }
 
 /// The least variance of all orders at a distance: the course of the values adds to each. 0 where none was measured.
@@ -84,7 +112,9 @@ fn least(differences: &[Difference], distance: usize) -> f64 {
 }
 
 /// The noise of a channel; none for hardly any values.
-pub(super) fn noise<'a>(runs: impl Iterator<Item = Run<'a>> + Clone) -> Noise {
+pub(super) fn noise<'a>(runs: impl Iterator<Item = Run<'a>>) -> Noise {
+    let runs: Vec<Rows> = runs.map(Rows::new).collect();
+    let runs = runs.iter().map(Rows::run);
     let rows: usize = runs.clone().map(|run| run.values.len()).sum();
     if rows < FEWEST {
         return Noise::default();

@@ -15,6 +15,11 @@ use crate::number::shortest;
 /// How compound files begin, such as `.xls`.
 pub const COMPOUND: &[u8] = b"\xd0\xcf\x11\xe0";
 
+/// The name, in UTF-16, of the part of a compound file that holds an encrypted `.xlsx` file.
+const ENCRYPTED_PART: &[u8] = b"E\0n\0c\0r\0y\0p\0t\0e\0d\0P\0a\0c\0k\0a\0g\0e\0";
+
+const ENCRYPTED: &str = "it is encrypted: save it without a password";
+
 /// The text of a sheet, its name, and the names of the others; the first that is not empty if none is chosen. Line `n` is row `n` of the sheet.
 ///
 /// # Errors
@@ -24,6 +29,9 @@ pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<Sheet, String> {
     budget.run(move || {
         if bytes.starts_with(COMPOUND) {
             compound::check(&bytes)?;
+            if bytes.windows(ENCRYPTED_PART.len()).any(|part| part == ENCRYPTED_PART) {
+                return Err(ENCRYPTED.into());
+            }
             return sheet::<Xls<_>, _>(bytes, chosen.as_deref());
         }
         let (bytes, kind) = archive::checked(&bytes)?;
@@ -43,7 +51,11 @@ where
     R: Reader<Cursor<Vec<u8>>, Error = E>,
     E: std::fmt::Debug + std::fmt::Display + From<std::io::Error>,
 {
-    let mut book = R::new(Cursor::new(bytes)).map_err(|error| error.to_string())?;
+    let in_words = |error: E| {
+        let is_encrypted = error.to_string().to_lowercase().contains("password");
+        if is_encrypted { ENCRYPTED } else { archive::DAMAGED }
+    };
+    let mut book = R::new(Cursor::new(bytes)).map_err(in_words)?;
     let names = book.sheet_names();
     let listed = || names.join(", ");
     let mut sheet = |name: &str| book.worksheet_range(name).map_err(|error| format!("sheet {name}: {error}"));

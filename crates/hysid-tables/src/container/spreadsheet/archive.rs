@@ -21,7 +21,7 @@ const MOST_ROWS: u64 = 1 << 20;
 const MOST_COLUMNS: u64 = 1 << 14;
 
 /// What is said of an archive that is none or is damaged.
-const DAMAGED: &str = "it is damaged or cut off";
+pub const DAMAGED: &str = "it is damaged or cut off";
 
 /// A kind of spreadsheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

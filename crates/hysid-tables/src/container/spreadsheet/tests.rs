@@ -201,6 +201,9 @@ fn compound_files_claim_no_more_than_they_hold() {
     let mut circle = workbook([0, 2, 0, 1], &[[0, 0]]);
     circle[512 + 4..512 + 8].copy_from_slice(&1_u32.to_le_bytes());
     assert_eq!(problem(circle), "it is damaged or cut off");
+    let mut encrypted = workbook([0, 2, 0, 1], &[[0, 0]]);
+    encrypted.extend("EncryptedPackage".encode_utf16().flat_map(u16::to_le_bytes));
+    assert_eq!(problem(encrypted), "it is encrypted: save it without a password");
     let whole = workbook([0, 2, 0, 1], &[[0, 0], [1, 0]]);
     for end in (0..whole.len()).step_by(61) {
         let _ = text(whole[..end].to_vec(), None);
