@@ -39,7 +39,7 @@ pub fn derivative(records: &[Channel<'_>], order: usize, noise: f64, window: Opt
     let best = search.best(&sides, None);
     let (chosen, smoothing) = match given {
         None => {
-            let smoothing = best.smoothing.min(search.smoothing_by_longer(&best));
+            let smoothing = best.smoothing.max(search.smoothing_by_longer(&best));
             (best, smoothing)
         }
         Some(on_a_side) => {
@@ -47,7 +47,7 @@ pub fn derivative(records: &[Channel<'_>], order: usize, noise: f64, window: Opt
             // The filter that would be chosen follows what a longer window hides.
             let smoothing = match chosen.noise < best.noise {
                 true => chosen.smoothing,
-                false => chosen.smoothing.min(search.smoothing_by_longer(&chosen)),
+                false => chosen.smoothing.max(search.smoothing_by_longer(&chosen)),
             };
             (chosen, smoothing)
         }
