@@ -1,14 +1,13 @@
 //! Files in the program's words: reading, and writing to a [`Destination`].
 
 use std::fs;
-use std::io::Read;
 use std::path::{self, Path, PathBuf};
 
 use anyhow::{Error, Result, anyhow};
 use hysid_document::Page;
 pub use hysid_document::shell::shown;
 pub use hysid_files::reason;
-use hysid_files::{Destination, Failure, unreadable};
+use hysid_files::{Destination, Failure};
 
 use hysid_report::{origin, page_text};
 
@@ -16,13 +15,11 @@ use crate::messages::{Usage, note};
 
 /// The content of a file, or of standard input for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
-    let mut content = Vec::new();
-    let read = match path == Path::new("-") {
-        true => std::io::stdin().read_to_end(&mut content),
-        false => hysid_files::open(path).map_err(Error::msg)?.read_to_end(&mut content),
-    };
-    read.map_err(|error| Error::msg(unreadable(&path.display().to_string(), &error)))?;
-    Ok(content)
+    match path == Path::new("-") {
+        true => hysid_files::read_from("-", std::io::stdin()),
+        false => hysid_files::read(path),
+    }
+    .map_err(Error::msg)
 }
 
 /// A file in the current folder, named after a table that is read.

@@ -1,6 +1,7 @@
 //! Ctrl-C and the signals that ask a process to end: the first asks to stop and save, the second stops at once.
 
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::time::Duration;
 
 use anyhow::{Context, Result};
 
@@ -14,6 +15,29 @@ const CTRL_C: u8 = 2;
 
 /// The first signal; 0 before it.
 static HEARD: AtomicU8 = AtomicU8::new(0);
+
+/// A command that loses nothing ends this long after the first signal.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+/// True for a command that loses nothing when it ends.
+static IMPATIENT: AtomicBool = AtomicBool::new(false);
+
+/// As [`listen`], for a command that loses nothing: it ends within [`PATIENCE`] in any case.
+pub fn listen_briefly(answer: &'static str) -> Result<()> {
+    IMPATIENT.store(true, Ordering::SeqCst);
+    listen(answer)
+}
+
+/// A file beyond the limit of `ulimit -f` is from now on an error like a full disk, and no sudden end.
+pub fn survive_limits_of_files() {
+    #[cfg(unix)]
+    {
+        use signal_hook::consts::SIGXFSZ;
+
+        // It fails for signals that cannot be handled only.
+        let _ = signal_hook::flag::register(SIGXFSZ, std::sync::Arc::new(AtomicBool::new(false)));
+    }
+}
 
 /// From now on Ctrl-C, SIGTERM and SIGHUP ask instead of killing, and get this answer.
 pub fn listen(answer: &'static str) -> Result<()> {
@@ -35,17 +59,18 @@ fn hear(signal: u8, answer: &str) {
         std::process::exit((SIGNALLED + signal).into());
     }
     insist(format_args!("{answer} (Ctrl-C again stops at once)"));
+    if IMPATIENT.load(Ordering::SeqCst) {
+        std::thread::spawn(|| {
+            std::thread::sleep(PATIENCE);
+            std::process::exit(exit_status().into());
+        });
+    }
 }
 
 #[cfg(unix)]
 fn handle(answer: &'static str) -> std::io::Result<()> {
-    use std::sync::Arc;
-    use std::sync::atomic::AtomicBool;
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
-
-    // A file beyond the limit of `ulimit -f` is then an error like a full disk, and no sudden end.
-    signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
     let hangup = (!is_hangup_ignored()).then_some(SIGHUP);
     let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup))?;
     std::thread::Builder::new().name("signals".into()).spawn(move || {

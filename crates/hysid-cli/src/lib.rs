@@ -55,6 +55,7 @@ fn quieten_readers() {
 /// Does what the command line says, and gives the exit status.
 pub fn run() -> ExitCode {
     quieten_readers();
+    interrupt::survive_limits_of_files();
     let arguments = match Arguments::typed() {
         Ok(arguments) => arguments,
         Err(error) => return refuse(error),

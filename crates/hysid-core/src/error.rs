@@ -143,7 +143,7 @@ pub enum Error {
 pub const LARGEST_VALUE: f64 = 1e100;
 
 /// Most turning points of a lead-in: a model runs along them before the first row of each record.
-pub const MOST_TURNS: usize = 10_000;
+pub const MOST_TURNS: usize = 1_000;
 
 /// A defect of a record, with its place.
 #[derive(Debug, Clone, PartialEq)]

@@ -33,13 +33,11 @@ pub enum Kind {
     Checkpoint,
     /// A page of HTML.
     Page,
-    /// A drawing, as SVG, PDF or PNG.
+    /// A drawing, as SVG, PDF or PNG. One that is replaced is kept as `NAME.bak`, since it may have been edited.
     Drawing,
-    /// A text that begins like this.
+    /// A table, or another text, that begins with this line. One that is replaced is kept as `NAME.bak`: a table of the
+    /// user's may have the same header.
     Beginning(Vec<u8>),
-    /// A table that begins with this header line. One that is replaced is kept as `NAME.bak`: a table of the user's may
-    /// have the same header.
-    Table(Vec<u8>),
     /// A project of the studio.
     Project,
     /// A text that begins with the first of these and contains the second soon after.
@@ -56,7 +54,6 @@ impl Kind {
             Self::Checkpoint => "checkpoint of Hysid",
             Self::Page => "page of Hysid",
             Self::Drawing => "drawing of Hysid",
-            Self::Table(_) => "table of this command",
             Self::Project => "project of Hysid",
             Self::Beginning(_) | Self::Marked(..) => "result of this command",
             Self::Content(_) => "copy of what this command writes",
@@ -65,7 +62,8 @@ impl Kind {
 
     /// True if a replaced file is kept.
     pub(crate) fn is_kept(&self) -> bool {
-        matches!(self, Self::Model | Self::Table(_))
+        // Pages carry a checksum; checkpoints and projects are the program's own state.
+        !matches!(self, Self::Page | Self::Checkpoint | Self::Project | Self::Content(_))
     }
 
     /// True for a file that Hysid may replace: one of its own, or one without content.
@@ -92,7 +90,7 @@ impl Kind {
             Self::Drawing => {
                 DRAWINGS.iter().any(|(beginning, mark)| text.starts_with(beginning) && contains(text, mark))
             }
-            Self::Beginning(beginning) | Self::Table(beginning) => text.starts_with(beginning),
+            Self::Beginning(beginning) => text.starts_with(beginning),
             Self::Marked(beginning, mark) => text.starts_with(beginning.as_bytes()) && contains(text, mark),
             Self::Content(content) => text == content,
         }

@@ -29,5 +29,5 @@ pub use folder::Folder;
 pub use kind::{GENERATOR, Kind, PAGE_MARK, with_page_sum};
 pub use leftovers::remove_leftovers;
 pub use lock::Lock;
-pub use reading::{open, unreadable};
+pub use reading::{open, read, read_from, unreadable};
 pub use rescue::rescue;

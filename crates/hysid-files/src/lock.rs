@@ -49,7 +49,10 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        if let Some((_locked, place)) = &self.held {
+        if let Some((locked, place)) = &self.held
+            // A file of the user's may have this name.
+            && locked.metadata().is_ok_and(|file| file.len() == 0)
+        {
             // Whoever opened it meanwhile notices that it is gone. One that stays behind does no harm.
             let _ = fs::remove_file(place);
         }

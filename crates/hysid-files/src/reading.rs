@@ -1,7 +1,7 @@
 //! Opening files to read them.
 
 use std::fs::File;
-use std::io;
+use std::io::{self, Read};
 use std::path::Path;
 
 use crate::failure::reason;
@@ -19,7 +19,43 @@ pub fn open(path: &Path) -> Result<File, String> {
     }
 }
 
+/// The largest model, checkpoint, project or report that is read, in bytes.
+const LARGEST: u64 = 1 << 28;
+
+/// All of a file that is not a table.
+///
+/// # Errors
+/// As [`open`]; a file of more than 256 MB.
+pub fn read(path: &Path) -> Result<Vec<u8>, String> {
+    let file = open(path)?;
+    read_from(&path.display().to_string(), file)
+}
+
+/// As [`read`], from what is open under this name.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_from(name: &str, from: impl Read) -> Result<Vec<u8>, String> {
+    let mut content = Vec::new();
+    from.take(LARGEST + 1).read_to_end(&mut content).map_err(|error| unreadable(name, &error))?;
+    match content.len() as u64 > LARGEST {
+        true => Err(format!("{name}: has more than {} MB", LARGEST >> 20)),
+        false => Ok(content),
+    }
+}
+
 /// What is said of a file of this name that cannot be read.
 pub fn unreadable(name: &str, error: &io::Error) -> String {
     format!("{name}: cannot be read: {}", reason(error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_never_ends_is_refused() {
+        assert_eq!(read_from("x", io::repeat(b'0')).unwrap_err(), "x: has more than 256 MB");
+        assert_eq!(read_from("x", &b"12"[..]).unwrap(), b"12");
+    }
 }

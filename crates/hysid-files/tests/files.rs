@@ -243,6 +243,12 @@ fn a_lock_is_held_once_and_leaves_nothing_behind() {
     drop(first);
     drop(Lock::acquire(&path).unwrap());
     assert!(names(folder.path()).is_empty());
+    // A file of the user's with this name stays.
+    let notes = folder.path().join(".c.bin.lock");
+    fs::write(&notes, "notes").unwrap();
+    drop(Lock::acquire(&path).unwrap());
+    assert_eq!(fs::read(&notes).unwrap(), b"notes");
+    fs::remove_file(&notes).unwrap();
     // A link in the place of the lock is not followed.
     let victim = folder.path().join("victim");
     symlink(&victim, folder.path().join(".c.bin.lock")).unwrap();

@@ -281,13 +281,24 @@ fn driven<T: Send>(
     outcome.map_err(refused)
 }
 
+/// More inputs than any model has.
+const MOST_INPUTS: usize = 1 << 16;
+
 /// The inputs of a sample.
 fn inputs(x: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     if let Ok(x) = x.extract::<f64>() {
         return Ok(vec![x]);
     }
-    let words = "x: a number, or a sequence of numbers, is needed";
-    x.extract().map_err(|_| PyTypeError::new_err(words))
+    let needed = || PyTypeError::new_err("x: a number, or a sequence of numbers, is needed");
+    // A sequence without an end would take all memory.
+    if x.len()? > MOST_INPUTS {
+        return Err(needed());
+    }
+    x.try_iter()?
+        .take(MOST_INPUTS)
+        .map(|value| value?.extract())
+        .collect::<PyResult<_>>()
+        .map_err(|_| needed())
 }
 
 /// A model that is run sample by sample.

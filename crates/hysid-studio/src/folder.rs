@@ -155,7 +155,7 @@ impl Folder {
     /// A link or a device in its place, and a file that cannot be read.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
         self.check_file(path)?;
-        fs::read(path).map_err(|error| cannot_read(path, &error))
+        hysid_files::read(path).map_err(anyhow::Error::msg)
     }
 
     /// Removes a file of the project; one that is not there, or not plain, stays as it is.

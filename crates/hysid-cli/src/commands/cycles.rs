@@ -66,8 +66,9 @@ impl Outputs {
             return Ok(Self { table: None, page: None, curves: None });
         }
         let force = arguments.overwriting.force;
-        let begun =
-            |path: PathBuf, beginning: &[u8]| Destination::new(path, Kind::Table(beginning.to_vec()), force);
+        let begun = |path: PathBuf, beginning: &[u8]| {
+            Destination::new(path, Kind::Beginning(beginning.to_vec()), force)
+        };
         let page =
             (!arguments.no_report).then(|| Destination::new(path.with_extension("html"), Kind::Page, force));
         Ok(Self {

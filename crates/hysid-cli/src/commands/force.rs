@@ -23,7 +23,7 @@ pub fn run(arguments: &Force) -> Result<Outcome> {
     let written = Written::of(&table, &motion)?;
     let header = written.header()?;
     let out = (!to_stdout)
-        .then(|| Destination::new(path, Kind::Table(header.clone()), arguments.overwriting.force));
+        .then(|| Destination::new(path, Kind::Beginning(header.clone()), arguments.overwriting.force));
     check_outputs(&out.iter().collect::<Vec<_>>(), &[&arguments.data])?;
 
     let zero = arguments.reading.zero;

@@ -36,7 +36,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     files::check_stdout(out.is_none(), arguments.json)?;
     let force = arguments.overwriting.force;
-    let drive = out.map(|out| Destination::new(out, Kind::Table(header.clone()), force));
+    let drive = out.map(|out| Destination::new(out, Kind::Beginning(header.clone()), force));
     let page_path = out.filter(|_| !arguments.no_report).map(|out| out.with_extension("html"));
     let page = page_path.as_ref().map(|path| Destination::new(path.clone(), Kind::Page, force));
     let destinations: Vec<&Destination> = drive.iter().chain(&page).collect();

@@ -134,7 +134,7 @@ impl Outputs {
         let force = arguments.overwriting.force;
         let page =
             (!arguments.no_report).then(|| Destination::new(path.with_extension("html"), Kind::Page, force));
-        let table = Some(Destination::new(path, Kind::Table(header.clone()), force));
+        let table = Some(Destination::new(path, Kind::Beginning(header.clone()), force));
         Ok(Self { header, table, page })
     }
 

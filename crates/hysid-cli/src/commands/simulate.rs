@@ -44,11 +44,11 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let all = rows.head.header.iter().chain(&names).map(String::as_str);
     let header = header_line(delimiter, all)?;
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
-    let kind = Kind::Table(header.clone());
+    let kind = Kind::Beginning(header.clone());
     let out = out.map(|out| Destination::new(out, kind, arguments.overwriting.force));
     if let Some(out) = &out {
         check_outputs(&[out], &[&arguments.data, &arguments.model])?;
-        interrupt::listen("stopping before the end of the table")?;
+        interrupt::listen_briefly("stopping before the end of the table")?;
     }
     let roles = Roles::of_model(&model, &rows.head, &arguments.columns.choice(), false)?;
 

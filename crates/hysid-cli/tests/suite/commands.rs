@@ -181,6 +181,8 @@ fn an_old_model_survives_a_failed_write() {
     );
     assert_eq!(ran.status, Some(1));
     assert_eq!(bench.text("model.json"), old);
+    let page = bench.shell("ulimit -f 1; hysid diagnose good.csv -o d.html");
+    assert_eq!(page.status, Some(1), "an error, not the signal: {}", page.stderr);
     let left: Vec<_> = std::fs::read_dir(bench.path(".")).unwrap().collect();
     assert_eq!(left.len(), 2, "no temporary file stays behind: {left:?}");
 }

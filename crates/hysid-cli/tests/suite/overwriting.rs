@@ -40,7 +40,7 @@ fn a_measured_file_is_replaced_by_no_command() {
             "data.bin",
             "checkpoint of Hysid",
         ),
-        ("simulate model.json drive.csv -o out.csv", "out.csv", "table of this command"),
+        ("simulate model.json drive.csv -o out.csv", "out.csv", "result of this command"),
         ("generate ferromagnet -o train.csv", "train.csv", "copy of what this command writes"),
         ("generate ferromagnet --test test.csv", "test.csv", "copy of what this command writes"),
         ("compare good.csv --models pnn --time-limit 0.1", "good-compared.html", "page of Hysid"),
@@ -53,6 +53,21 @@ fn a_measured_file_is_replaced_by_no_command() {
     }
     let hidden: Vec<String> = bench.files(".").into_iter().filter(|name| name.starts_with('.')).collect();
     assert!(hidden.is_empty(), "{hidden:?}");
+}
+
+#[test]
+fn what_somebody_edited_is_kept() {
+    let bench = Workbench::with_model();
+    let kept = |command: &str, file: &str| {
+        assert_eq!(bench.run(command).status, Some(0), "hysid {command}");
+        let edited = bench.text(file).replace("</svg>", "<text>mine</text></svg>") + "\n";
+        bench.put(file, &edited);
+        let again = bench.run(command);
+        assert_eq!(again.status, Some(0), "hysid {command}, again: {}", again.stderr);
+        assert_eq!(bench.text(&format!("{file}.bak")), edited, "hysid {command}");
+    };
+    kept("look good.csv -o plain.csv", "plain.csv");
+    kept("plot good.csv -o loops.svg", "loops.svg");
 }
 
 #[test]

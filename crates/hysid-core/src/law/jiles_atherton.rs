@@ -192,7 +192,7 @@ impl Law for JilesAtherton {
 
     fn parameters(&self) -> Vec<Parameter> {
         let any = (-LARGEST_VALUE, LARGEST_VALUE);
-        let positive = (0.0, LARGEST_VALUE);
+        let positive = (1.0 / LARGEST_VALUE, LARGEST_VALUE);
         vec![
             Parameter::new("c0", "level of the output", self.offset, any, Dimension::OUTPUT),
             Parameter::new("μ", "share of the field itself", self.permeability, any, Dimension::SLOPE),

@@ -365,6 +365,9 @@ fn assemble(file: File) -> Result<Model> {
     checked(model, file.model)
 }
 
+/// Most elementary operations of a row in which the input travels through the trained range: about 0.1 s.
+const LARGEST_WORK: f64 = 1e8;
+
 /// Rejects parts that are inconsistent.
 fn checked(model: Model, name: ModelName) -> Result<Model> {
     model.preprocessing.check()?;
@@ -377,6 +380,10 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
         return Err(Error::Parts(format!(
             "its lead-in has {found} turning points, at most {MOST_TURNS} are possible"
         )));
+    }
+    let (low, high) = model.trained.inputs.first().copied().unwrap_or_default();
+    if model.work_of_row(high - low, 0.0) > LARGEST_WORK {
+        return Err(Error::Parts("its members are too slow: a row would take longer than 0.1 s".into()));
     }
     if model.is_periodic && !model.lead_in.is_empty() {
         return Err(Error::Parts("its records begin in two states".into()));

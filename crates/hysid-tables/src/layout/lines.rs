@@ -54,7 +54,7 @@ pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<Line<'_>> {
     let mut physical = Vec::new();
     // Comments may be of any length, and the table comes behind them.
     let (mut start, mut number, mut others, mut comments) = (0, 1, 0, 0);
-    while start < text.len() && others < MOST_LINES + skip + LONGEST_QUOTE {
+    while start < text.len() && others < skip.saturating_add(MOST_LINES + LONGEST_QUOTE) {
         let rest = &text[start..];
         let end = rest.find(['\n', '\r']);
         if end.is_none() && !is_all {
@@ -67,7 +67,7 @@ pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<Line<'_>> {
         others += usize::from(is_other);
         comments += usize::from(!is_other);
         // What is behind the first comments is not looked at, so that they need no memory.
-        if is_other || comments <= MOST_COMMENTS + skip {
+        if is_other || comments <= skip.saturating_add(MOST_COMMENTS) {
             physical.push((start, start + length, next, number));
         }
         start = next;

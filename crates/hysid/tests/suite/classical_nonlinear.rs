@@ -340,6 +340,9 @@ fn free_runs_stay_finite_whatever_the_parameters_and_the_input() {
             ..jiles_atherton(form)
         };
         check(material.validated(), &wild);
+        // Quotients of numbers that are no measured quantity would be no numbers.
+        assert!(JilesAtherton { k: 1e-310, ..material }.validated().is_err());
+        assert!(JilesAtherton { a: 5e-324, alpha: 0.0, ..material }.validated().is_err());
         let mut envelope =
             || Envelope::new([extreme(0.0, 1e6), extreme(0.0, 1e6), extreme(-9.0, 9.0), extreme(-1e6, 1e6)]);
         let (left, right) = (envelope(), envelope());
