@@ -1,6 +1,7 @@
 //! Static hysteresis: is there a loop however slowly the input goes? Index: area of the loops over their box,
 //! carried on to speed 0 where there are several speeds, theory.md (10.12).
 
+mod shifted;
 mod viscous;
 
 use super::branch::BranchSet;
@@ -43,6 +44,9 @@ const SLOW_GROWTH: f64 = 0.5;
 
 /// A lag explains no loops whose widths ask for lags that differ by this factor.
 const UNLIKE_A_LAG: f64 = 2.0;
+
+/// A lag that closes loops is at most so many times the largest that their widths ask for.
+const FURTHER: f64 = 2.0;
 
 /// Loops over less than this share of the widest say nothing about a lag.
 const SMALL_SWING: f64 = 0.2;
@@ -160,7 +164,7 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
                      same"
             ),
         )
-    } else if area < 2.0 * lag_of_few_rows(rows) {
+    } else if area < 2.0 * lag_of_few_rows(rows) || closes_within(survey, FEW_ROWS, noise) {
         (
             Verdict::NotTestable,
             format!(
@@ -195,18 +199,29 @@ fn lag_of_few_rows(rows: usize) -> f64 {
     2.0 * FEW_ROWS / (0.5 * rows as f64)
 }
 
-/// True if one lag may explain all loops: the rows by which the output would be late are then the same for all of them,
-/// whatever their amplitude, within a factor that also allows for the shape of the curve.
-fn may_be_a_lag(survey: &BranchSet, noise: f64) -> bool {
+/// Loops that tell of a lag: not small, and far fuller than noise makes them.
+fn clear_loops<'s>(survey: &'s BranchSet, noise: f64) -> Vec<&'s Opening> {
     let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
-    let lag = |opening: &Opening| {
-        let rows = opening.rows(survey) as f64;
-        let is_clear = opening.swing > SMALL_SWING * widest && opening.fullness() > FULL.max(CLEAR * noise);
-        is_clear.then_some(0.25 * opening.fullness() * rows)
+    let is_clear = |opening: &&Opening| {
+        opening.swing > SMALL_SWING * widest && opening.fullness() > FULL.max(CLEAR * noise)
     };
-    let lags = || survey.openings.iter().filter_map(lag);
-    let (least, most) = (lags().fold(f64::INFINITY, f64::min), lags().fold(0.0, f64::max));
-    most < UNLIKE_A_LAG * least
+    survey.openings.iter().filter(is_clear).collect()
+}
+
+/// True if one lag may explain all loops: the rows by which the output would be late are then the same for all of them,
+/// whatever their amplitude, within a factor that also allows for the shape of the curve; or the loops close where the
+/// output is read some rows later or earlier.
+fn may_be_a_lag(survey: &BranchSet, noise: f64) -> bool {
+    let clear = clear_loops(survey, noise);
+    let lag = |opening: &&Opening| 0.25 * opening.fullness() * opening.rows(survey) as f64;
+    let least = clear.iter().map(lag).fold(f64::INFINITY, f64::min);
+    let most = clear.iter().map(lag).fold(0.0, f64::max);
+    most < UNLIKE_A_LAG * least || closes_within(survey, FURTHER * most, noise)
+}
+
+/// True if the loops close where the output is read at most so many rows later or earlier.
+fn closes_within(survey: &BranchSet, rows: f64, noise: f64) -> bool {
+    shifted::closes(survey, &clear_loops(survey, noise), rows, FULL.max(CLEAR * noise))
 }
 
 /// [`test`] for a measured record: withholds a "yes" if a law without loops at speed 0 also explains the record.
@@ -260,8 +275,16 @@ mod tests {
             .collect();
         let play = Play::new(0.05).unwrap().run(&x);
         let magnet: Vec<f64> = play.iter().map(|x| (2.0 * x).tanh()).collect();
-        let late: Vec<f64> = (0..1200).map(|row: usize| (2.0 * x[row.saturating_sub(3)]).tanh()).collect();
-        for (y, expected) in [(magnet, Verdict::Yes), (late, Verdict::NotTestable)] {
+        let late = |function: fn(f64) -> f64| -> Vec<f64> {
+            (0..1200).map(|row: usize| function(x[row.saturating_sub(3)])).collect()
+        };
+        for (y, expected) in [
+            (magnet, Verdict::Yes),
+            (late(|x| (2.0 * x).tanh()), Verdict::NotTestable),
+            // Their loops are not equally wide at equal lags.
+            (late(|x| x * x * x), Verdict::NotTestable),
+            (late(|x| (x - 0.25).abs()), Verdict::NotTestable),
+        ] {
             let data = Dataset::from_slices(&x, &y).unwrap();
             let diagnosis = Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap();
             let finding = diagnosis.finding(Property::StaticHysteresis);
