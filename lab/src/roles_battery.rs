@@ -104,7 +104,7 @@ fn cases() -> Vec<Case> {
             let (name, signal) = cell.trim().rsplit_once('=').expect("a column is NAME=SIGNAL");
             (name.to_string(), signal.chars().next().expect("a signal has a letter"))
         };
-        let columns: Vec<Column> = line.trim_start_matches("? ").split(" | ").map(cell).collect();
+        let columns: Vec<Column> = line.trim_start_matches('?').trim_start().split(" | ").map(cell).collect();
         let extra = |name: &str, signal| vec![(name.to_string(), signal)];
         let bracketed: Vec<Column> =
             columns.iter().map(|(name, signal)| (in_brackets(name), *signal)).collect();

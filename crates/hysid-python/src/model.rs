@@ -291,10 +291,11 @@ fn inputs(x: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     }
     let needed = || PyTypeError::new_err("x: a number, or a sequence of numbers, is needed");
     // A sequence without an end would take all memory.
-    if x.len()? > MOST_INPUTS {
+    if x.len().map_err(|_| needed())? > MOST_INPUTS {
         return Err(needed());
     }
-    x.try_iter()?
+    x.try_iter()
+        .map_err(|_| needed())?
         .take(MOST_INPUTS)
         .map(|value| value?.extract())
         .collect::<PyResult<_>>()

@@ -27,7 +27,7 @@ def fit(**keywords):
         (lambda: fit(threads=1.5), TypeError, "threads 1.5: a whole number is needed"),
         (lambda: fit(threads=0), ValueError, "threads 0: choose 1 to 1024"),
         (lambda: fit(time_limit="1"), TypeError, "time_limit '1': a number is needed"),
-        (lambda: fit(time_limit=-1), ValueError, "time_limit: a number of seconds above 0 is needed"),
+        (lambda: fit(time_limit=-1), ValueError, "time_limit: a number of seconds above 0, below 1e9, is needed"),
         (lambda: fit(seed=object()), TypeError, "invalid option: "),
         (lambda: fit(rate=1.0), ValueError, "rate: a one-dimensional array is needed, not one of 0 dimensions"),
         (lambda: fit(rate="central"), ValueError, "rate='central' needs time stamps (give time, or use rate='none')"),

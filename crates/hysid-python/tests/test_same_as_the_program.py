@@ -214,7 +214,7 @@ def test_ignored_options_are_warned_of_in_the_same_words(keywords, program, tmp_
         ({"validation": 2.0}, "a number between 0 and 1 is needed"),
         ({"training": "lm"}, 'training "lm": choose one of subgradient, levenberg-marquardt'),
         ({"thresholds": [1.0, 0.5], "model": "masing"}, "thresholds"),
-        ({"time_limit": -1.0}, "a number of seconds above 0 is needed"),
+        ({"time_limit": -1.0}, "a number of seconds above 0, below 1e9, is needed"),
         ({"threads": 0}, "threads 0: choose 1 to 1024"),
         ({"rate": "forward"}, "rate `forward` is unknown"),
         ({"rate": "central"}, "rate='central' needs time stamps"),

@@ -45,6 +45,7 @@ pub fn rows(columns: &[Column]) -> String {
             'z' => 5.05 * input[k] + noise(0.005),
             'q' => 20.0 * output[k] + 3.0 * input[k],
             'p' => 9.0 * other[k],
+            'o' => 3.0 * output[k] + 2.0 * other[k],
             'w' => return "ok".into(),
             'g' => return if k < ROWS / 2 { "a" } else { "b" }.into(),
             'm' => {

@@ -109,6 +109,8 @@ def test_a_report_of_somebody_else_runs_no_script_of_its_own(made, browser, tmp_
     context = browser.new_context()
     page = context.new_page()
     page.goto(studio.address)
+    # The page has its key when it shows the project.
+    page.locator("#data .body input[type=file]").wait_for()
     page.goto(f"{studio.origin}/report#{the_model(studio)['id']}")
     frame = page.frame_locator("#report")
     # The script of the program runs.

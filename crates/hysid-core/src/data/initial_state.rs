@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(lead_in_of_period(&[2.0, -2.0, 2.0]), [-2.0]);
         assert!(lead_in_of_period(&[]).is_empty() && lead_in_of_period(&[1.0, 1.0]).is_empty());
         let many: Vec<f64> = (0..20_011).map(|row| f64::from(row % 2)).collect();
-        assert_eq!(lead_in_of_period(&many).len(), 10_000);
+        assert_eq!(lead_in_of_period(&many).len(), MOST_TURNS);
     }
 
     #[test]
