@@ -402,8 +402,8 @@ fn probability(text: &str) -> Result<f64, String> {
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds < 1e9);
-    seconds.ok_or_else(|| "a number of seconds above 0, below 1e9, is needed".into())
+    let seconds = text.parse().unwrap_or(f64::NAN);
+    hysid::time_limit(seconds).map(|_| seconds).map_err(String::from)
 }
 
 /// Arguments of `simulate`.

@@ -1,6 +1,6 @@
 //! Ctrl-C and the signals that ask a process to end: the first asks to stop and save, the second stops at once.
 
-use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::Duration;
 
 use anyhow::{Context, Result};
@@ -19,13 +19,9 @@ static HEARD: AtomicU8 = AtomicU8::new(0);
 /// A command that loses nothing ends this long after the first signal.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// True for a command that loses nothing when it ends.
-static IMPATIENT: AtomicBool = AtomicBool::new(false);
-
 /// As [`listen`], for a command that loses nothing: it ends within [`PATIENCE`] in any case.
 pub fn listen_briefly(answer: &'static str) -> Result<()> {
-    IMPATIENT.store(true, Ordering::SeqCst);
-    listen(answer)
+    handle(answer, true).context("cannot handle Ctrl-C")
 }
 
 /// A file beyond the limit of `ulimit -f` is from now on an error like a full disk, and no sudden end.
@@ -35,13 +31,14 @@ pub fn survive_limits_of_files() {
         use signal_hook::consts::SIGXFSZ;
 
         // It fails for signals that cannot be handled only.
-        let _ = signal_hook::flag::register(SIGXFSZ, std::sync::Arc::new(AtomicBool::new(false)));
+        let _ =
+            signal_hook::flag::register(SIGXFSZ, std::sync::Arc::<std::sync::atomic::AtomicBool>::default());
     }
 }
 
 /// From now on Ctrl-C, SIGTERM and SIGHUP ask instead of killing, and get this answer.
 pub fn listen(answer: &'static str) -> Result<()> {
-    handle(answer).context("cannot handle Ctrl-C")
+    handle(answer, false).context("cannot handle Ctrl-C")
 }
 
 /// True once a signal asked to stop.
@@ -54,12 +51,12 @@ pub fn exit_status() -> u8 {
     SIGNALLED + HEARD.load(Ordering::SeqCst)
 }
 
-fn hear(signal: u8, answer: &str) {
+fn hear(signal: u8, answer: &str, briefly: bool) {
     if HEARD.compare_exchange(0, signal, Ordering::SeqCst, Ordering::SeqCst).is_err() {
         std::process::exit((SIGNALLED + signal).into());
     }
     insist(format_args!("{answer} (Ctrl-C again stops at once)"));
-    if IMPATIENT.load(Ordering::SeqCst) {
+    if briefly {
         std::thread::spawn(|| {
             std::thread::sleep(PATIENCE);
             std::process::exit(exit_status().into());
@@ -68,14 +65,14 @@ fn hear(signal: u8, answer: &str) {
 }
 
 #[cfg(unix)]
-fn handle(answer: &'static str) -> std::io::Result<()> {
+fn handle(answer: &'static str, briefly: bool) -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
     let hangup = (!is_hangup_ignored()).then_some(SIGHUP);
     let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup))?;
     std::thread::Builder::new().name("signals".into()).spawn(move || {
         for signal in signals.forever() {
-            hear(u8::try_from(signal).unwrap_or(CTRL_C), answer);
+            hear(u8::try_from(signal).unwrap_or(CTRL_C), answer, briefly);
         }
     })?;
     Ok(())
@@ -90,6 +87,6 @@ fn is_hangup_ignored() -> bool {
 }
 
 #[cfg(not(unix))]
-fn handle(answer: &'static str) -> Result<(), ctrlc::Error> {
-    ctrlc::set_handler(move || hear(CTRL_C, answer))
+fn handle(answer: &'static str, briefly: bool) -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(move || hear(CTRL_C, answer, briefly))
 }

@@ -100,6 +100,10 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
         survey.output_noise.of_mean(survey.window).hypot(survey.output_noise.wander(0.5 * rows as f64));
     let noise = OF_A_LINE * between / shown.height;
     let threshold = FULL + significance::critical_value(1) * noise;
+    // Loops that tell of a lag: not small, and far fuller than noise makes them.
+    let small = FULL.max(CLEAR * noise);
+    let is_clear = |opening: &&Opening| opening.swing > SMALL_SWING * widest && opening.fullness() > small;
+    let clear: Vec<&Opening> = survey.openings.iter().filter(is_clear).collect();
     let percent = 100.0 * index;
     let fullest = large.iter().map(|opening| opening.fullness()).fold(0.0, f64::max);
     let known = rate != Verdict::Yes || growth_is_known(&large);
@@ -149,7 +153,7 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
                      would"
             ),
         )
-    } else if !may_be_a_lag(survey, noise) {
+    } else if !may_be_a_lag(survey, &clear, small) {
         (
             Verdict::Yes,
             format!(
@@ -164,7 +168,7 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
                      same"
             ),
         )
-    } else if area < 2.0 * lag_of_few_rows(rows) || closes_within(survey, FEW_ROWS, noise) {
+    } else if area < 2.0 * lag_of_few_rows(rows) || shifted::closes(survey, &clear, FEW_ROWS, small) {
         (
             Verdict::NotTestable,
             format!(
@@ -199,29 +203,14 @@ fn lag_of_few_rows(rows: usize) -> f64 {
     2.0 * FEW_ROWS / (0.5 * rows as f64)
 }
 
-/// Loops that tell of a lag: not small, and far fuller than noise makes them.
-fn clear_loops<'s>(survey: &'s BranchSet, noise: f64) -> Vec<&'s Opening> {
-    let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
-    let is_clear = |opening: &&Opening| {
-        opening.swing > SMALL_SWING * widest && opening.fullness() > FULL.max(CLEAR * noise)
-    };
-    survey.openings.iter().filter(is_clear).collect()
-}
-
-/// True if one lag may explain all loops: the rows by which the output would be late are then the same for all of them,
-/// whatever their amplitude, within a factor that also allows for the shape of the curve; or the loops close where the
-/// output is read some rows later or earlier.
-fn may_be_a_lag(survey: &BranchSet, noise: f64) -> bool {
-    let clear = clear_loops(survey, noise);
+/// True if one lag may explain these loops: the rows by which the output would be late are then the same for all of them,
+/// whatever their amplitude, within a factor that also allows for the shape of the curve; or the loops close, to less than
+/// `small`, where the output is read some rows later or earlier.
+fn may_be_a_lag(survey: &BranchSet, loops: &[&Opening], small: f64) -> bool {
     let lag = |opening: &&Opening| 0.25 * opening.fullness() * opening.rows(survey) as f64;
-    let least = clear.iter().map(lag).fold(f64::INFINITY, f64::min);
-    let most = clear.iter().map(lag).fold(0.0, f64::max);
-    most < UNLIKE_A_LAG * least || closes_within(survey, FURTHER * most, noise)
-}
-
-/// True if the loops close where the output is read at most so many rows later or earlier.
-fn closes_within(survey: &BranchSet, rows: f64, noise: f64) -> bool {
-    shifted::closes(survey, &clear_loops(survey, noise), rows, FULL.max(CLEAR * noise))
+    let least = loops.iter().map(lag).fold(f64::INFINITY, f64::min);
+    let most = loops.iter().map(lag).fold(0.0, f64::max);
+    most < UNLIKE_A_LAG * least || shifted::closes(survey, loops, FURTHER * most, small)
 }
 
 /// [`test`] for a measured record: withholds a "yes" if a law without loops at speed 0 also explains the record.

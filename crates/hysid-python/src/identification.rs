@@ -190,12 +190,9 @@ fn attended<T: Send + 'static>(
     progress: Option<Bound<'_, PyAny>>,
     work: impl FnOnce(&mut Observer<'_>) -> hysid::Result<T> + Send + 'static,
 ) -> PyResult<(T, bool)> {
-    let deadline = match time_limit {
-        Some(limit) if !(limit > 0.0 && limit < 1e9) => {
-            return Err(refused("time_limit: a number of seconds above 0, below 1e9, is needed"));
-        }
-        limit => limit.map(|limit| Instant::now() + Duration::from_secs_f64(limit)),
-    };
+    let limit = time_limit.map(hysid::time_limit).transpose();
+    let limit = limit.map_err(|needed| refused(format!("time_limit: {needed}")))?;
+    let deadline = limit.map(|limit| Instant::now() + limit);
     let pool = hysid::thread_pool(threads);
     let pool = pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start the threads: {error}")))?;
     let exchange = Arc::new(Exchange::default());

@@ -17,6 +17,7 @@ use hysid_files::{Destination, Folder, Kind};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::data::{Column, Dataset, NewColumn};
 use crate::failure::{not_written, refused};
@@ -290,10 +291,10 @@ fn inputs(x: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
         return Ok(vec![x]);
     }
     let needed = || PyTypeError::new_err("x: a number, or a sequence of numbers, is needed");
-    // A sequence without an end would take all memory.
-    if x.len().map_err(|_| needed())? > MOST_INPUTS {
+    if !x.hasattr("__getitem__")? || x.is_instance_of::<PyDict>() {
         return Err(needed());
     }
+    // A sequence without an end would take all memory.
     x.try_iter()
         .map_err(|_| needed())?
         .take(MOST_INPUTS)

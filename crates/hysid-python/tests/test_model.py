@@ -196,6 +196,8 @@ def test_steps_give_what_a_free_run_gives():
         stepper.step(np.nan, 1e9)
     with pytest.raises(TypeError):
         stepper.step("a", 1e9)
+    with pytest.raises(TypeError):
+        stepper.step({0.0: 1.0}, 1e9)
     endless = type("Endless", (), {"__len__": lambda self: 1, "__getitem__": lambda self, index: 0.0})()
     with pytest.raises(ValueError, match="inputs where the model has 1"):
         stepper.step(endless, 1e9)

@@ -43,6 +43,7 @@ pub mod optimise;
 pub mod plan;
 pub mod restoring_force;
 mod thread_pool;
+mod time_limit;
 pub mod validation;
 
 pub use builder::{Compared, Fit, compare};
@@ -61,6 +62,7 @@ pub use hysid_diagnosis::Diagnosis;
 pub use hysid_specimens as specimens;
 pub use restoring_force::restoring_force;
 pub use thread_pool::{MOST_THREADS, thread_pool};
+pub use time_limit::time_limit;
 pub use validation::CrossValidation;
 
 /// Fits a model to data with the defaults: cross-validates networks and classical models and combines the

@@ -383,7 +383,7 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
     }
     let (low, high) = model.trained.inputs.first().copied().unwrap_or_default();
     if model.work_of_row(high - low, 0.0) > LARGEST_WORK {
-        return Err(Error::Parts("its members are too slow: a row would take longer than 0.1 s".into()));
+        return Err(Error::Parts("it is too slow: a row would take longer than 0.1 s".into()));
     }
     if model.is_periodic && !model.lead_in.is_empty() {
         return Err(Error::Parts("its records begin in two states".into()));

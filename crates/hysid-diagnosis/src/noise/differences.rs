@@ -2,6 +2,7 @@
 //! to each of them with a high power of the distance, white noise not at all, coloured noise slowly, hum with its
 //! period: the shares of all follow from how the differences grow.
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use super::{Correlation, Noise};
@@ -79,23 +80,24 @@ pub(crate) fn roughness<'a>(columns: impl Iterator<Item = &'a [f64]>) -> f64 {
 
 /// The rows of a run without those that repeat the one before: a logger that is faster than its sensor makes them, and they
 /// tell nothing of noise.
-struct Rows {
-    values: Vec<f64>,
-    beside: Vec<f64>,
+struct Rows<'a> {
+    values: Cow<'a, [f64]>,
+    beside: Cow<'a, [f64]>,
 }
 
-impl Rows {
-    fn new(Run { values, beside }: Run) -> Self {
+impl<'a> Rows<'a> {
+    fn new(Run { values, beside }: Run<'a>) -> Self {
         let is_new = |row: &usize| {
             let before = row.wrapping_sub(1);
             *row == 0 || values[*row] != values[before] || beside.get(*row) != beside.get(before)
         };
-        let kept: Vec<usize> = (0..values.len()).filter(is_new).collect();
+        let kept = || (0..values.len()).filter(is_new);
+        let count = kept().count();
         // An input in steps rests most of the time.
-        if 2 * kept.len() <= values.len() {
-            return Self { values: values.to_vec(), beside: beside.to_vec() };
+        if count == values.len() || 2 * count <= values.len() {
+            return Self { values: values.into(), beside: beside.into() };
         }
-        let of = |channel: &[f64]| kept.iter().filter_map(|row| channel.get(*row).copied()).collect();
+        let of = |channel: &[f64]| kept().filter_map(|row| channel.get(row).copied()).collect();
         Self { values: of(values), beside: of(beside) }
     }
 

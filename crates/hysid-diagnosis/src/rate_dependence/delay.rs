@@ -4,6 +4,7 @@
 use serde::Serialize;
 
 use crate::branch::{Branch, BranchSet};
+use crate::interpolation::at_place;
 use crate::minimum::lowest;
 use crate::rate_dependence::Speeds;
 use hysid_core::data::record::Record;
@@ -102,12 +103,6 @@ fn cubic(time: &[f64], x: &[f64], below: usize, wanted: f64) -> f64 {
 }
 
 fn mean(set: &[Vec<(f64, f64)>], x: f64) -> Option<f64> {
-    let mut sum = 0.0;
-    for points in set {
-        let above = points.partition_point(|point| point.0 < x);
-        let (a, b) = (points.get(above.checked_sub(1)?)?, points.get(above)?);
-        let width = b.0 - a.0;
-        sum += if width > 0.0 { a.1 + (b.1 - a.1) * (x - a.0) / width } else { a.1 };
-    }
-    Some(sum / set.len() as f64)
+    let values = set.iter().map(|points| at_place(points, x));
+    Some(values.sum::<Option<f64>>()? / set.len() as f64)
 }

@@ -1,7 +1,7 @@
 //! Loops of an output that is read some rows later or earlier: those of a lag close.
 
 use super::super::branch::{Branch, BranchSet, Opening};
-use crate::interpolation::at_row;
+use crate::interpolation::{at_place, at_row};
 
 /// Rows of loops that are looked at, about.
 const MOST_ROWS: usize = 100_000;
@@ -46,11 +46,10 @@ fn fullness(survey: &BranchSet, opening: &Opening, shift: f64) -> Option<f64> {
     let curve = |branch: &Branch| {
         let record = &survey.data.records()[branch.record];
         let (x, y) = (&record.inputs()[0], record.output());
-        let last = (y.len() - 1) as f64;
         let mut points: Vec<(f64, f64)> = branch
             .rows
             .clone()
-            .map(|row| (x[row], at_row(y, (row as f64 + shift).clamp(0.0, last))))
+            .map(|row| (x[row], at_row(y, row as f64 + shift)))
             .filter(|point| !point.1.is_nan())
             .collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -59,15 +58,9 @@ fn fullness(survey: &BranchSet, opening: &Opening, shift: f64) -> Option<f64> {
     let (one, other) = (curve(&survey.branches[opening.branch]), curve(&survey.branches[opening.branch + 1]));
     let low = one.first()?.0.max(other.first()?.0);
     let high = one.last()?.0.min(other.last()?.0);
-    let at = |points: &[(f64, f64)], x: f64| {
-        let after = points.partition_point(|point| point.0 < x).clamp(1, points.len() - 1);
-        let (a, b) = (points[after - 1], points[after]);
-        if b.0 == a.0 { a.1 } else { a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0) }
+    let apart = |number: usize| {
+        let place = low + (high - low) * (number as f64 + 0.5) / PLACES as f64;
+        Some((at_place(&one, place)? - at_place(&other, place)?).abs())
     };
-    if one.len() < 2 || other.len() < 2 || high <= low {
-        return None;
-    }
-    let place = |number: usize| low + (high - low) * (number as f64 + 0.5) / PLACES as f64;
-    let apart = (0..PLACES).map(|number| (at(&one, place(number)) - at(&other, place(number))).abs());
-    Some(apart.sum::<f64>() / PLACES as f64 / opening.height)
+    Some((0..PLACES).map(apart).sum::<Option<f64>>()? / PLACES as f64 / opening.height)
 }

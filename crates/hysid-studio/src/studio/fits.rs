@@ -38,11 +38,8 @@ impl Studio {
         if self.fits.state().is_some_and(|state| state.is_running) {
             bail!("a fit is running: stop it, or wait until it ends");
         }
-        if request.time_limit.is_some_and(|limit| !(limit > 0.0 && limit < 1e9)) {
-            return Err(
-                Usage("--time-limit: a number of seconds above 0, below 1e9, is needed".into()).into()
-            );
-        }
+        let limit = request.time_limit.map(hysid::time_limit).transpose();
+        limit.map_err(|needed| Usage(format!("--time-limit: {needed}")))?;
         self.save_again()
             .and_then(|()| self.take_up_the_unfinished())
             .context("the model of the last fit cannot be stored")?;

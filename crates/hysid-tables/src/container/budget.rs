@@ -20,6 +20,9 @@ const FREE_NUMBERS: u64 = 1 << 20;
 const FREE_TIME: Duration = Duration::from_secs(10);
 const TIME_PER_MEGABYTE: Duration = Duration::from_secs(2);
 
+/// What is said of a file whose content is not as its format asks.
+pub const DAMAGED: &str = "it is damaged or cut off";
+
 /// Name of the threads that run libraries. What panics there is an error of the file.
 pub const THREAD: &str = "hysid-container";
 
@@ -61,7 +64,7 @@ impl Budget {
     pub fn unpacked(self, reader: impl Read) -> Result<Vec<u8>, String> {
         let mut bytes = Vec::new();
         let most = self.bytes();
-        reader.take(most + 1).read_to_end(&mut bytes).map_err(|_| "it is damaged or cut off")?;
+        reader.take(most + 1).read_to_end(&mut bytes).map_err(|_| DAMAGED)?;
         if bytes.len() as u64 > most {
             return Err(too_much());
         }

@@ -9,7 +9,7 @@ use std::io::Cursor;
 
 use calamine::{Data, ExcelDateTime, Ods, Range, Reader, Xls, Xlsx};
 
-use super::budget::Budget;
+use super::budget::{Budget, DAMAGED};
 use crate::number::shortest;
 
 /// How compound files begin, such as `.xls`.
@@ -53,7 +53,7 @@ where
 {
     let in_words = |error: E| {
         let is_encrypted = error.to_string().to_lowercase().contains("password");
-        if is_encrypted { ENCRYPTED } else { archive::DAMAGED }
+        if is_encrypted { ENCRYPTED } else { DAMAGED }
     };
     let mut book = R::new(Cursor::new(bytes)).map_err(in_words)?;
     let names = book.sheet_names();

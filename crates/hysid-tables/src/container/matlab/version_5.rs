@@ -6,7 +6,7 @@
 
 use flate2::read::ZlibDecoder;
 
-use super::super::budget::{Budget, too_much};
+use super::super::budget::{Budget, DAMAGED, too_much};
 use super::{DEEPEST, Variable};
 
 const HEADER: usize = 128;
@@ -22,9 +22,6 @@ const NUMBERS: std::ops::RangeInclusive<u32> = 6..=15;
 
 /// A flag of matrices.
 const COMPLEX: u32 = 1 << 11;
-
-/// Why a file cannot be read.
-const DAMAGED: &str = "it is damaged or cut off";
 
 /// All numeric variables of a file.
 ///

@@ -8,7 +8,7 @@ use quick_xml::events::{BytesStart, Event};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-use super::super::budget::{Budget, too_much};
+use super::super::budget::{Budget, DAMAGED, too_much};
 
 /// Most parts of an archive.
 const MOST_PARTS: usize = 10_000;
@@ -19,9 +19,6 @@ const DEEPEST: usize = 200;
 /// Sizes of a sheet of Excel.
 const MOST_ROWS: u64 = 1 << 20;
 const MOST_COLUMNS: u64 = 1 << 14;
-
-/// What is said of an archive that is none or is damaged.
-pub const DAMAGED: &str = "it is damaged or cut off";
 
 /// A kind of spreadsheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,10 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use super::super::budget::{Budget, too_much};
+use super::super::budget::{Budget, DAMAGED, too_much};
 use super::archive::Within;
-
-const DAMAGED: &str = "it is damaged or cut off";
 
 /// Bytes of the header, which has 109 places of the table of sectors.
 const HEADER: usize = 512;
