@@ -4,6 +4,7 @@ use hysid_core::model::MOST_TRIALS;
 
 use crate::description::Argument;
 use crate::inverse::Inverse;
+use crate::manifest::token_of;
 use crate::program::Precision;
 use crate::subject::Subject;
 use crate::target::c::source::EXACT;
@@ -85,6 +86,7 @@ pub(super) fn header_and_source(subject: &Subject<'_>, inverse: &Inverse) -> [St
         include_str!("inverse.c.txt"),
         &[
             ("@exact@", EXACT),
+            ("@token@", &token_of(&header).to_string()),
             ("NAME", name),
             ("UPPER", &upper),
             ("fabs(", &functions[0]),

@@ -91,7 +91,30 @@ pub(super) fn source(subject: &Subject<'_>) -> String {
 static const int CLASS_TAG = {class_tag};
 
 static const int STATE_NUMBERS = {upper}_STATE_BYTES / sizeof(double);
-static const int NUMBERS = STATE_NUMBERS + 6;
+static const int NUMBERS = STATE_NUMBERS + 7;
+
+// A checksum of all numbers but the last one (FNV-1a).
+static double sumOf(Vector &data)
+{{
+    unsigned long sum = 2166136261UL;
+    for (int i = 0; i < NUMBERS - 1; i++) {{
+        unsigned char bytes[sizeof(double)];
+        const double number = data(i);
+        memcpy(bytes, &number, sizeof bytes);
+        for (size_t k = 0; k < sizeof bytes; k++)
+            sum = ((sum ^ bytes[k]) * 16777619UL) & 0xffffffffUL;
+    }}
+    return (double)sum;
+}}
+
+// True for a tag and a point that a material can have.
+static bool isSound(Vector &data)
+{{
+    for (int i = 1; i < 6; i++)
+        if (!(data(i) - data(i) == 0.0))
+            return false;
+    return data(0) >= -2147483647.0 && data(0) <= 2147483647.0 && data(0) == (double)(int)data(0);
+}}
 
 OPS_Export void *OPS_{name}(void)
 {{
@@ -197,6 +220,7 @@ int {name}Material::sendSelf(int commitTag, Channel &channel)
     data(5) = initialTangent;
     for (int i = 0; i < STATE_NUMBERS; i++)
         data(6 + i) = state[i];
+    data(NUMBERS - 1) = sumOf(data);
     if (channel.sendVector(this->getDbTag(), commitTag, data) < 0) {{
         opserr << \"{name}Material::sendSelf failed to send its data\" << endln;
         return -1;
@@ -216,7 +240,7 @@ int {name}Material::recvSelf(int commitTag, Channel &channel, FEM_ObjectBroker &
     for (int i = 0; i < STATE_NUMBERS; i++)
         state[i] = data(6 + i);
     memcpy(bytes, state, sizeof bytes);
-    if (!{name}_restore(&model, bytes)) {{
+    if (data(NUMBERS - 1) != sumOf(data) || !isSound(data) || !{name}_restore(&model, bytes)) {{
         opserr << \"{name}Material::recvSelf received a state that is damaged or of another material\" << endln;
         return -1;
     }}

@@ -27,6 +27,9 @@ const INTERFACE: [(&str, &str); 7] = [
 
 /// Runs the test vectors on the class, and prints the number of differences.
 const DRIVER: &str = r#"
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -51,6 +54,18 @@ class Memory : public Channel
     int sendVector(int, int, const Vector &vector) { data = vector; return 0; }
     int recvVector(int, int, Vector &vector) { vector = data; return 0; }
 };
+
+static double sumOf(Vector &data)
+{
+    std::uint32_t sum = 2166136261U;
+    for (int i = 0; i + 1 < data.Size(); i++) {
+        std::uint64_t bits;
+        std::memcpy(&bits, &data(i), sizeof bits);
+        for (int k = 0; k < 64; k += 8)
+            sum = (sum ^ ((bits >> k) & 255U)) * 16777619U;
+    }
+    return sum;
+}
 
 int main(int, char **arguments)
 {
@@ -89,6 +104,17 @@ int main(int, char **arguments)
             delete material;
             material = other;
             material->revertToStart();
+            // Damaged data are refused and change nothing; so are impossible data with a right checksum.
+            for (int i = 0; i < 8; i++)
+                for (double wild : {1e300, -0.5, double(NAN), double(INFINITY)}) {
+                    Memory damaged = saved;
+                    damaged.data(i) = wild;
+                    compare(material->recvSelf(0, damaged, broker), -1);
+                    damaged.data(damaged.data.Size() - 1) = sumOf(damaged.data);
+                    if (i == 0 || (i < 6 && !std::isfinite(wild)))
+                        compare(material->recvSelf(0, damaged, broker), -1);
+                }
+            compare(material->getTag(), 7);
             material->recvSelf(0, saved, broker);
         }
     }

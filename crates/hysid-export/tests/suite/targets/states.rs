@@ -122,6 +122,7 @@ int main(void)
             return printf(\"byte %d was not noticed\\n\", (int)i), 1;
         bytes[i] ^= 0x40;
     }
+    fwrite(bytes, 1, ONE_INVERSE_STATE_BYTES, fopen(\"state.bin\", \"wb\"));
     one.last_input = 1e9;
     one_inverse_step(&one, 0.2, 1.0, &input, &output);
     if (!(input >= -1.0 && input <= 1.0))
@@ -131,4 +132,29 @@ int main(void)
 ";
     fs::write(folder.path().join("main.c"), main).unwrap();
     run(folder.path(), &["one.c", "one_inverse.c", "two.c", "two_inverse.c", "main.c"]);
+
+    // Inverses of the same model under the same name, with other limits or another slew.
+    let main = "#include <stdio.h>
+#include \"one_inverse.h\"
+int main(void)
+{
+    static one_inverse one;
+    static unsigned char bytes[ONE_INVERSE_STATE_BYTES];
+    return fread(bytes, 1, sizeof bytes, fopen(\"state.bin\", \"rb\")) != sizeof bytes
+        || one_inverse_restore(&one, bytes) != IS_SAME;
+}
+";
+    let others = [
+        (inverse, 1),
+        (InverseOptions { limits: Some((-1.0, 3.0)), ..inverse }, 0),
+        (InverseOptions { slew: Some(0.2), ..inverse }, 0),
+    ];
+    for (other, is_same) in others {
+        let sibling = tempfile::tempdir().unwrap();
+        let options = Options { inverse: Some(other), ..Options::named("one") };
+        written(&first.1, Target::C, &options, sibling.path());
+        fs::write(sibling.path().join("main.c"), format!("#define IS_SAME {is_same}\n{main}")).unwrap();
+        fs::copy(folder.path().join("state.bin"), sibling.path().join("state.bin")).unwrap();
+        run(sibling.path(), &["one.c", "one_inverse.c", "main.c"]);
+    }
 }
