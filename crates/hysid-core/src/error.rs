@@ -299,6 +299,19 @@ pub enum DataProblem {
         /// Rows needed.
         needed: usize,
     },
+    /// Too few rows with an output after the warm-up.
+    #[error(
+        "has only {found} rows with an output after a warm-up of {warm_up} rows: at least {needed} are needed to identify a \
+         model (shorten the warm-up)"
+    )]
+    LongWarmUp {
+        /// Rows at the beginning of each record that are not trained on.
+        warm_up: usize,
+        /// Rows with an output after them.
+        found: usize,
+        /// Rows needed.
+        needed: usize,
+    },
     /// Too few rows with an output.
     #[error("has only {found} rows with an output: at least {needed} are needed to identify a model")]
     TooFewRows {
@@ -317,6 +330,7 @@ impl DataProblem {
             Self::ConstantInput(_)
                 | Self::ConstantOutput(_)
                 | Self::NothingToScore
+                | Self::LongWarmUp { .. }
                 | Self::Ranges { .. }
                 | Self::NeverTurns(_)
                 | Self::NoMagnetisation

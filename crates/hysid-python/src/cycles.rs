@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::data::Dataset;
 use crate::failure::refused;
+use crate::interruption::interruptible;
 
 /// What Python reads.
 #[derive(Serialize)]
@@ -40,19 +41,21 @@ pub fn cycles(
     let options = CycleOptions { smallest_reversal, smoothing, ..options(division, field)? };
     let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor };
     let set = Arc::clone(&data.set);
-    let found = py.detach(|| Ok((CycleTable::of(&set, &options)?, ReversalCurves::of(&set, &of_curves)?)));
-    let (table, curves) = found.map_err(|error: hysid::Error| refused(error))?;
+    let find = move || Ok((CycleTable::of(&set, &options)?, ReversalCurves::of(&set, &of_curves)?));
+    let (table, curves) = interruptible(py, find)?;
     told(&table, curves.as_ref())
 }
 
 /// The cycles and first-order reversal curves that a model is driven through, as JSON.
 pub fn of_model(
-    model: &Model,
+    py: Python<'_>,
+    model: &Arc<Model>,
     division: Option<&str>,
     field: Option<&str>,
     smoothing_factor: Option<usize>,
 ) -> PyResult<String> {
-    let driven = ModelCycles::of(model, &options(division, field)?, smoothing_factor).map_err(refused)?;
+    let (model, options) = (Arc::clone(model), options(division, field)?);
+    let driven = interruptible(py, move || ModelCycles::of(&model, &options, smoothing_factor))?;
     told(&driven.table, driven.reversal_curves.as_ref())
 }
 

@@ -10,6 +10,7 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::failure::refused;
+use crate::interruption::interruptible;
 
 /// A column, read where it lies.
 pub type Column<'py> = PyReadonlyArray1<'py, f64>;
@@ -84,7 +85,8 @@ fn record((name, time, inputs, rate, output): Parts<Column<'_>>) -> PyResult<Rec
     Ok(record)
 }
 
-fn values(column: &Column<'_>) -> PyResult<Vec<f64>> {
+/// The values of a column, in memory of their own.
+pub fn values(column: &Column<'_>) -> PyResult<Vec<f64>> {
     Ok(column.as_slice()?.to_vec())
 }
 
@@ -107,6 +109,6 @@ pub fn unit_factor(found: &str, trained: &str) -> PyResult<Option<f64>> {
 pub fn diagnose(py: Python<'_>, data: &Dataset, smallest_reversal: f64, smoothing: bool) -> PyResult<String> {
     let options = DiagnosisOptions { smallest_reversal, smoothing };
     let set = Arc::clone(&data.set);
-    let diagnosis = py.detach(|| Diagnosis::of(&set, &options)).map_err(refused)?;
+    let diagnosis = interruptible(py, move || Diagnosis::of(&set, &options))?;
     serde_json::to_string(&diagnosis).map_err(refused)
 }

@@ -7,8 +7,9 @@ use hysid::operator::{DeterioratingStop, Operator, Play, Relaxation, Relay, Stop
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::data::{Column, NewColumn};
+use crate::data::{Column, NewColumn, values};
 use crate::failure::refused;
+use crate::interruption::interruptible;
 
 /// Runs an operator over a signal from its virgin state.
 fn run<'py>(py: Python<'py>, x: &Column<'_>, mut operator: impl Operator) -> PyResult<NewColumn<'py>> {
@@ -79,13 +80,13 @@ pub fn law<'py>(
     let law: Classical = serde_json::from_str(description).map_err(refused)?;
     let law = law.validated().map_err(refused)?;
     let rate = rate.map(str::parse).transpose().map_err(refused)?;
-    let (x, time) = (x.as_slice()?, time.as_ref().map(|time| time.as_slice()).transpose()?);
-    let outputs = py.detach(|| {
-        let mut excitation = Excitation::new("data", vec![x])?;
-        if let Some(time) = time {
+    let (x, time) = (values(&x)?, time.as_ref().map(values).transpose()?);
+    let outputs = interruptible(py, move || {
+        let mut excitation = Excitation::new("data", vec![&x])?;
+        if let Some(time) = &time {
             excitation = excitation.with_time(time)?;
         }
         Ok(law.run(&samples(&excitation, rate)?))
-    });
-    Ok(PyArray1::from_vec(py, outputs.map_err(refused::<hysid::Error>)?))
+    })?;
+    Ok(PyArray1::from_vec(py, outputs))
 }

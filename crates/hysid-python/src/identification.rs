@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use hysid::fit;
 use hysid::fit::cross_validate;
@@ -18,10 +18,8 @@ use pyo3::prelude::*;
 
 use crate::data::Dataset;
 use crate::failure::refused;
+use crate::interruption::{PAUSE, no_result};
 use crate::model::Model;
-
-/// How often the caller's thread looks for Ctrl-C and tells the progress.
-const PAUSE: Duration = Duration::from_millis(50);
 
 /// What is to be identified, and how.
 #[pyclass(frozen, module = "hysid._hysid")]
@@ -212,9 +210,7 @@ fn attended<T: Send + 'static>(
             Ok(done) => break done,
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(PyRuntimeError::new_err(
-                    "the fit ended without a result: this is an error in Hysid, please report it",
-                ));
+                return Err(no_result());
             }
         }
         if let Err(error) = py.check_signals() {

@@ -5,14 +5,15 @@ use hysid::{Reach, Reference};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
-use crate::data::{Column, NewColumn};
+use crate::data::{Column, NewColumn, values};
 use crate::failure::refused;
+use crate::interruption::interruptible;
 
 /// Input, output, reach, whether it is extrapolated, lowest and highest input of the band, and trials of a sample.
 type Sample = (f64, f64, &'static str, bool, Option<f64>, Option<f64>, usize);
 
 /// The same of rows, without trials.
-type Rows<'py> = (
+type Columns<'py> = (
     NewColumn<'py>,
     NewColumn<'py>,
     Vec<&'static str>,
@@ -56,18 +57,24 @@ impl Inverse {
     }
 }
 
-/// Runs something over the rows of a reference, whose columns are read where they lie.
-fn along<T: Send>(
-    py: Python<'_>,
-    y: &Column<'_>,
-    time: Option<&Column<'_>>,
-    others: &[Column<'_>],
-    run: impl FnOnce(&Reference<'_>) -> hysid::Result<T> + Send,
-) -> PyResult<T> {
-    let columns = others.iter().map(|column| Ok(column.as_slice()?)).collect::<PyResult<Vec<_>>>()?;
-    let time = time.map(|time| time.as_slice()).transpose()?;
-    let reference = Reference { wanted: y.as_slice()?, others: &columns, time };
-    py.detach(|| run(&reference)).map_err(refused)
+/// A copy of rows: the wanted outputs, the other inputs and the time.
+struct Rows {
+    wanted: Vec<f64>,
+    others: Vec<Vec<f64>>,
+    time: Option<Vec<f64>>,
+}
+
+impl Rows {
+    fn of(y: &Column<'_>, time: Option<&Column<'_>>, others: &[Column<'_>]) -> PyResult<Self> {
+        let others = others.iter().map(values).collect::<PyResult<_>>()?;
+        Ok(Self { wanted: values(y)?, others, time: time.map(values).transpose()? })
+    }
+
+    /// Runs something over them.
+    fn along<T>(&self, run: impl FnOnce(&Reference<'_>) -> hysid::Result<T>) -> hysid::Result<T> {
+        let others: Vec<&[f64]> = self.others.iter().map(Vec::as_slice).collect();
+        run(&Reference { wanted: &self.wanted, others: &others, time: self.time.as_deref() })
+    }
 }
 
 #[pymethods]
@@ -80,16 +87,18 @@ impl Inverse {
         Ok((found.input, found.output, reach, found.is_extrapolated, low, high, found.trials))
     }
 
-    /// Takes rows.
+    /// Takes rows; none of them after Ctrl-C.
     fn run<'py>(
         &mut self,
         py: Python<'py>,
         y: Column<'py>,
         time: Option<Column<'py>>,
         others: Vec<Column<'py>>,
-    ) -> PyResult<Rows<'py>> {
-        let inverse = &mut self.inverse;
-        let found = along(py, &y, time.as_ref(), &others, |reference| inverse.run(reference))?;
+    ) -> PyResult<Columns<'py>> {
+        let (rows, mut inverse) = (Rows::of(&y, time.as_ref(), &others)?, self.inverse.clone());
+        let run = move || rows.along(|reference| inverse.run(reference)).map(|found| (found, inverse));
+        let (found, inverse) = interruptible(py, run)?;
+        self.inverse = inverse;
         let edge = |values: Vec<f64>| (!values.is_empty()).then(|| values.into_pyarray(py));
         Ok((
             found.input.into_pyarray(py),
@@ -109,7 +118,8 @@ impl Inverse {
         time: Option<Column<'_>>,
         others: Vec<Column<'_>>,
     ) -> PyResult<f64> {
-        along(py, &y, time.as_ref(), &others, |reference| self.inverse.best_preview(reference))
+        let (rows, inverse) = (Rows::of(&y, time.as_ref(), &others)?, self.inverse.clone());
+        interruptible(py, move || rows.along(|reference| inverse.best_preview(reference)))
     }
 
     /// Goes back to the initial state of the model.

@@ -7,6 +7,7 @@ mod elements;
 mod failure;
 mod folds;
 mod identification;
+mod interruption;
 mod inverse;
 mod labels;
 mod model;

@@ -1,6 +1,5 @@
 //! Fitted models.
 
-use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -19,8 +18,9 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::data::{Column, Dataset, NewColumn};
+use crate::data::{Column, Dataset, NewColumn, values};
 use crate::failure::{not_written, refused};
+use crate::interruption::interruptible;
 use crate::inverse::{Bounds, Inverse};
 
 /// A fitted model.
@@ -84,7 +84,9 @@ impl Model {
             inverse: inverse.then_some(InverseOptions { limits, slew }),
             ..Options::named(name)
         };
-        let exported = py.detach(|| hysid_export::export(&self.model, target, &options)).map_err(refused)?;
+        let model = Arc::clone(&self.model);
+        let exported = interruptible(py, move || Ok(hysid_export::export(&model, target, &options)))?;
+        let exported = exported.map_err(refused)?;
         // The model is in memory, and the folder may hold the file that it was read from.
         let destination = Folder {
             path: &folder,
@@ -117,7 +119,7 @@ impl Model {
         self.model.needs_time()
     }
 
-    /// Free run over one record, whose columns are read where they lie. Without the name of an initial state it
+    /// Free run over one record. Without the name of an initial state it
     /// begins as the training records did.
     fn simulate<'py>(
         &self,
@@ -129,7 +131,7 @@ impl Model {
         initial_state: Option<&str>,
     ) -> PyResult<NewColumn<'py>> {
         let model = self.begun(initial_state)?;
-        let run = |excitation: &Excitation<'_>| model.response(excitation);
+        let run = move |excitation: &Excitation<'_>| model.response(excitation);
         Ok(PyArray1::from_vec(py, driven(py, name, time, inputs, rate, run)?))
     }
 
@@ -148,7 +150,7 @@ impl Model {
     ) -> PyResult<[NewColumn<'py>; 3]> {
         let model = self.begun(initial_state)?;
         let level = BandLevel { probability, of_ten };
-        let run = |excitation: &Excitation<'_>| model.predict(excitation, level);
+        let run = move |excitation: &Excitation<'_>| model.predict(excitation, level);
         let Prediction { output, low, high } = driven(py, name, time, inputs, rate, run)?;
         Ok([output, low, high].map(|column| PyArray1::from_vec(py, column)))
     }
@@ -168,11 +170,11 @@ impl Model {
     ) -> PyResult<String> {
         let set = Arc::clone(&data.set);
         let model = self.begun(initial_state)?;
-        let evaluate = || match after_warm_up && model.warm_up() > 0 {
+        let evaluate = move || match after_warm_up && model.warm_up() > 0 {
             true => model.evaluate_after_warm_up(&set),
             false => model.evaluate(&set).map(Some),
         };
-        let errors = py.detach(evaluate).map_err(refused)?;
+        let errors = interruptible(py, evaluate)?;
         let errors = errors.ok_or_else(|| refused("no row after the warm-up has a measured output"))?;
         serde_json::to_string(&errors).map_err(refused)
     }
@@ -181,18 +183,18 @@ impl Model {
     fn residuals(&self, py: Python<'_>, data: &Dataset, initial_state: Option<&str>) -> PyResult<String> {
         let set = Arc::clone(&data.set);
         let model = self.begun(initial_state)?;
-        let test = || {
+        let test = move || {
             let is_training = !model.known_records(&set).is_empty();
             let options = ResidualOptions { is_training, ..ResidualOptions::default() };
             Residuals::of_model(&model, &set, &options)
         };
-        serde_json::to_string(&py.detach(test).map_err(refused)?).map_err(refused)
+        serde_json::to_string(&interruptible(py, test)?).map_err(refused)
     }
 
     /// Confidence intervals of the parameters of a law, from its training data, as JSON; `None` for another model.
     fn parameter_intervals(&self, py: Python<'_>, data: &Dataset) -> PyResult<Option<String>> {
-        let set = Arc::clone(&data.set);
-        let found = py.detach(|| ParameterIntervals::of(&self.model, &set)).map_err(refused)?;
+        let (model, set) = (Arc::clone(&self.model), Arc::clone(&data.set));
+        let found = interruptible(py, move || ParameterIntervals::of(&model, &set))?;
         found.map(|found| serde_json::to_string(&found).map_err(refused)).transpose()
     }
 
@@ -214,7 +216,8 @@ impl Model {
 
     /// Properties of its hysteresis, as JSON.
     fn diagnose(&self, py: Python<'_>) -> PyResult<String> {
-        let diagnosis = py.detach(|| ModelDiagnosis::of(&self.model)).map_err(refused)?;
+        let model = Arc::clone(&self.model);
+        let diagnosis = interruptible(py, move || ModelDiagnosis::of(&model))?;
         serde_json::to_string(&diagnosis).map_err(refused)
     }
 
@@ -227,7 +230,7 @@ impl Model {
         field: Option<&str>,
         smoothing_factor: Option<usize>,
     ) -> PyResult<String> {
-        py.detach(|| crate::cycles::of_model(&self.model, division, field, smoothing_factor))
+        crate::cycles::of_model(py, &self.model, division, field, smoothing_factor)
     }
 
     /// Runs it sample by sample, from its initial state.
@@ -250,36 +253,36 @@ impl Model {
 
 impl Model {
     /// The model, whose records begin in the named initial state if there is one.
-    fn begun(&self, state: Option<&str>) -> PyResult<Cow<'_, model::Model>> {
-        let Some(name) = state else { return Ok(Cow::Borrowed(&*self.model)) };
+    fn begun(&self, state: Option<&str>) -> PyResult<Arc<model::Model>> {
+        let Some(name) = state else { return Ok(Arc::clone(&self.model)) };
         let begun = |name: &str| model::Model::clone(&self.model).with_initial_state(name.parse()?);
-        begun(name).map(Cow::Owned).map_err(refused)
+        begun(name).map(Arc::new).map_err(refused)
     }
 }
 
-/// Runs something over one record, whose columns are read where they lie.
-fn driven<T: Send>(
+/// Runs something over a copy of one record: what another thread does to the arrays meanwhile changes nothing.
+fn driven<T: Send + 'static>(
     py: Python<'_>,
     name: &str,
     time: Option<Column<'_>>,
     inputs: Vec<Column<'_>>,
     rate: Option<Column<'_>>,
-    run: impl Fn(&Excitation<'_>) -> hysid::Result<T> + Sync,
+    run: impl Fn(&Excitation<'_>) -> hysid::Result<T> + Send + 'static,
 ) -> PyResult<T> {
-    let inputs = inputs.iter().map(|input| Ok(input.as_slice()?)).collect::<PyResult<_>>()?;
-    let time = time.as_ref().map(|time| time.as_slice()).transpose()?;
-    let rate = rate.as_ref().map(|rate| rate.as_slice()).transpose()?;
-    let outcome = py.detach(|| {
-        let mut excitation = Excitation::new(name, inputs)?;
-        if let Some(time) = time {
+    let name = name.to_owned();
+    let inputs = inputs.iter().map(values).collect::<PyResult<Vec<_>>>()?;
+    let [time, rate] = [time, rate].map(|column| column.as_ref().map(values).transpose());
+    let (time, rate) = (time?, rate?);
+    interruptible(py, move || {
+        let mut excitation = Excitation::new(&name, inputs.iter().map(Vec::as_slice).collect())?;
+        if let Some(time) = &time {
             excitation = excitation.with_time(time)?;
         }
-        if let Some(rate) = rate {
+        if let Some(rate) = &rate {
             excitation = excitation.with_given_rate(rate)?;
         }
         run(&excitation)
-    });
-    outcome.map_err(refused)
+    })
 }
 
 /// More inputs than any model has.

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use crate::data::Dataset;
 use crate::failure::refused;
+use crate::interruption::interruptible;
 
 /// A plan from data, or a protocol of a kind, as JSON.
 #[pyfunction]
@@ -27,9 +28,10 @@ pub fn plan(
     let wave: Option<Wave> =
         wave.map(str::parse).transpose().map_err(|error: hysid::Error| refused(error))?;
     let set = data.map(|data| Arc::clone(&data.set));
-    let made = py.detach(|| match (set, kind) {
-        (Some(set), _) => Plan::of(&set, &PlanOptions { limits, wave, seed }),
-        (None, kind) => Protocol::named(kind.unwrap_or_default())?.plan(&ProtocolOptions { limits, wave }),
-    });
-    serde_json::to_string(&made.map_err(|error: hysid::Error| refused(error))?).map_err(refused)
+    let kind = kind.unwrap_or_default().to_owned();
+    let made = interruptible(py, move || match set {
+        Some(set) => Plan::of(&set, &PlanOptions { limits, wave, seed }),
+        None => Protocol::named(&kind)?.plan(&ProtocolOptions { limits, wave }),
+    })?;
+    serde_json::to_string(&made).map_err(refused)
 }

@@ -169,6 +169,34 @@ def test_ctrl_c_keeps_the_best_model():
     assert ended - pressed < 5, "a second is promised; a busy machine may need longer"
 
 
+LONG_RUN = """
+    import signal
+    import numpy as np
+    import hysid
+
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    # Each row takes thousands of steps of the differential equation: the whole run a quarter of an hour or more.
+    x = np.tile([1e6, -1e6], 5_000_000)
+    print("begun", flush=True)
+    try:
+        hysid.classical.jiles_atherton(x, saturation=1.0, a=1.0, k=1.0, c=0.1)
+    except KeyboardInterrupt:
+        print("interrupted", flush=True)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGINT to send there")
+def test_ctrl_c_interrupts_a_long_run():
+    process = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(LONG_RUN)], stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "begun\n"
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    assert process.communicate(timeout=60) == ("interrupted\n", None)
+    assert process.returncode == 0
+
+
 @pytest.mark.filterwarnings("ignore:.* what the model was trained on:hysid.HysidWarning")
 def test_models_are_compared(spring_and_slider):
     x, y = spring_and_slider

@@ -15,6 +15,7 @@ mod tests;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 use anyhow::{Context, Result, anyhow};
 use hysid_records::Usage;
@@ -51,6 +52,8 @@ struct Shared {
     studio: Arc<Studio>,
     computing: Arc<Semaphore>,
     diagnosing: Arc<Semaphore>,
+    /// Time after which an answer is given up.
+    longest: Duration,
     is_over: watch::Receiver<bool>,
 }
 
@@ -98,8 +101,13 @@ impl Server {
         let (ending, is_over) = watch::channel(false);
         let keys = Arc::new(Keys::new(Arc::clone(&studio), port)?);
         let semaphore = |permits| Arc::new(Semaphore::new(permits));
-        let shared =
-            Shared { studio, computing: semaphore(COMPUTING), diagnosing: semaphore(DIAGNOSING), is_over };
+        let shared = Shared {
+            studio,
+            computing: semaphore(COMPUTING),
+            diagnosing: semaphore(DIAGNOSING),
+            longest: answer::LONGEST_COMPUTATION,
+            is_over,
+        };
         let ending = Ending { is_over: ending, keys: Arc::clone(&keys) };
         Ok((Self { runtime, listener, shared, keys, port }, ending))
     }

@@ -62,6 +62,9 @@ pub struct Layout {
 /// Largest number of bytes of a column's name, which models and reports repeat.
 const LONGEST_NAME: usize = 10_000;
 
+/// The error of a file without a table.
+const IS_EMPTY: &str = "is empty (expected a header line and rows of numbers)";
+
 impl Layout {
     /// The layout of a text of which the beginning is known; `is_all` if that is all.
     ///
@@ -69,10 +72,10 @@ impl Layout {
     /// An empty text, a line that the names do not fit.
     pub fn find(file: &str, text: &str, is_all: bool, reading: &Reading) -> Result<Self> {
         let lines = lines::lines(text, is_all, reading.skip);
-        ensure!(
-            lines.iter().any(|line| !line.is_blank()),
-            "{file}: is empty (expected a header line and rows of numbers)"
-        );
+        if lines.iter().all(Line::is_blank) {
+            ensure!(is_all, "{file}: begins with more than {} blank lines (remove them)", lines.len());
+            bail!("{file}: {IS_EMPTY}");
+        }
         let delimiters = reading.delimiter.as_ref().map_or(&Delimiter::ALL[..], std::slice::from_ref);
         let runs: Vec<Vec<Run>> = delimiters.iter().map(|&delimiter| Run::all(&lines, delimiter)).collect();
         let all = runs.iter().flat_map(|runs| runs.iter().map(move |run| (run, runs)));
@@ -111,7 +114,7 @@ impl Layout {
     /// Of a text without a row of numbers: its first line is the header, and what follows is told where it is read.
     fn without_rows(file: &str, lines: &[Line<'_>], reading: &Reading) -> Result<Self> {
         let Some(place) = lines.iter().position(|line| !line.is_blank() && !line.is_comment) else {
-            bail!("{file}: is empty (expected a header line and rows of numbers)");
+            bail!("{file}: {IS_EMPTY}");
         };
         let line = &lines[place];
         let most = |&delimiter: &Delimiter| cells::split(line.text, delimiter).len();
@@ -304,7 +307,8 @@ mod tests {
     fn text_without_rows_has_the_first_line_as_its_header() {
         assert_eq!(names("t;x;y\n"), ["t", "x", "y"]);
         assert_eq!(names("# remark\nt,x\na,b\n"), ["t", "x"]);
-        let error = Layout::find("f", " \n\n", true, &Reading::default()).unwrap_err().to_string();
-        assert!(error.starts_with("f: is empty"), "{error}");
+        let error = |is_all| Layout::find("f", " \n\n", is_all, &Reading::default()).unwrap_err().to_string();
+        assert!(error(true).starts_with("f: is empty"), "{}", error(true));
+        assert_eq!(error(false), "f: begins with more than 2 blank lines (remove them)");
     }
 }

@@ -11,8 +11,9 @@ mod validate;
 
 use std::borrow::Cow;
 
+use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
-use crate::error::Result;
+use crate::error::{Channel, DataProblem, Result};
 use crate::fit::initial_state::Wanted;
 use crate::fit::law::search::SearchProgress;
 use crate::fit::network::random_stops::{RandomStopsOptions, fit_random_stops_until};
@@ -37,6 +38,7 @@ pub use validate::cross_validate;
 /// # Errors
 /// Data from which no model can be identified, invalid options, or a stop before there was a model.
 pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
+    check_warm_up(data, request)?;
     match request {
         FitSpec::Network(options) => network::fit(data, options, observer),
         FitSpec::Auto(options) => auto::fit(data, options, observer),
@@ -44,6 +46,24 @@ pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) 
             random_stops(data, options, observer)
         }
         FitSpec::Classical(options) => of_law(data, options, observer),
+    }
+}
+
+/// Checks that a warm-up leaves enough to train on.
+fn check_warm_up(data: &Dataset, request: &FitSpec) -> Result<()> {
+    let warm_up = match request {
+        FitSpec::Network(options) => options.shaping.warm_up,
+        FitSpec::Auto(options) => options.warm_up.unwrap_or(0),
+        FitSpec::Classical(options) => options.shaping.warm_up,
+    };
+    if warm_up == 0 || data.scored() < FEWEST_ROWS {
+        return Ok(());
+    }
+    let found = data.clone().warmed_up(warm_up).scored();
+    let problem = DataProblem::LongWarmUp { warm_up, found, needed: FEWEST_ROWS };
+    match found < FEWEST_ROWS {
+        true => Err(data.records()[0].defect(None, Some(Channel::Output), problem)),
+        false => Ok(()),
     }
 }
 

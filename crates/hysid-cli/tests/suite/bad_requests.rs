@@ -69,6 +69,8 @@ fn columns() {
             2 fit good.csv --input x --output x => column "x" is named twice, by --output and --input
             2 fit inputs.csv --model pnn => pnn takes one input, not 2: use xpnn+, or choose one input with --input
             1 fit inputs.csv --rate central => inputs.csv: there is no time column to compute the rate from (name it with --time, or use --rate none)
+            1 fit good.csv --warm-up 60 => good.csv: column "y" has only 0 rows with an output after a warm-up of 60 rows: at least 10 are needed to identify a model (shorten the warm-up)
+            1 fit good.csv --model masing --warm-up 55 => good.csv: column "y" has only 5 rows with an output after a warm-up of 55 rows: at least 10 are needed to identify a model (shorten the warm-up)
             1 fit good.csv other.csv => other.csv: there is no column "x", as in good.csv (columns: t, a, b)
         "#,
     );

@@ -1,6 +1,6 @@
 //! Answers: JSON, arrays of numbers, downloads, and problems in words.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use axum::Json;
@@ -61,7 +61,7 @@ impl IntoResponse for Problem {
 pub type Answer<T> = Result<T, Problem>;
 
 /// Time after which an answer is given up.
-const LONGEST_COMPUTATION: Duration = Duration::from_secs(600);
+pub const LONGEST_COMPUTATION: Duration = Duration::from_secs(600);
 
 /// Computes an answer on a thread of its own: reads tables or runs models, one of few at a time.
 pub async fn computed<T: Send + 'static>(
@@ -89,19 +89,37 @@ pub async fn at_once<T: Send + 'static>(
     on_a_thread(shared, None, compute).await
 }
 
+/// A permit to compute, given back by whichever ends first: the computation or the longest time of one. A computation
+/// without an end so holds up no other for ever.
+struct Turn(Arc<Mutex<Option<OwnedSemaphorePermit>>>);
+
+impl Drop for Turn {
+    fn drop(&mut self) {
+        drop(self.0.lock().unwrap_or_else(PoisonError::into_inner).take());
+    }
+}
+
 async fn on_a_thread<T: Send + 'static>(
     shared: Shared,
     permit: Option<OwnedSemaphorePermit>,
     compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
 ) -> Answer<T> {
-    let studio = shared.studio;
+    let (studio, longest) = (shared.studio, shared.longest);
+    let permit = Turn(Arc::new(Mutex::new(permit)));
+    let taken_back = Turn(Arc::clone(&permit.0));
+    let timer = tokio::spawn(async move {
+        tokio::time::sleep(longest).await;
+        drop(taken_back);
+    });
     let result = tokio::task::spawn_blocking(move || {
         let _permit = permit;
         compute(&studio)
     });
-    let words = "this takes more than ten minutes and was stopped: use fewer rows";
+    let words = "this takes more than ten minutes: use fewer rows";
     let late = |_| Problem::new(StatusCode::GATEWAY_TIMEOUT, words);
-    match tokio::time::timeout(LONGEST_COMPUTATION, result).await.map_err(late)? {
+    let outcome = tokio::time::timeout(longest, result).await;
+    timer.abort();
+    match outcome.map_err(late)? {
         Ok(result) => Ok(result?),
         Err(_) => Err(Problem::new(
             StatusCode::INTERNAL_SERVER_ERROR,
@@ -191,6 +209,30 @@ pub fn value(value: impl Serialize) -> Response {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_computation_without_an_end_holds_up_others_for_its_longest_time_only() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = crate::folder::Folder::open(Some(place.path())).unwrap();
+        let one = || Arc::new(tokio::sync::Semaphore::new(1));
+        let (ending, is_over) = tokio::sync::watch::channel(false);
+        let shared = Shared {
+            studio: Arc::new(Studio::open(folder).unwrap()),
+            computing: one(),
+            diagnosing: one(),
+            longest: Duration::from_millis(50),
+            is_over,
+        };
+        let (release, released) = std::sync::mpsc::channel::<()>();
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async {
+            let first = computed(shared.clone(), move |_| Ok(released.recv().is_ok())).await;
+            assert_eq!(first.unwrap_err().status, StatusCode::GATEWAY_TIMEOUT);
+            assert_eq!(computed(shared.clone(), |_| Ok(7)).await.ok(), Some(7));
+            assert_eq!(shared.computing.available_permits(), 1);
+        });
+        drop((release, ending));
+    }
 
     #[test]
     fn arrays_follow_each_other_in_little_endian() {

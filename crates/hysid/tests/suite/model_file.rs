@@ -318,3 +318,29 @@ fn warnings_give_the_share_of_samples_beyond_the_training() {
     assert_eq!(name, "the rate of x");
     assert!((share_percent - 100.0 / 120.0).abs() < 1e-9);
 }
+
+#[test]
+fn a_model_whose_rows_take_too_long_is_refused() {
+    let options = hysid::Fit::new().model("jiles-atherton").option("members", 2).option("starts", 2);
+    let model = options.option("epochs", 1).run(&dataset(1)).unwrap();
+    let written = model.to_json();
+    let text = |pinning: f64, members: usize| {
+        let (head, rest) = written.split_once("\"ensemble\": ").unwrap();
+        let mut values = serde_json::Deserializer::from_str(rest).into_iter::<serde_json::Value>();
+        let mut ensemble = values.next().unwrap().unwrap();
+        let rest = &rest[values.byte_offset()..];
+        let voices = ensemble["group"]["voices"][0]["who"]["group"]["voices"].as_array_mut().unwrap();
+        *voices = (0..members)
+            .map(|member| serde_json::json!({"weights": voices[0]["weights"], "who": {"member": member}}))
+            .collect();
+        let mut member = ensemble["members"][0].clone();
+        member["law"]["jiles-atherton"]["k"] = pinning.into();
+        ensemble["members"] = vec![member; members].into();
+        with_fitting_checksum(&format!("{head}\"ensemble\": {ensemble}{rest}"))
+    };
+    // Each of 4,000 steps a row takes 200 operations.
+    for (pinning, members) in [(0.5, 200), (1e-5, 100)] {
+        Model::from_json(&text(pinning, members)).unwrap();
+    }
+    assert!(refusal(&text(1e-5, 200)).contains("too slow: a row would take longer than 0.1 s"));
+}
