@@ -173,7 +173,7 @@ pub struct Overwriting {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Columns")]
 pub struct ColumnOptions {
-    /// Record of each row [default: `record` or `segment`]
+    /// Record of each row [default: a column `record`]
     ///
     /// A column with the name of the record; the rows of a record must follow each other. Without such a column, each table is
     /// one record.

@@ -510,6 +510,12 @@ impl Model {
         }
     }
 
+    /// The same of a row in which the input travels through the trained range.
+    pub fn work_of_longest_row(&self) -> f64 {
+        let (low, high) = self.trained.inputs.first().copied().unwrap_or_default();
+        self.work_of_row(high - low, 0.0)
+    }
+
     /// True if the model needs time stamps.
     pub fn needs_time(&self) -> bool {
         self.body.needs_steps() || self.rate.is_some_and(|rate| rate != RateMethod::Given)

@@ -29,7 +29,7 @@ library they are arguments of `fit`.
 | `--json` | print the result as one JSON object | off |
 | `--quiet` (`-q`) | only warnings and errors on stderr | off |
 | `--time` | column of time stamps | a column that is named like time |
-| `--record` | column with the record of each row | `record` or `segment`; otherwise each table is a record |
+| `--record` | column with the record of each row | a column `record`; otherwise each table is a record |
 | `--input` | column of an input; repeat for several | from names and values |
 | `--output` | column of the output | from names and values; where they tell nothing, the last column |
 | `--rate` | rate of the first input: `auto`, `none`, `central`, `backward`, `savitzky-golay` or a column with the rate | `auto`: `backward` if the model uses a rate and the data pass each place at several speeds; else `none` |

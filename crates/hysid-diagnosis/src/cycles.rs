@@ -10,6 +10,7 @@ mod creep;
 mod division;
 mod field;
 mod figure;
+mod joint;
 mod losses;
 mod path;
 mod quantities;

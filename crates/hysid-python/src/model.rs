@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use hysid::data::initial_state::InitialState;
-use hysid::data::record::Excitation;
+use hysid::data::record::{Excitation, Record};
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
@@ -20,7 +20,7 @@ use pyo3::types::PyDict;
 
 use crate::data::{Column, Dataset, NewColumn, values};
 use crate::failure::{not_written, refused};
-use crate::interruption::interruptible;
+use crate::interruption::{interruptible, interruptible_if_long};
 use crate::inverse::{Bounds, Inverse};
 
 /// A fitted model.
@@ -132,7 +132,10 @@ impl Model {
     ) -> PyResult<NewColumn<'py>> {
         let model = self.begun(initial_state)?;
         let run = move |excitation: &Excitation<'_>| model.response(excitation);
-        Ok(PyArray1::from_vec(py, driven(py, name, time, inputs, rate, run)?))
+        Ok(PyArray1::from_vec(
+            py,
+            driven(py, self.model.work_of_longest_row(), name, time, inputs, rate, run)?,
+        ))
     }
 
     /// As `simulate`, with a band of this probability in so many of ten data sets: output, lower and upper edge.
@@ -151,7 +154,8 @@ impl Model {
         let model = self.begun(initial_state)?;
         let level = BandLevel { probability, of_ten };
         let run = move |excitation: &Excitation<'_>| model.predict(excitation, level);
-        let Prediction { output, low, high } = driven(py, name, time, inputs, rate, run)?;
+        let Prediction { output, low, high } =
+            driven(py, self.model.work_of_longest_row(), name, time, inputs, rate, run)?;
         Ok([output, low, high].map(|column| PyArray1::from_vec(py, column)))
     }
 
@@ -174,7 +178,9 @@ impl Model {
             true => model.evaluate_after_warm_up(&set),
             false => model.evaluate(&set).map(Some),
         };
-        let errors = interruptible(py, evaluate)?;
+        let operations = self.model.work_of_longest_row()
+            * data.set.records().iter().map(Record::len).sum::<usize>() as f64;
+        let errors = interruptible_if_long(py, operations, evaluate)?;
         let errors = errors.ok_or_else(|| refused("no row after the warm-up has a measured output"))?;
         serde_json::to_string(&errors).map_err(refused)
     }
@@ -263,6 +269,7 @@ impl Model {
 /// Runs something over a copy of one record: what another thread does to the arrays meanwhile changes nothing.
 fn driven<T: Send + 'static>(
     py: Python<'_>,
+    work_of_row: f64,
     name: &str,
     time: Option<Column<'_>>,
     inputs: Vec<Column<'_>>,
@@ -273,7 +280,8 @@ fn driven<T: Send + 'static>(
     let inputs = inputs.iter().map(values).collect::<PyResult<Vec<_>>>()?;
     let [time, rate] = [time, rate].map(|column| column.as_ref().map(values).transpose());
     let (time, rate) = (time?, rate?);
-    interruptible(py, move || {
+    let operations = work_of_row * inputs.first().map_or(0, Vec::len) as f64;
+    interruptible_if_long(py, operations, move || {
         let mut excitation = Excitation::new(&name, inputs.iter().map(Vec::as_slice).collect())?;
         if let Some(time) = &time {
             excitation = excitation.with_time(time)?;

@@ -23,12 +23,9 @@ pub use run::is_row;
 /// Lines that a layout is found from.
 const MOST_LINES: usize = 300;
 
-/// Names of the column that tells records apart.
-const RECORDS: [&str; 2] = ["record", "segment"];
-
-/// True for the name of a column that tells records apart.
+/// True for the name of a column that tells records apart. A `segment` may be a part of one record.
 pub fn is_record(name: &str) -> bool {
-    RECORDS.iter().any(|record| name.eq_ignore_ascii_case(record))
+    name.eq_ignore_ascii_case("record")
 }
 
 /// Rows with names that are a table, and no part of a preamble.

@@ -72,7 +72,7 @@ pub struct Force {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Columns")]
 pub struct MotionOptions {
-    /// Record of each row [default: `record` or `segment`]
+    /// Record of each row [default: a column `record`]
     #[arg(long, value_name = "COLUMN", hide_short_help = true)]
     pub record: Option<String>,
     /// Time stamps [default: `t` or `time`, also with a unit]

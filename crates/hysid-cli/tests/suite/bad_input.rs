@@ -87,7 +87,7 @@ fn rows_and_cells() {
             ("empty time", with_cell(15, 0, "").into()),
             ("overflow", with_cell(4, 1, "1e999").into()),
             ("records torn apart", alternating.replacen("t,", "record,", 1).into()),
-            ("record without name", with_cell(3, 0, "").replacen("t,", "Segment,", 1).into()),
+            ("record without name", with_cell(3, 0, "").replacen("t,", "Record,", 1).into()),
         ],
         r#"
         long row => , line 7: has 4 cells where the header has 3 (decimal commas? separate the columns by semicolons)
@@ -105,7 +105,7 @@ fn rows_and_cells() {
         empty time => , line 17, column "t": the cell is empty (only the output may be blank; choose rows with --rows)
         overflow => , line 6, column "x": "1e999" is too large for a number (see `hysid look data.csv`)
         records torn apart => , line 12, column "record": record "a" continues after another record (keep its rows together)
-        record without name => , line 5, column "Segment": the cell is empty (every row needs the name of its record)
+        record without name => , line 5, column "Record": the cell is empty (every row needs the name of its record)
     "#,
     );
 }

@@ -381,8 +381,7 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
             "its lead-in has {found} turning points, at most {MOST_TURNS} are possible"
         )));
     }
-    let (low, high) = model.trained.inputs.first().copied().unwrap_or_default();
-    if model.work_of_row(high - low, 0.0) > LARGEST_WORK {
+    if model.work_of_longest_row() > LARGEST_WORK {
         return Err(Error::Parts("it is too slow: a row would take longer than 0.1 s".into()));
     }
     if model.is_periodic && !model.lead_in.is_empty() {

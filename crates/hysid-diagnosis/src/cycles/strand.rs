@@ -22,13 +22,22 @@ struct StrandPoint {
 impl Strand {
     /// Goes on along a branch.
     pub fn extend(&mut self, branch: &Branch) {
-        self.extend_from(branch, branch.from);
+        self.extend_where(branch, |_| true);
     }
 
     /// Goes on along the part of a branch after an input.
     pub fn extend_from(&mut self, branch: &Branch, from: f64) {
-        let is_after = |x: f64| from == branch.from || if branch.rises() { x >= from } else { x <= from };
-        let points = branch.curve.points_with_deviation().filter(|(x, ..)| is_after(*x));
+        let is_all = from == branch.from;
+        self.extend_where(branch, |x| is_all || if branch.rises() { x >= from } else { x <= from });
+    }
+
+    /// Goes on along the part of a branch before an input.
+    pub fn extend_until(&mut self, branch: &Branch, until: f64) {
+        self.extend_where(branch, |x| if branch.rises() { x <= until } else { x >= until });
+    }
+
+    fn extend_where(&mut self, branch: &Branch, is_on: impl Fn(f64) -> bool) {
+        let points = branch.curve.points_with_deviation().filter(|(x, ..)| is_on(*x));
         let mut points: Vec<StrandPoint> =
             points.map(|(x, y, deviation)| StrandPoint { x, y, deviation }).collect();
         if !branch.rises() {

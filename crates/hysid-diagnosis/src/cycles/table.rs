@@ -13,6 +13,7 @@ use super::correction::gap;
 use super::creep::{Hold, holds};
 use super::division::{Division, LAST_STEP, Span, SpanPart, choose, divide, level, output_closes};
 use super::field::Field;
+use super::joint::joint;
 use super::losses::{LossAtFrequency, losses};
 use super::path::{Closure, Path, area, at, range, weights, width};
 use super::reading::{Widest, output_at_end, secant, widest};
@@ -444,31 +445,35 @@ impl Reader<'_> {
     }
 
     /// The way from a turning point on until the input reaches `target`, and no further than where it turns beyond
-    /// `limit`. If the record ends before, a loop that closes goes on where it began.
+    /// `limit`. A loop that closes goes on where it began; one that does not, into the next cycle.
     fn strand(&self, tip: &Tip, target: f64, limit: f64) -> Strand {
         let falls = target < tip.input;
         let is_past = |x: f64, level: f64| if falls { x <= level } else { x >= level };
         // A smaller loop that goes through the middle is not on the way.
         let back = (0.5 - BACK) * target + (0.5 + BACK) * tip.input;
+        let (x, (from, to)) = (&self.record.inputs()[0], (self.span.from, self.span.to));
+        let closes = output_closes(self.survey, self.record.output(), (from, to));
         let mut strand = Strand::default();
         for branch in self.branches.get(tip.leaves..).unwrap_or_default() {
             let turns_back = is_past(branch.from, back) && !is_past(branch.to, back);
             if is_past(limit, branch.to) || turns_back {
                 return strand;
             }
+            if closes && to < (branch.rows.end - 1) as f64 {
+                strand.extend_until(branch, at(x, to));
+                break;
+            }
             strand.extend(branch);
             if is_past(branch.to, target) {
                 return strand;
             }
         }
-        let (from, to) = (self.span.from, self.span.to);
-        let ends_there = to >= (self.record.len() - 1) as f64;
-        if !ends_there || !output_closes(self.survey, self.record.output(), (from, to)) {
+        if !closes {
             return strand;
         }
         for (place, branch) in self.branches[self.span.branches.clone()].iter().enumerate() {
             match place {
-                0 => strand.extend_from(branch, at(&self.record.inputs()[0], from)),
+                0 => strand.extend_from(branch, at(x, from)),
                 _ => strand.extend(branch),
             }
             if is_past(branch.to, target) {
@@ -497,11 +502,12 @@ impl Reader<'_> {
             return;
         };
         let (middle, swing, height) = (0.5 * (low + high), high - low, (peak - valley).abs());
-        if let Some(jump) = self.jump_at_the_end().filter(|jump| jump.abs() > OPEN * height) {
+        if let Some(joint) =
+            joint(self.record, self.span, self.branches, self.survey.output_noise.deviation())
+        {
             row.notes.push(format!(
-                "no coercive field and no remanence: the output jumps by {:.2} where the cycle ends, as between \
-                 records one after the other (--record names a column that tells them apart)",
-                Significant(jump.abs())
+                "no coercive field and no remanence: {joint} as between records one after the other (--record names a \
+                 column that tells them apart)"
             ));
             return;
         }
@@ -540,21 +546,6 @@ impl Reader<'_> {
         if row.remanent_output.is_none() {
             row.notes.push("a branch does not pass the input 0: no remanence".into());
         }
-    }
-
-    /// By how much a step of the output at the end of the cycle differs from those before and after, if they are smaller.
-    fn jump_at_the_end(&self) -> Option<f64> {
-        let y = self.record.output();
-        // The passing of the level is rounded to this row or to the next.
-        let row = self.span.to.round() as usize;
-        let steps: Vec<f64> =
-            y.get(row.checked_sub(3)?..row + 4)?.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let place = (2..4).max_by(|&a, &b| steps[a].abs().total_cmp(&steps[b].abs()))?;
-        let beside = || steps[..place].iter().chain(&steps[place + 1..]);
-        let jump = steps[place] - beside().sum::<f64>() / beside().count() as f64;
-        let usual = beside().fold(0.0, |most: f64, step| most.max(step.abs()));
-        let noise = SURE * SQRT_2 * self.survey.output_noise.deviation();
-        (jump.abs() > usual + noise).then_some(jump)
     }
 
     /// A loop whose output does not come back with the input.
