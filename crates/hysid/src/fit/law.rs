@@ -23,14 +23,15 @@ pub mod search;
 
 use hysid_core::for_each_law;
 
+use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::law::linearised::Linearised;
-use crate::fit::law::search::{Identified, SearchObserver};
+use crate::fit::law::linearised::{LawFamily, Linearised};
+use crate::fit::law::search::{Identified, SearchObserver, search};
+use crate::law::series::Series;
 use crate::law::{Classical, Law};
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::stop_check::StopCheck;
-use crate::termination::Termination;
 
 /// A law that can be identified from data.
 pub trait Identify: Law {
@@ -70,43 +71,33 @@ pub trait Identify: Law {
     }
 }
 
-/// A law that is found by least squares from one start. There are no rounds, so the observer is not called.
-pub trait LeastSquaresLaw: Law {
-    /// The law; after a stop, the best of those compared so far.
-    ///
-    /// # Errors
-    /// As [`Identify::identify`].
-    fn fitted(data: &Dataset, options: &ClassicalOptions, stop: StopCheck<'_>) -> Result<Self>;
+/// A law that is found by a search over a family.
+pub(crate) trait SearchedLaw: Law + Into<Classical> {
+    /// The family, in the form of the search.
+    type Family: LawFamily<Law = Self>;
 
-    /// As [`Identify::linearised`].
+    /// The family to search, and the rows that it is compared with.
     ///
     /// # Errors
-    /// As [`Identify::identify`].
-    fn linearised_weights(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
-        let _ = (data, options);
-        Ok(None)
-    }
+    /// Invalid options, or a rate that cannot be computed.
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Self::Family, Vec<Series>)>;
 }
 
-impl<L: LeastSquaresLaw> Identify for L {
+impl<L: SearchedLaw> Identify for L {
     fn identify(
         data: &Dataset,
         options: &ClassicalOptions,
-        _: &mut SearchObserver<'_>,
+        observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
-        let (law, termination) = (L::fitted(data, options, stop)?, Termination::Converged);
-        Ok(Identified {
-            law,
-            train_nrmse_percent: f64::NAN,
-            evaluations: 1,
-            termination,
-            searched: Vec::new(),
-        })
+        data.check_identifiable(FEWEST_ROWS)?;
+        let (family, series) = L::family(data, options)?;
+        search(&family, &series, options, observer, stop)
     }
 
     fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
-        self.linearised_weights(data, options)
+        let (family, series) = L::family(data, options)?;
+        Ok(Some(linearised::of_search(&family, &series, self)))
     }
 }
 

@@ -1,54 +1,34 @@
 //! Identification of a Bouc-Wen law: `z_u`, `b`, `n` and the degradation are found by search, and for each of
 //! their values stiffnesses, offset and damping by least squares.
 
-use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::law::Identify;
-use crate::fit::law::linearised::{self, LawFamily, Linearised};
-use crate::fit::law::search::{
-    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
-};
+use crate::fit::law::SearchedLaw;
+use crate::fit::law::linearised::LawFamily;
+use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
 use crate::law::Sample;
 use crate::law::bouc_wen::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
 use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;
-use crate::stop_check::StopCheck;
 
 /// Elementary operations of a row, roughly: it may take some hundred steps.
 const OPERATIONS_A_ROW: usize = 5000;
 
-impl Identify for BoucWen {
-    fn identify(
-        data: &Dataset,
-        options: &ClassicalOptions,
-        observer: &mut SearchObserver<'_>,
-        stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
-        data.check_identifiable(FEWEST_ROWS)?;
-        let (family, series) = posed(data, options)?;
-        let effort = Effort::of(options);
-        search(&family, &series, effort, observer, stop)
-    }
+impl SearchedLaw for BoucWen {
+    type Family = Elements;
 
-    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
-        let (family, series) = posed(data, options)?;
-        Ok(Some(linearised::of_search(&family, &series, self)))
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Elements, Vec<Series>)> {
+        // The rate only adds to the output, so it is no part of the memory.
+        let series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
+        let (low, high) = data.input_range(0);
+        // The element starts at 0: an input far from it is reached by yielding.
+        let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
+        Ok((Elements::new(range, options), series))
     }
-}
-
-/// What is searched, and the rows that it is compared with.
-fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Elements, Vec<Series>)> {
-    // The rate only adds to the output, so it is no part of the memory.
-    let series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
-    let (low, high) = data.input_range(0);
-    // The element starts at 0: an input far from it is reached by yielding.
-    let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
-    Ok((Elements::new(range, options), series))
 }
 
 /// Bouc-Wen elements, in the form of the search.
-struct Elements {
+pub(crate) struct Elements {
     degradation: bool,
     variables: Vec<Variable>,
     non_negative: Vec<bool>,

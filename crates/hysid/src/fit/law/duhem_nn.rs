@@ -20,7 +20,7 @@ use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{
-    Effort, Identified, LawSoFar, Memory, SearchObserver, SearchProgress, spread, thinned_to,
+    Identified, LawSoFar, Memory, SearchObserver, SearchProgress, check_effort, measured, spread, thinned_to,
 };
 use crate::fit::network::least_squares::{OutputProblem, OutputSolution};
 use crate::law::Law;
@@ -70,17 +70,17 @@ impl Identify for DuhemNn {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let effort = Effort::of(options).validated()?;
+        check_effort(options)?;
         let frame = Frame::new(data, options)?;
         let whole = Task::new(&frame, data, options, stop)?;
         // Nothing is to be chosen from a single start, so that it is trained on all data.
-        let split = if effort.starts > 1 { data.split_for_validation(HELD_OUT) } else { None };
+        let split = if options.starts() > 1 { data.split_for_validation(HELD_OUT) } else { None };
         let Some((kept, held)) = split else {
-            return Training::new(&whole, None, effort)?.run(&whole, observer);
+            return Training::new(&whole, None, options)?.run(&whole, observer);
         };
         let (kept, held) =
             (Task::new(&frame, &kept, options, stop)?, Task::new(&frame, &held, options, stop)?);
-        Training::new(&kept, Some(&held), effort)?.run(&whole, observer)
+        Training::new(&kept, Some(&held), options)?.run(&whole, observer)
     }
 }
 
@@ -94,14 +94,14 @@ struct Training<'a> {
 }
 
 impl<'a> Training<'a> {
-    fn new(kept: &'a Task<'a>, held: Option<&'a Task<'a>>, effort: Effort) -> Result<Self> {
-        let begin = |start| Walk::new(kept, kept.random(effort.seed, start));
-        let mut walks = MultiStart::new(parallel::numbered(effort.starts, begin));
+    fn new(kept: &'a Task<'a>, held: Option<&'a Task<'a>>, options: &ClassicalOptions) -> Result<Self> {
+        let begin = |start| Walk::new(kept, kept.random(options.seed, start));
+        let mut walks = MultiStart::new(parallel::numbered(options.starts(), begin));
         walks.sort();
         if walks.best().value().objective == f64::INFINITY {
             return Err(Error::Stopped);
         }
-        Ok(Self { kept, held, walks, epochs: effort.epochs })
+        Ok(Self { kept, held, walks, epochs: options.epochs() })
     }
 
     fn run(mut self, whole: &Task<'_>, observer: &mut SearchObserver<'_>) -> Result<Identified<DuhemNn>> {
@@ -194,8 +194,7 @@ impl Frame {
         check_shape(shape)?;
         let layout = Layout::new(shape);
         let (low, high) = data.input_range(0);
-        let measured = series.iter().flat_map(|series| series.output.iter().copied());
-        let (output_mean, output_scale) = spread(&measured.filter(|y| !y.is_nan()).collect::<Vec<f64>>());
+        let (output_mean, output_scale) = spread(&measured(&series));
         let rates = series.iter().flat_map(|series| &series.samples).map(|sample| sample.rate.abs());
         let law = DuhemNn {
             input_centre: 0.5 * low + 0.5 * high,

@@ -5,62 +5,42 @@
 //! divided by it, or if both envelopes are raised and `c` is lowered. The search therefore fixes `γ_l` at 0
 //! and 1 at the ends of the input range.
 
-use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{OptionError, Result};
-use crate::fit::law::Identify;
-use crate::fit::law::linearised::{self, LawFamily, Linearised};
-use crate::fit::law::search::{
-    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
-};
+use crate::fit::law::SearchedLaw;
+use crate::fit::law::linearised::LawFamily;
+use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
 use crate::law::generalized_prandtl_ishlinskii::{
     Envelope, GeneralizedPrandtlIshlinskii, PlayWeights, follow,
 };
 use crate::law::play_weights::MOST_PLAYS;
 use crate::law::series::{Series, slope, work};
 use crate::options::classical::ClassicalOptions;
-use crate::stop_check::StopCheck;
 
 /// An envelope rises by at least this share of its full height over the range of the input: otherwise
 /// it would leap where the input leaves the range.
 const SMALLEST_SHARE: f64 = 0.1;
 
-impl Identify for GeneralizedPrandtlIshlinskii {
-    fn identify(
-        data: &Dataset,
-        options: &ClassicalOptions,
-        observer: &mut SearchObserver<'_>,
-        stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
-        data.check_identifiable(FEWEST_ROWS)?;
+impl SearchedLaw for GeneralizedPrandtlIshlinskii {
+    type Family = Plays;
+
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Plays, Vec<Series>)> {
         let operators = options.operators();
         if operators == 0 || operators > MOST_PLAYS {
             return Err(
                 OptionError::value("operators", operators, format!("choose 1 to {MOST_PLAYS}")).into()
             );
         }
-        let (family, series) = posed(data, options)?;
-        let effort = Effort::of(options);
-        search(&family, &series, effort, observer, stop)
+        let series = Series::all(data, None)?;
+        let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };
+        let lags = sign * work(&series) < 0.0;
+        let series = thinned(series, Memory::TurningPoints);
+        Ok((Plays::new(data.input_range(0), sign, lags, options), series))
     }
-
-    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
-        let (family, series) = posed(data, options)?;
-        Ok(Some(linearised::of_search(&family, &series, self)))
-    }
-}
-
-/// What is searched, and the rows that it is compared with.
-fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Plays, Vec<Series>)> {
-    let series = Series::all(data, None)?;
-    let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };
-    let lags = sign * work(&series) < 0.0;
-    let series = thinned(series, Memory::TurningPoints);
-    Ok((Plays::new(data.input_range(0), sign, lags, options), series))
 }
 
 /// Generalized plays, in the form of the search.
-struct Plays {
+pub(crate) struct Plays {
     low: f64,
     high: f64,
     /// 1 if the output rises with the input, else -1.

@@ -22,7 +22,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::grids::spaced;
-use crate::fit::law::search::{Effort, Identified, LawSoFar, SearchObserver, SearchProgress};
+use crate::fit::law::search::{Identified, LawSoFar, SearchObserver, SearchProgress, check_effort};
 use crate::law::Classical;
 use crate::law::hysteretic_dynamics::{Dynamics, Element, Form, LIMITS, Layout, Shape};
 use crate::optimise::levenberg_marquardt::LevenbergMarquardt;
@@ -142,7 +142,8 @@ pub(super) fn identify(
     stop: StopCheck<'_>,
 ) -> Result<Identified<Dynamics>> {
     data.check_identifiable(FEWEST_ROWS)?;
-    let effort = Effort::of(options).validated()?;
+    check_effort(options)?;
+    let rounds = options.epochs();
     let records = Records::of(data)?;
     let linear = LinearStarts::find(&records, asked, stop).ok_or(Error::Stopped)?;
     let layout = asked.layout();
@@ -161,7 +162,7 @@ pub(super) fn identify(
     };
 
     let begin = |start: usize| Walk::new(&tasks.early, &beginning(start), Kind::of(start, asked));
-    let mut walks = MultiStart::new(parallel::numbered(effort.starts, begin));
+    let mut walks = MultiStart::new(parallel::numbered(options.starts(), begin));
     walks.sort();
     if walks.best().value().objective == f64::INFINITY {
         return Err(Error::Stopped);
@@ -171,16 +172,15 @@ pub(super) fn identify(
         let law = || Some(make(layout.dynamics(best.search.parameters(), &template)));
         let told = observer(SearchProgress {
             round,
-            rounds: effort.epochs,
+            rounds,
             evaluations: walks.evaluations(),
             train_nrmse_percent: best.value().nrmse_percent(),
             law: LawSoFar(Some(&law)),
         });
         if stop.is_asked() { ControlFlow::Break(()) } else { told }
     };
-    let plan =
-        Plan { rounds: effort.epochs, spared: 0, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
-    let advance = |walk: &mut Walk, round: usize| walk.advance(round, effort.epochs, &tasks);
+    let plan = Plan { rounds, spared: 0, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
+    let advance = |walk: &mut Walk, round: usize| walk.advance(round, rounds, &tasks);
     let termination = walks.run(plan, advance, |walks, round| tell(round, walks));
     let best = walks.best();
     let law = layout.dynamics(best.search.parameters(), &template);

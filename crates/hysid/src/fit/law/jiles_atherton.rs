@@ -8,7 +8,7 @@ use crate::error::{Channel, DataProblem, Error, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
-    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+    Columns, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
 use crate::law::series::Series;
@@ -29,9 +29,8 @@ impl Identify for JilesAtherton {
             return Err(first.defect(None, Some(Channel::Input(0)), problem));
         }
         let (family, series) = posed(data, options)?;
-        let effort = Effort::of(options);
         let output = |problem| first.defect(None, Some(Channel::Output), problem);
-        let found = search(&family, &series, effort, observer, stop).map_err(|error| match error {
+        let found = search(&family, &series, options, observer, stop).map_err(|error| match error {
             // All that a search can leave invalid is M_s = 0.
             Error::Parts(_) => output(DataProblem::NoMagnetisation),
             other => other,

@@ -94,11 +94,6 @@ impl Sums {
         }
     }
 
-    /// The same, without keeping the sums beside it.
-    pub fn into_quadratic(self) -> Quadratic {
-        self.quadratic()
-    }
-
     /// Adds the rows of `other` for the factor 1, and takes them away for -1.
     pub fn add(&mut self, other: &Sums, factor: f64) {
         let rows = if factor > 0.0 { self.rows + other.rows } else { self.rows - other.rows };

@@ -8,7 +8,7 @@
 //! follow by least squares. `ŷ_t` is the free run at the scored rows of the fit and `p_i` are the parameters of the law.
 
 use crate::data::record::Thinning;
-use crate::fit::law::search::{Columns, Family};
+use crate::fit::law::search::{Columns, Family, measured};
 use crate::law::Law;
 use crate::law::series::Series;
 use crate::optimise::parallel;
@@ -80,7 +80,7 @@ pub(crate) fn of_search<F: LawFamily>(family: &F, series: &[Series], law: &F::La
     let u: Vec<f64> =
         variables.iter().zip(family.searched(law)).map(|(variable, value)| variable.place(value)).collect();
     let value = |u: &[f64]| -> Vec<f64> { variables.iter().zip(u).map(|(v, &u)| v.value(u)).collect() };
-    let target: Vec<f64> = scored(series).flatten().collect();
+    let target = measured(series);
     let count = family.non_negative().len();
     let columns = |u: &[f64]| {
         let searched = value(u);

@@ -1,52 +1,32 @@
 //! Identification of a LuGre law: presliding displacement, Stribeck effect and Stribeck velocity are found by
 //! search, and for each of their values spring, friction, damping and offset by least squares.
 
-use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::fit::law::Identify;
-use crate::fit::law::linearised::{self, LawFamily, Linearised};
-use crate::fit::law::search::{
-    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
-};
+use crate::fit::law::SearchedLaw;
+use crate::fit::law::linearised::LawFamily;
+use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
 use crate::law::Law;
 use crate::law::lugre::{Lugre, STRIBECK_BOUNDS};
 use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;
-use crate::stop_check::StopCheck;
 
 /// Elementary operations of a row, roughly.
 const OPERATIONS_A_ROW: usize = 60;
 
-impl Identify for Lugre {
-    fn identify(
-        data: &Dataset,
-        options: &ClassicalOptions,
-        observer: &mut SearchObserver<'_>,
-        stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
-        data.check_identifiable(FEWEST_ROWS)?;
-        let (family, series) = posed(data, options)?;
-        let effort = Effort::of(options);
-        search(&family, &series, effort, observer, stop)
-    }
+impl SearchedLaw for Lugre {
+    type Family = Contacts;
 
-    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
-        let (family, series) = posed(data, options)?;
-        Ok(Some(linearised::of_search(&family, &series, self)))
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Contacts, Vec<Series>)> {
+        let rate = options.rate.ok_or(Error::RateNeeded(Lugre::FACTS.name))?;
+        let series = thinned(Series::all(data, Some(rate))?, Memory::Path);
+        let (low, high) = data.input_range(0);
+        Ok((Contacts::new((high - low).max(f64::MIN_POSITIVE), &series), series))
     }
-}
-
-/// What is searched, and the rows that it is compared with.
-fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Contacts, Vec<Series>)> {
-    let rate = options.rate.ok_or(Error::RateNeeded(Lugre::FACTS.name))?;
-    let series = thinned(Series::all(data, Some(rate))?, Memory::Path);
-    let (low, high) = data.input_range(0);
-    Ok((Contacts::new((high - low).max(f64::MIN_POSITIVE), &series), series))
 }
 
 /// LuGre laws, in the form of the search.
-struct Contacts {
+pub(crate) struct Contacts {
     variables: [Variable; 3],
 }
 

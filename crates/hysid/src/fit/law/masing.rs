@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::fit::law::grids::best_on_grids;
 use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic};
 use crate::fit::law::linearised::{Linearised, WeightRows, in_stretches, unit_gradient};
-use crate::fit::law::{LeastSquaresLaw, grids};
+use crate::fit::law::search::{Identified, SearchObserver};
+use crate::fit::law::{Identify, grids};
 use crate::law::masing::{Masing, MasingParts};
 use crate::law::series::Series;
 use crate::operator::{play, stop};
@@ -14,22 +15,25 @@ use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
 /// Linear least squares with a penalty on the bends of the virgin curve, chosen by cross-validation.
-impl LeastSquaresLaw for Masing {
-    fn fitted(data: &Dataset, options: &ClassicalOptions, stop: StopCheck<'_>) -> Result<Self> {
+impl Identify for Masing {
+    fn identify(
+        data: &Dataset,
+        options: &ClassicalOptions,
+        _: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
         // A stop leaves out grids and penalties that were not compared yet.
         let rows = TrainingRows::of(data)?;
         let scaling = &rows.scaling;
         let grids = grids::candidates(options.thresholds.as_deref(), options.operators(), scaling.inputs[0])?;
         let (grid, weights) = best_on_grids(grids, |grid| slopes_on_grid(&rows, grid, options.sign, stop))?;
         let slope = scaling.output_deviation / scaling.inputs[0];
-        Self::new(MasingParts {
-            constant: scaling.output(weights[0]),
-            thresholds: grid,
-            slopes: weights[1..].iter().map(|weight| weight * slope).collect(),
-        })
+        let slopes = weights[1..].iter().map(|weight| weight * slope).collect();
+        let parts = MasingParts { constant: scaling.output(weights[0]), thresholds: grid, slopes };
+        Self::new(parts).map(Identified::by_least_squares)
     }
 
-    fn linearised_weights(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<Linearised>> {
+    fn linearised(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<Linearised>> {
         let (series, rows_each) = in_stretches(Series::all(data, None)?);
         let MasingParts { constant, thresholds, slopes } = self.parts();
         let count = 1 + slopes.len();

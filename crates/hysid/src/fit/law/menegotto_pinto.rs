@@ -1,52 +1,33 @@
 //! Identification of a Menegotto-Pinto law: yield displacement, roundness and isotropic hardening are found by search,
 //! and for each of their values offset, hardening line and strength by least squares.
 
-use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::law::Identify;
-use crate::fit::law::linearised::{self, LawFamily, Linearised};
-use crate::fit::law::search::{
-    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
-};
+use crate::fit::law::SearchedLaw;
+use crate::fit::law::linearised::LawFamily;
+use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
 use crate::law::Law;
 use crate::law::menegotto_pinto::{Downwards, LOSS_BOUNDS, MenegottoPinto};
 use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;
-use crate::stop_check::StopCheck;
 
 /// Elementary operations of a row, roughly.
 const OPERATIONS_A_ROW: usize = 150;
 
-impl Identify for MenegottoPinto {
-    fn identify(
-        data: &Dataset,
-        options: &ClassicalOptions,
-        observer: &mut SearchObserver<'_>,
-        stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
-        data.check_identifiable(FEWEST_ROWS)?;
-        let (family, series) = posed(data, options)?;
-        search(&family, &series, Effort::of(options), observer, stop)
-    }
+impl SearchedLaw for MenegottoPinto {
+    type Family = Steels;
 
-    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
-        let (family, series) = posed(data, options)?;
-        Ok(Some(linearised::of_search(&family, &series, self)))
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Steels, Vec<Series>)> {
+        let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+        let (low, high) = data.input_range(0);
+        // The material is virgin at 0.
+        let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
+        Ok((Steels::new(range, options.asymmetric), series))
     }
-}
-
-/// What is searched, and the rows that it is compared with.
-fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Steels, Vec<Series>)> {
-    let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
-    let (low, high) = data.input_range(0);
-    // The material is virgin at 0.
-    let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
-    Ok((Steels::new(range, options.asymmetric), series))
 }
 
 /// Steels, in the form of the search.
-struct Steels {
+pub(crate) struct Steels {
     range: f64,
     asymmetric: bool,
     variables: Vec<Variable>,

@@ -13,7 +13,8 @@ use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
 use crate::fit::law::linearised::{FitVariable, Linearised, WeightRows, in_stretches, unit_gradient};
-use crate::fit::law::{LeastSquaresLaw, grids};
+use crate::fit::law::search::{Identified, SearchObserver};
+use crate::fit::law::{Identify, grids};
 use crate::law::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
 };
@@ -42,8 +43,13 @@ const ITERATIONS: usize = 40;
 const ITERATIONS_IN_VALIDATION: usize = 10;
 
 /// A convex start, then Levenberg-Marquardt.
-impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
-    fn fitted(data: &Dataset, options: &ClassicalOptions, stop: StopCheck<'_>) -> Result<Self> {
+impl Identify for ModifiedPrandtlIshlinskii {
+    fn identify(
+        data: &Dataset,
+        options: &ClassicalOptions,
+        _: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
         // A stop leaves out priors that were not compared yet, and further refinement.
         let rows = TrainingRows::of(data)?;
         let scaling = &rows.scaling;
@@ -84,10 +90,11 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         let (grid, prior) = candidates[lowest(&scores)];
         let problem = &problems[grid];
         let start = problem.convex_start(prior, stop)?;
-        problem.refine(start, ITERATIONS, stop).in_users_units(&grids[grid], scaling)
+        let refined = problem.refine(start, ITERATIONS, stop);
+        refined.in_users_units(&grids[grid], scaling).map(Identified::by_least_squares)
     }
 
-    fn linearised_weights(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<Linearised>> {
+    fn linearised(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<Linearised>> {
         let (series, rows_each) = in_stretches(Series::all(data, None)?);
         let point = Point::of_law(self);
         let (plays, slopes) = (point.hysteresis.len() - 2, point.slopes.len());
@@ -394,7 +401,7 @@ impl levenberg_marquardt::Problem for Refinement<'_> {
             let residual = y - point.linearise(drive, &mut jacobian);
             gatherer.add(0, &jacobian, residual);
         }
-        let mut sums = gatherer.finish().ok()?.into_total().into_quadratic();
+        let mut sums = gatherer.finish().ok()?.into_total().quadratic();
         sums.penalise(&self.penalty, point.prior.ridge);
         let mut gradient: Vec<f64> = sums.right.iter().map(|right| -right).collect();
         for (slope, weight) in gradient.iter_mut().zip(&point.hysteresis).skip(2) {

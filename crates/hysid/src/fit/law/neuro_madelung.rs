@@ -18,7 +18,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::search::{
-    Effort, Identified, LawSoFar, Memory, SearchObserver, SearchProgress, spread, thinned,
+    Identified, LawSoFar, Memory, SearchObserver, SearchProgress, check_effort, measured, spread, thinned,
 };
 use crate::law::neuro_madelung::{Branch, LARGEST_WEIGHT, MOST_HIDDEN, NeuroMadelung, argument};
 use crate::law::series::Series;
@@ -39,6 +39,7 @@ const DECAY: f64 = 1e-5;
 const HELD_OUT: f64 = 0.25;
 /// After so many epochs of free run half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 8;
+
 impl Identify for NeuroMadelung {
     fn identify(
         data: &Dataset,
@@ -52,15 +53,15 @@ impl Identify for NeuroMadelung {
             let needed = format!("choose 1 to {MOST_HIDDEN}");
             return Err(OptionError::value("hidden", hidden, needed).into());
         }
-        let effort = Effort::of(options).validated()?;
+        check_effort(options)?;
         let frame = frame(data, options)?;
         let whole = Task::new(&frame, data, options, stop)?;
         let Some((kept, held)) = data.split_for_validation(HELD_OUT) else {
-            return Training::new(&whole, &whole, effort).run(&whole, observer);
+            return Training::new(&whole, &whole, options).run(&whole, observer);
         };
         let (kept, held) =
             (Task::new(&frame, &kept, options, stop)?, Task::new(&frame, &held, options, stop)?);
-        Training::new(&kept, &held, effort).run(&whole, observer)
+        Training::new(&kept, &held, options).run(&whole, observer)
     }
 }
 
@@ -74,9 +75,9 @@ struct Training<'a> {
 }
 
 impl<'a> Training<'a> {
-    fn new(kept: &'a Task<'a>, held: &'a Task<'a>, effort: Effort) -> Self {
-        let walks = parallel::numbered(effort.starts, |start| Walk::new(kept, effort.seed, start));
-        Self { kept, held, walks: MultiStart::new(walks), epochs: effort.epochs }
+    fn new(kept: &'a Task<'a>, held: &'a Task<'a>, options: &ClassicalOptions) -> Self {
+        let walks = parallel::numbered(options.starts(), |start| Walk::new(kept, options.seed, start));
+        Self { kept, held, walks: MultiStart::new(walks), epochs: options.epochs() }
     }
 
     fn run(
@@ -174,9 +175,7 @@ fn progress(walks: &MultiStart<Walk>, round: usize, rounds: usize) -> SearchProg
 fn frame(data: &Dataset, options: &ClassicalOptions) -> Result<NeuroMadelung> {
     let (low, high) = data.input_range(0);
     let series = Series::all(data, options.rate)?;
-    let measured: Vec<f64> =
-        series.iter().flat_map(|series| series.output.iter().copied().filter(|y| !y.is_nan())).collect();
-    let (output_mean, output_scale) = spread(&measured);
+    let (output_mean, output_scale) = spread(&measured(&series));
     let samples = series.iter().flat_map(|series| &series.samples);
     let rate = samples.map(|sample| sample.rate.abs()).fold(1e-100, f64::max);
     Ok(NeuroMadelung {

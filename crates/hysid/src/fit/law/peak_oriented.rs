@@ -1,52 +1,33 @@
 //! Identification of a peak-oriented law: yield displacements, shapes and degradation are found by search, and for
 //! each of their values offset and strengths by least squares.
 
-use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::law::Identify;
-use crate::fit::law::linearised::{self, LawFamily, Linearised};
-use crate::fit::law::search::{
-    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
-};
+use crate::fit::law::SearchedLaw;
+use crate::fit::law::linearised::LawFamily;
+use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
 use crate::law::Law;
 use crate::law::peak_oriented::{Degradation, PINCH_BOUNDS, PeakOriented, Side};
 use crate::law::series::{Series, work};
 use crate::options::classical::ClassicalOptions;
-use crate::stop_check::StopCheck;
 
 /// Elementary operations of a row, roughly.
 const OPERATIONS_A_ROW: usize = 100;
 
-impl Identify for PeakOriented {
-    fn identify(
-        data: &Dataset,
-        options: &ClassicalOptions,
-        observer: &mut SearchObserver<'_>,
-        stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
-        data.check_identifiable(FEWEST_ROWS)?;
-        let (family, series) = posed(data, options)?;
-        search(&family, &series, Effort::of(options), observer, stop)
-    }
+impl SearchedLaw for PeakOriented {
+    type Family = Members;
 
-    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
-        let (family, series) = posed(data, options)?;
-        Ok(Some(linearised::of_search(&family, &series, self)))
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Members, Vec<Series>)> {
+        let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+        let (low, high) = data.input_range(0);
+        // The member is virgin at 0.
+        let range = high.max(-low).max(f64::MIN_POSITIVE);
+        Ok((Members::new(range, work(&series) < 0.0, options), series))
     }
-}
-
-/// What is searched, and the rows that it is compared with.
-fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Members, Vec<Series>)> {
-    let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
-    let (low, high) = data.input_range(0);
-    // The member is virgin at 0.
-    let range = high.max(-low).max(f64::MIN_POSITIVE);
-    Ok((Members::new(range, work(&series) < 0.0, options), series))
 }
 
 /// Members, in the form of the search.
-struct Members {
+pub(crate) struct Members {
     range: f64,
     asymmetric: bool,
     degradation: bool,

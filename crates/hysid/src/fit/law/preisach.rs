@@ -11,8 +11,9 @@
 
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
-use crate::fit::law::LeastSquaresLaw;
+use crate::fit::law::Identify;
 use crate::fit::law::linear::{Choice, FoldSums, Gatherer, TrainingRows, logarithmic};
+use crate::fit::law::search::{Identified, SearchObserver};
 use crate::law::preisach::plane::Plane;
 use crate::law::preisach::{MOST_INTERVALS, Preisach, PreisachWeights};
 use crate::law::series::Series;
@@ -30,8 +31,13 @@ const INTERVALS_FOR_CHOICE: usize = 20;
 const EVEN_SHARE: f64 = 0.5;
 
 /// Linear least squares with a smoothness penalty chosen by cross-validation.
-impl LeastSquaresLaw for Preisach {
-    fn fitted(data: &Dataset, options: &ClassicalOptions, stop: StopCheck<'_>) -> Result<Self> {
+impl Identify for Preisach {
+    fn identify(
+        data: &Dataset,
+        options: &ClassicalOptions,
+        _: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
         // A stop leaves out folds of the choice, and the finer plane.
         let rows = TrainingRows::of(data)?;
         let TrainingRows { series, folds, scaling } = &rows;
@@ -53,10 +59,10 @@ impl LeastSquaresLaw for Preisach {
             let sums = fine.sums(series, scaling, &RowFolds::none(data), stop);
             match sums.and_then(|sums| fine.weighted(sums, choice, scaling, stop)) {
                 Err(Error::Stopped) => {}
-                fitted => return fitted,
+                fitted => return fitted.map(Identified::by_least_squares),
             }
         }
-        coarse.weighted(sums, choice, scaling, stop)
+        coarse.weighted(sums, choice, scaling, stop).map(Identified::by_least_squares)
     }
 }
 
@@ -219,7 +225,7 @@ impl Problem {
         scaling: &Scaling,
         stop: StopCheck<'_>,
     ) -> Result<Preisach> {
-        let mut penalised = sums.into_total().into_quadratic();
+        let mut penalised = sums.into_total().quadratic();
         penalised.penalise(&self.penalty, choice.factor);
         let bounds = Bounds::new(choice.sign, self.reversible(), self.features());
         let weights = penalised.last_minimum(&bounds, stop)?;

@@ -1,14 +1,11 @@
 //! Identification of a rate-dependent Prandtl-Ishlinskii model: the thresholds and their growth are found by
 //! search, and for each of their values the weights by least squares.
 
-use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
-use crate::fit::law::Identify;
-use crate::fit::law::linearised::{self, LawFamily, Linearised};
-use crate::fit::law::search::{
-    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
-};
+use crate::fit::law::SearchedLaw;
+use crate::fit::law::linearised::LawFamily;
+use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
 use crate::law::Law;
 use crate::law::play_weights::MOST_PLAYS;
 use crate::law::rate_dependent_prandtl_ishlinskii::{
@@ -16,57 +13,31 @@ use crate::law::rate_dependent_prandtl_ishlinskii::{
 };
 use crate::law::series::{Series, work};
 use crate::options::classical::ClassicalOptions;
-use crate::stop_check::StopCheck;
 
-/// Which form the thresholds have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum ThresholdForm {
-    /// `r_i = α i + β |x'|` (theory.md (8.16)).
-    Linear,
-    /// `r_i = α i max(0, ln(β + λ |x'|^ε))` (theory.md (8.17)).
-    Logarithmic,
-}
+impl SearchedLaw for RateDependentPrandtlIshlinskii {
+    type Family = Plays;
 
-impl Identify for RateDependentPrandtlIshlinskii {
-    fn identify(
-        data: &Dataset,
-        options: &ClassicalOptions,
-        observer: &mut SearchObserver<'_>,
-        stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
-        data.check_identifiable(FEWEST_ROWS)?;
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Plays, Vec<Series>)> {
         let operators = options.operators();
         if operators == 0 || operators > MOST_PLAYS {
             return Err(
                 OptionError::value("operators", operators, format!("choose 1 to {MOST_PLAYS}")).into()
             );
         }
-        let (family, series) = posed(data, options)?;
-        let effort = Effort::of(options);
-        search(&family, &series, effort, observer, stop)
+        let rate = options.rate.ok_or(Error::RateNeeded(RateDependentPrandtlIshlinskii::FACTS.name))?;
+        let series = Series::all(data, Some(rate))?;
+        let family = Plays::new(&series, options);
+        Ok((family, thinned(series, Memory::Path)))
     }
-
-    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
-        let (family, series) = posed(data, options)?;
-        Ok(Some(linearised::of_search(&family, &series, self)))
-    }
-}
-
-/// What is searched, and the rows that it is compared with.
-fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Plays, Vec<Series>)> {
-    let rate = options.rate.ok_or(Error::RateNeeded(RateDependentPrandtlIshlinskii::FACTS.name))?;
-    let series = Series::all(data, Some(rate))?;
-    let family = Plays::new(&series, options);
-    Ok((family, thinned(series, Memory::Path)))
 }
 
 /// Rate-dependent plays, in the form of the search.
-struct Plays {
+pub(crate) struct Plays {
     /// Largest magnitudes of input and rate.
     input: f64,
     rate: f64,
     operators: usize,
-    form: ThresholdForm,
+    logarithmic: bool,
     free_weights: bool,
     variables: Vec<Variable>,
     non_negative: Vec<bool>,
@@ -76,24 +47,22 @@ impl Plays {
     fn new(series: &[Series], options: &ClassicalOptions) -> Self {
         let operators = options.operators();
         let free_weights = options.free_weights.unwrap_or(true);
-        let form = match options.logarithmic_thresholds {
-            true => ThresholdForm::Logarithmic,
-            false => ThresholdForm::Linear,
-        };
         let samples = || series.iter().flat_map(|series| &series.samples);
         let input = samples().map(|sample| sample.x.abs()).fold(f64::MIN_POSITIVE, f64::max);
         let rate = samples().map(|sample| sample.rate.abs()).fold(1e-100, f64::max);
         // The largest threshold at rest, as a share of the largest input.
         let mut variables = vec![Variable::logarithmic(0.01, 1.5)];
-        match form {
-            // Its growth at the largest rate.
-            ThresholdForm::Linear => variables.push(Variable::logarithmic(1e-4, 2.0)),
+        let logarithmic = options.logarithmic_thresholds;
+        if logarithmic {
             // β, λ|x'|^ε at the largest rate, ε.
-            ThresholdForm::Logarithmic => variables.extend([
+            variables.extend([
                 Variable::logarithmic(1.02, 20.0),
                 Variable::logarithmic(1e-3, 1e4),
                 Variable::linear(0.2, 2.0),
-            ]),
+            ]);
+        } else {
+            // Its growth at the largest rate.
+            variables.push(Variable::logarithmic(1e-4, 2.0));
         }
         let mut non_negative = vec![false, false];
         if free_weights {
@@ -104,31 +73,24 @@ impl Plays {
             variables.push(Variable::linear(-3.0, 12.0));
             non_negative.push(false);
         }
-        Self { input, rate, operators, form, free_weights, variables, non_negative }
+        Self { input, rate, operators, logarithmic, free_weights, variables, non_negative }
     }
 
     /// The law of unit weights.
     fn law(&self, parameters: &[f64]) -> RateDependentPrandtlIshlinskii {
         let largest = parameters[0] * self.input;
-        let (thresholds, spacing) = match self.form {
-            ThresholdForm::Linear => {
-                let beta = parameters[1] * self.input / self.rate;
-                (Thresholds::Linear { beta }, largest / self.operators as f64)
-            }
-            ThresholdForm::Logarithmic => {
-                let (beta, epsilon) = (parameters[1], parameters[3]);
-                let lambda = parameters[2] / self.rate.powf(epsilon);
-                (
-                    Thresholds::Logarithmic { beta, lambda, epsilon },
-                    largest / (self.operators as f64 * beta.ln()),
-                )
-            }
+        let steps = self.operators as f64;
+        let (thresholds, spacing) = if self.logarithmic {
+            let (beta, epsilon) = (parameters[1], parameters[3]);
+            let lambda = parameters[2] / self.rate.powf(epsilon);
+            (Thresholds::Logarithmic { beta, lambda, epsilon }, largest / (steps * beta.ln()))
+        } else {
+            (Thresholds::Linear { beta: parameters[1] * self.input / self.rate }, largest / steps)
         };
         let weights = if self.free_weights {
             PlayWeights::Free(vec![1.0; self.operators])
         } else {
-            let decline = parameters[parameters.len() - 1];
-            let tau = decline / (spacing * self.operators as f64);
+            let tau = parameters[parameters.len() - 1] / (spacing * steps);
             PlayWeights::Exponential { plays: self.operators, rho: 1.0, tau }
         };
         RateDependentPrandtlIshlinskii { offset: 0.0, spring: 0.0, spacing, thresholds, weights }

@@ -41,7 +41,7 @@ use descent::Descent;
 pub(crate) use projection::Columns;
 use projection::{Projection, UNFINISHED};
 
-pub(crate) use rows::{Memory, spread, thinned, thinned_to};
+pub(crate) use rows::{Memory, measured, spread, thinned, thinned_to};
 
 /// Random points looked at for each start.
 const DRAWS_PER_START: usize = 24;
@@ -170,6 +170,12 @@ pub struct Identified<L> {
 }
 
 impl<L> Identified<L> {
+    /// A law that least squares found from one start, without rounds.
+    pub(crate) fn by_least_squares(law: L) -> Self {
+        let (termination, searched) = (Termination::Converged, Vec::new());
+        Self { law, train_nrmse_percent: f64::NAN, evaluations: 1, termination, searched }
+    }
+
     /// The same result with a law made of this one.
     pub(crate) fn try_map<M>(self, make: impl FnOnce(L) -> Result<M>) -> Result<Identified<M>> {
         let Self { law, train_nrmse_percent, evaluations, termination, searched } = self;
@@ -177,55 +183,9 @@ impl<L> Identified<L> {
     }
 }
 
-/// How much is searched.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Effort {
-    pub starts: usize,
-    pub epochs: usize,
-    pub seed: u64,
-    /// Parameters from which alone the search begins; empty for random starts.
-    pub near: Vec<f64>,
-}
-
-impl Effort {
-    /// The requested starts and epochs, or those of the law.
-    pub fn of(options: &ClassicalOptions) -> Self {
-        Self {
-            starts: options.starts(),
-            epochs: options.epochs(),
-            seed: options.seed,
-            near: options.near.clone(),
-        }
-    }
-
-    pub fn validated(self) -> Result<Self> {
-        check([("starts", json!(self.starts)), ("epochs", json!(self.epochs))])?;
-        Ok(self)
-    }
-}
-
-/// What a search found.
-#[derive(Debug, Clone)]
-struct Found {
-    /// Searched parameters.
-    pub parameters: Vec<f64>,
-    /// Weights of the features.
-    pub weights: Vec<f64>,
-    pub train_nrmse_percent: f64,
-    pub evaluations: usize,
-    pub termination: Termination,
-}
-
-impl Found {
-    fn identified<L>(&self, law: L) -> Identified<L> {
-        Identified {
-            law,
-            train_nrmse_percent: self.train_nrmse_percent,
-            evaluations: self.evaluations,
-            termination: self.termination,
-            searched: self.parameters.clone(),
-        }
-    }
+/// Rejects numbers of starts and epochs that no search can have.
+pub(crate) fn check_effort(options: &ClassicalOptions) -> Result<()> {
+    check([("starts", json!(options.starts())), ("epochs", json!(options.epochs()))])
 }
 
 /// The squared residual over the variance of the output, as a function of `u`.
@@ -261,7 +221,7 @@ impl Objective<'_> {
     }
 }
 
-/// Searches a law of a family. The result depends on data, effort and seed alone, not on the number of threads: a
+/// Searches a law of a family. The result depends on data, options and seed alone, not on the number of threads: a
 /// start is walked by itself, and the starts are compared in their order.
 ///
 /// # Errors
@@ -270,7 +230,7 @@ impl Objective<'_> {
 pub(crate) fn search<F: LawFamily>(
     family: &F,
     series: &[Series],
-    effort: Effort,
+    options: &ClassicalOptions,
     observer: &mut SearchObserver<'_>,
     stop: StopCheck<'_>,
 ) -> Result<Identified<F::Law>>
@@ -279,44 +239,41 @@ where
 {
     let law = |parameters: &[f64], weights: &[f64]| family.whole(parameters, weights).validated();
     let so_far = |parameters: &[f64], weights: &[f64]| law(parameters, weights).ok().map(Into::into);
-    let found = search_parameters(family, &so_far, series, effort, observer, stop)?;
-    Ok(found.identified(law(&found.parameters, &found.weights)?))
+    let found = search_parameters(family, &so_far, series, options, observer, stop)?;
+    let searched = found.searched.clone();
+    found.try_map(|weights| law(&searched, &weights))
 }
 
-/// Searches the parameters of a family; `law` is made of parameters and weights for an observer that asks for it.
+/// Searches the parameters of a family, and the weights that stand in the place of a law; `law` is made of both for an
+/// observer that asks for it.
 fn search_parameters(
     family: &dyn Family,
     law: &MakesLaw<'_>,
     series: &[Series],
-    effort: Effort,
+    options: &ClassicalOptions,
     observer: &mut SearchObserver<'_>,
     stop: StopCheck<'_>,
-) -> Result<Found> {
-    let effort = effort.validated()?;
-    let target: Vec<f64> =
-        series.iter().flat_map(|series| series.output.iter().copied().filter(|y| !y.is_nan())).collect();
+) -> Result<Identified<Vec<f64>>> {
+    check_effort(options)?;
+    let target = measured(series);
     let (_, deviation) = spread(&target);
     let variation = target.len() as f64 * deviation * deviation;
     let objective = Objective { family, series, target, variation, stop };
 
-    let begun = beginnings(&objective, &effort);
+    let begun = beginnings(&objective, options);
     if begun.first().is_none_or(|best| best.value().square_residual == UNFINISHED) {
         return Err(Error::Stopped);
     }
-    let drawn = if effort.near.is_empty() { effort.starts * DRAWS_PER_START } else { 1 };
-    let plan = Plan {
-        rounds: effort.epochs,
-        spared: 0,
-        to_prove_itself: ROUNDS_TO_PROVE_ITSELF,
-        finalists: FINALISTS,
-    };
+    let drawn = if options.near.is_empty() { options.starts() * DRAWS_PER_START } else { 1 };
+    let rounds = options.epochs();
+    let plan = Plan { rounds, spared: 0, to_prove_itself: ROUNDS_TO_PROVE_ITSELF, finalists: FINALISTS };
     let mut descents = MultiStart::new(begun);
     let tell = |descents: &MultiStart<Descent>, round| {
         let best = descents.best();
         let law = || law(&objective.parameters(best.u()), &best.value().weights);
         let told = observer(SearchProgress {
             round,
-            rounds: effort.epochs,
+            rounds,
             evaluations: drawn + descents.evaluations(),
             train_nrmse_percent: objective.nrmse_percent(best.value()),
             law: LawSoFar(Some(&law)),
@@ -325,9 +282,9 @@ fn search_parameters(
     };
     let termination = descents.run(plan, |descent, _| descent.advance(&objective), tell);
     let best = descents.best();
-    Ok(Found {
-        parameters: objective.parameters(best.u()),
-        weights: best.value().weights.clone(),
+    Ok(Identified {
+        law: best.value().weights.clone(),
+        searched: objective.parameters(best.u()),
         train_nrmse_percent: objective.nrmse_percent(best.value()),
         evaluations: drawn + descents.evaluations(),
         termination,
@@ -336,10 +293,11 @@ fn search_parameters(
 
 /// The point that was asked for, or else the best of many points that lie apart: those that the data suggest and
 /// random ones.
-fn beginnings(objective: &Objective<'_>, effort: &Effort) -> Vec<Descent> {
+fn beginnings(objective: &Objective<'_>, options: &ClassicalOptions) -> Vec<Descent> {
     let variables = objective.family.variables();
-    if effort.near.len() == variables.len() {
-        let places = variables.iter().zip(&effort.near).map(|(variable, &value)| variable.place(value));
+    let starts = options.starts();
+    if options.near.len() == variables.len() {
+        let places = variables.iter().zip(&options.near).map(|(variable, &value)| variable.place(value));
         let u: Vec<f64> = places.collect();
         let value = objective.value(&u);
         return vec![Descent::new(u, value)];
@@ -349,10 +307,10 @@ fn beginnings(objective: &Objective<'_>, effort: &Effort) -> Vec<Descent> {
         if let Some(values) = suggested.get(index) {
             return variables.iter().zip(values).map(|(variable, &value)| variable.place(value)).collect();
         }
-        let mut generator = generator(effort.seed, index);
+        let mut generator = generator(options.seed, index);
         variables.iter().map(|_| generator.random()).collect()
     };
-    let count = suggested.len().max(effort.starts * DRAWS_PER_START);
+    let count = suggested.len().max(starts * DRAWS_PER_START);
     // Only what the points reach is kept, and the best of them: a residual of each would be gigabytes for thousands of
     // starts.
     let best: Mutex<Option<Descent>> = Mutex::new(None);
@@ -378,13 +336,13 @@ fn beginnings(objective: &Objective<'_>, effort: &Effort) -> Vec<Descent> {
     let mut chosen: Vec<Vec<f64>> = Vec::new();
     let mut near = Vec::new();
     for (_, point) in points {
-        if chosen.len() == effort.starts {
+        if chosen.len() == starts {
             break;
         }
         let is_apart = chosen.iter().all(|other| distance(&point, other) >= APART);
         (if is_apart { &mut chosen } else { &mut near }).push(point);
     }
-    let missing = effort.starts - chosen.len();
+    let missing = starts - chosen.len();
     chosen.extend(near.into_iter().take(missing));
     let begin = |u: Vec<f64>| {
         let value = objective.value(&u);

@@ -5,7 +5,7 @@
 
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::law::search::spread;
+use crate::fit::law::search::{measured, spread};
 use crate::law::hysteretic_dynamics::Drive;
 use crate::law::series::Series;
 
@@ -43,8 +43,7 @@ pub(super) struct Records {
 impl Records {
     pub fn of(data: &Dataset) -> Result<Self> {
         let series = Series::all(data, None)?;
-        let measured = series.iter().flat_map(|series| series.output.iter().copied());
-        let (output_mean, output_scale) = spread(&measured.filter(|y| !y.is_nan()).collect::<Vec<f64>>());
+        let (output_mean, output_scale) = spread(&measured(&series));
         let inputs = || series.iter().flat_map(|series| series.samples.iter().map(|sample| sample.x.abs()));
         let largest = inputs().fold(0.0, f64::max);
         let rows: usize = series.iter().map(|series| series.samples.len()).sum();

@@ -119,6 +119,11 @@ fn beginning(series: &Series, share: f64) -> Series {
     Series { samples: series.samples[..rows].to_vec(), output: series.output[..rows].to_vec() }
 }
 
+/// The measured outputs of all series, one after another.
+pub(crate) fn measured(series: &[Series]) -> Vec<f64> {
+    series.iter().flat_map(|series| series.output.iter().copied().filter(|y| !y.is_nan())).collect()
+}
+
 /// Mean and standard deviation.
 pub(crate) fn spread(values: &[f64]) -> (f64, f64) {
     let n = values.len().max(1) as f64;
