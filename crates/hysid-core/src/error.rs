@@ -138,8 +138,7 @@ pub enum Error {
     Stopped,
 }
 
-/// Largest magnitude that a value of a record may have. Beyond it the square of a
-/// scaled value could overflow; no measured quantity comes near.
+/// Largest magnitude of a value of a record; beyond it the square of a scaled value could overflow.
 pub const LARGEST_VALUE: f64 = 1e100;
 
 /// Most turning points of a lead-in: a model runs along them before the first row of each record.
@@ -526,8 +525,7 @@ fn one_line(text: &str) -> Cow<'_, str> {
     escaped(text, is_hidden)
 }
 
-/// True for characters that are not displayed as such: control characters, separators of lines, those that change the
-/// direction of text or have no width, and those that are none.
+/// True for control and format characters, separators of lines, characters without width, and non-characters.
 pub fn is_hidden(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')

@@ -89,8 +89,7 @@ pub trait Law: Sized {
     /// Advances the state to the next sample and returns the output there, in its unit.
     fn step(&self, state: &mut Self::State, sample: Sample) -> f64;
 
-    /// The next input at which the output is `output`, from `state`, for a law with a closed inverse; `None` for
-    /// another, and where the conditions of the closed inverse do not hold.
+    /// The next input for `output`, from `state`; `None` without a closed inverse or where its conditions do not hold.
     fn input_for(&self, state: &Self::State, output: f64) -> Option<f64> {
         let _ = (state, output);
         None
@@ -105,8 +104,7 @@ pub trait Law: Sized {
     /// The parameters, with the field's symbols.
     fn parameters(&self) -> Vec<Parameter>;
 
-    /// The law itself, if its parameters are valid. A law whose constructor has checked them needs no further
-    /// check.
+    /// The law itself, if its parameters are valid.
     ///
     /// # Errors
     /// A parameter that is not finite or out of bounds, or parts that cannot be used together.
@@ -124,9 +122,8 @@ pub trait Law: Sized {
         false
     }
 
-    /// The properties that follow from the equations, each with whether the law has it, at a vanishing rate.
-    /// `about_origin` is true for an input that is measured from 0: properties of the output mirrored about 0
-    /// are included only then.
+    /// The properties that follow from the equations at a vanishing rate, each with whether the law has it.
+    /// `about_origin` is true for an input measured from 0, which odd symmetry needs.
     fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)>;
 }
 
@@ -191,8 +188,7 @@ impl Dimension {
     /// The unit of the input divided by that of the output, as of a compliance.
     pub const COMPLIANCE: Self = Self { input: 1, output: -1, time: 0 };
 
-    /// The unit as text, such as `kN/mm`, from the units of the data. Empty for a pure number, and if a unit
-    /// that it contains is unknown.
+    /// The unit as text, such as `kN/mm`; empty for a pure number, and if a unit of the data is unknown.
     pub fn unit(self, input: Option<&str>, output: Option<&str>, time: Option<&str>) -> String {
         let powers = [(self.output, output), (self.input, input), (self.time, time)];
         if powers.iter().any(|(power, unit)| *power != 0 && unit.is_none()) {

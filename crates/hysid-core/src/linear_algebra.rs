@@ -9,8 +9,7 @@ use pulp::{Simd, WithSimd};
 use crate::simd;
 use crate::stop_check::{Pace, StopCheck};
 
-/// Fewest and most rows of a [`Batch`]. With few columns it has more rows, so that the sums of its tiles are reduced less
-/// often.
+/// Fewest and most rows of a [`Batch`]; with few columns it has more rows.
 const FEWEST_ROWS: usize = 256;
 const MOST_ROWS: usize = 512;
 
@@ -92,8 +91,7 @@ impl Gram {
         simd::run(AddBatch { gram: self, batch, pace });
     }
 
-    /// Adds `factor` times another Gram matrix of the same columns: 1 for the rows of both, -1 to take
-    /// rows out again.
+    /// Adds `factor` times another Gram matrix of the same columns: 1 for more rows, -1 for fewer.
     pub fn add_multiple(&mut self, other: &Gram, factor: f64) {
         debug_assert_eq!(self.n, other.n);
         self.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a += factor * b);
@@ -262,8 +260,7 @@ impl Symmetric {
         }
     }
 
-    /// Cholesky factor `L` with `self = L Lᵀ`; `None` if the matrix is not positive definite to rounding, or
-    /// once stopped.
+    /// Cholesky factor `L` with `self = L Lᵀ`; `None` if not positive definite to rounding, or once stopped.
     pub fn cholesky(mut self, stop: StopCheck<'_>) -> Option<Cholesky> {
         let n = self.n;
         if n >= blocked_cholesky::WORTH_BLOCKS {

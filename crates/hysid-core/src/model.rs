@@ -162,8 +162,7 @@ fn warm_up(body: &Predictor, options: &FitSpec) -> usize {
     }
 }
 
-/// The data without outputs in the first rows of each record; `None` for no such rows, and if no row with an
-/// output is left.
+/// The data without outputs in the first rows of each record; `None` without such rows or remaining outputs.
 fn behind(data: &Dataset, rows: usize) -> Option<Dataset> {
     let behind = (rows > 0).then(|| data.clone().warmed_up(rows))?;
     (behind.scored() > 0).then_some(behind)
@@ -213,14 +212,12 @@ pub struct Provenance {
     pub chosen_start: usize,
     /// Why the last training run ended.
     pub termination: Termination,
-    /// Errors of the model on all its training data, as [`Model::evaluate`] gives them. The rows of a warm-up
-    /// are included.
+    /// Errors of the model on all its training data, as [`Model::evaluate`] gives them, warm-up included.
     pub train: Errors,
     /// The same without the rows of the warm-up, which were not used in training; `None` without a warm-up.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub train_after_warm_up: Option<Errors>,
-    /// Errors on held-out data, of models that were fitted in the same way without them; `None` if none were
-    /// held out.
+    /// Held-out errors of models fitted in the same way; `None` if none were held out.
     pub validation: Option<Errors>,
     /// Penalties that a network was trained with; `None` for other models.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -230,8 +227,7 @@ pub struct Provenance {
     /// The candidates and their errors, if the model was chosen among several; otherwise `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub selection: Option<Selection>,
-    /// Lead-ins of the training records; empty if all have that of the model, and for more than
-    /// [`MOST_REMEMBERED`] records.
+    /// Lead-ins of the training records; empty if all have the model's, and beyond [`MOST_REMEMBERED`] records.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lead_ins: Vec<RecordLeadIn>,
 }
@@ -242,8 +238,7 @@ pub struct Provenance {
 pub struct RecordLeadIn {
     /// Name of the record.
     pub record: String,
-    /// Turning points of the first input before its first row, in the unit of the input; empty for the virgin
-    /// state.
+    /// Turning points of the first input before its first row, in its unit; empty for the virgin state.
     pub lead_in: Vec<f64>,
 }
 
@@ -309,8 +304,7 @@ pub struct ParameterInUnits {
     pub parameter: Parameter,
     /// Empty for a pure number, and if a unit is unknown.
     pub unit: String,
-    /// Value in this unit over that in the law: not 1 where a quotient, such as a field over a flux density, is shown as a
-    /// pure number.
+    /// Value in this unit over that in the law; not 1 where a quotient is shown as a pure number.
     pub factor: f64,
 }
 
@@ -521,8 +515,8 @@ impl Model {
         self.body.needs_steps() || self.rate.is_some_and(|rate| rate != RateMethod::Given)
     }
 
-    /// The initial state of a record that has none of its own: the turning points of the first input before
-    /// the first row, in its unit; empty for the virgin state. It is that of most training records.
+    /// The lead-in of a record that has none of its own: turning points in the unit of the input, of most training
+    /// records.
     pub fn lead_in(&self) -> &[f64] {
         &self.lead_in
     }
@@ -565,9 +559,6 @@ impl Model {
     }
 
     /// The training data with the lead-ins that their records had in training, where these differ or are periodic.
-    ///
-    /// # Errors
-    /// None for a model that was fitted or read from a file.
     pub fn as_trained<'d>(&self, data: &'d Dataset) -> Result<Cow<'d, Dataset>> {
         if self.is_periodic {
             return data.clone().with_periodic_lead_ins().map(Cow::Owned);
@@ -593,9 +584,7 @@ impl Model {
         self.response(&Excitation::new("data", vec![x])?)
     }
 
-    /// Simulates a record: the output of each row, in the user's unit. It begins after the lead-in of the
-    /// record, or in the initial state of the model if the record has none. The measured output of the record
-    /// is not used.
+    /// Simulates a record: the output of each row, in the user's unit, after the record's lead-in or the model's own.
     ///
     /// # Errors
     /// A record without what the model needs: its number of inputs, time stamps, a given rate.
@@ -705,8 +694,7 @@ impl Model {
         self.body.has_inertia()
     }
 
-    /// Rows at the beginning of each record that advanced the memory in training and were not scored
-    /// (warm-up).
+    /// Rows at the beginning of each record that were not scored in training (warm-up).
     pub fn warm_up(&self) -> usize {
         warm_up(&self.body, &self.provenance.options)
     }

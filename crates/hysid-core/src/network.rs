@@ -165,8 +165,7 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// The same with the arithmetic that every machine has: products and sums are rounded one by one. It is slower, and
-    /// its outputs are those of exported source code to the last bit.
+    /// The same with rounded products and sums, as exported source code computes them to the last bit; slower.
     #[must_use]
     pub fn portable(self) -> Self {
         Self { portable: true, ..self }

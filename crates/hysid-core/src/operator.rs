@@ -58,12 +58,10 @@ pub trait Operator {
     /// Returns to the virgin (demagnetised) state.
     fn reset(&mut self);
 
-    /// Advances to the next sample of the input and returns the output there. `x` must be finite (see the
-    /// [module](self)).
+    /// Advances to the next sample `x`, which must be finite (see the [module](self)), and returns the output there.
     fn step(&mut self, x: f64) -> f64;
 
-    /// Runs over a whole signal from the virgin state and returns the output at each sample. The operator is
-    /// then in the state after the last sample.
+    /// Runs over a signal from the virgin state and returns the output at each sample.
     fn run(&mut self, x: &[f64]) -> Vec<f64> {
         self.reset();
         x.iter().map(|&x| self.step(x)).collect()
@@ -130,8 +128,7 @@ fn checked_threshold(r: f64) -> Result<f64, InvalidOperator> {
     if r.is_finite() && r > 0.0 { Ok(r) } else { Err(InvalidOperator::Threshold(r)) }
 }
 
-/// Whether the input may enter the memory; see "Input that is not finite" in the module
-/// documentation.
+/// Whether the input may enter the memory (see the module documentation).
 #[inline(always)]
 fn is_usable(x: f64) -> bool {
     debug_assert!(x.is_finite(), "the input of an operator must be finite, not {x}");

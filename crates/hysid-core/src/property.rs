@@ -28,13 +28,11 @@ pub enum Property {
     Deterioration,
     /// After a period of the input the output has its earlier value.
     LoopClosure,
-    /// The force at the tips of cycles falls with the amplitude, or from one cycle to the next. Only measured forces are
-    /// asked.
+    /// The force at the tips of cycles falls with the amplitude, or from cycle to cycle. Of measured forces only.
     StrengthLoss,
     /// Near zero load the stiffness is low, and grows again on the way to the tip. Only measured forces are asked.
     Pinching,
-    /// After any past, each output that can be reached in one step belongs to one input. Only a model can be asked: no
-    /// record holds several next inputs after one past.
+    /// After any past, each output that can be reached in one step belongs to one input. Of models only.
     Invertible,
 }
 

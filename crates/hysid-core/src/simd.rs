@@ -36,8 +36,7 @@ pub(crate) fn nearest_power<S: Simd>(a: f64, b: f64) -> (f64, f64) {
     (rounded - ROUND, f64::from_bits(rounded.to_bits() << 52))
 }
 
-/// `a * b + c`, in one rounding where the hardware fuses. Where it does not, `f64::mul_add` would
-/// call a library function hundreds of times slower.
+/// `a * b + c`, in one rounding where the hardware fuses; elsewhere `f64::mul_add` would be very slow.
 #[inline(always)]
 pub(crate) fn multiply_add<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
     if S::IS_SCALAR || cfg!(target_family = "wasm") { a * b + c } else { a.mul_add(b, c) }

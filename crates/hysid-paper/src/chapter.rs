@@ -108,8 +108,7 @@ pub fn stands_in(specimen: &str, of: &str) -> String {
     format!("Synthetic specimen {specimen} in place of the paper's measured data ({of})")
 }
 
-/// The targets of all these chapters that are the paper's claims, or those that are not, as a table; `None` if there
-/// are none.
+/// The targets of these chapters that are the paper's claims, or the others, as a table; `None` if there are none.
 pub fn targets(chapters: &[Chapter], of_paper: bool) -> Option<Table> {
     let heading = match of_paper {
         true => "The paper's claims and what was measured",

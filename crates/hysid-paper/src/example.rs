@@ -160,8 +160,7 @@ impl Bench<'_> {
         fitting::choose(&what, self.train, family, kind, self.settings, self.observer)
     }
 
-    /// One network of each seed, fitted to these data, and the median of several; errors on the training data are those on
-    /// the rows that all models are fitted to.
+    /// One network of each seed, and the median of several, fitted to these data.
     fn networks(&self, name: &str, family: Family, choice: Choice, fitted_to: &Dataset) -> Result<Trained> {
         let starts = fitting::effort(self.settings).starts;
         let members = MEMBERS.min(starts);
@@ -272,8 +271,7 @@ impl Played<'_> {
         &self.contestants[0]
     }
 
-    /// A figure of a contestant over the seeds, and of the rival if it is a ratio; `None` if there is nothing that it
-    /// could be of.
+    /// A figure of a contestant over the seeds, and of the rival for a ratio; `None` if it does not exist.
     fn figure(&self, figure: Figure, of: &Contestant, rival: Option<&Contestant>) -> Option<Spread> {
         let percent = |errors: Option<Errors>| errors.and_then(|errors| errors.nrmse_std_percent);
         let value = |seed: usize| -> Option<f64> {
@@ -295,8 +293,7 @@ impl Played<'_> {
         Spread::of(values?)
     }
 
-    /// Largest error on the unseen rows before the last training row, in percent of the largest output; `None` unless
-    /// training and unseen data are rows of one record.
+    /// Largest error in percent before the last training row; `None` unless both are rows of one record.
     fn largest_between(&self, unseen: &Run) -> Option<f64> {
         let ([trained], [measured]) = (self.train.records(), self.unseen.records()) else { return None };
         let end = trained.output().iter().rposition(|y| !y.is_nan())?;

@@ -49,10 +49,7 @@ impl Experiment {
         }
     }
 
-    /// Runs it.
-    ///
-    /// # Errors
-    /// [`hysid::Error::Stopped`] if the observer stops it, and whatever a fit may end with.
+    /// Runs it; an error as of a fit, or if the observer stops it.
     pub fn chapter(self, settings: Settings, observer: &dyn Observer) -> hysid::Result<Chapter> {
         match self {
             Experiment::Nds => Ok(nds::chapter()),

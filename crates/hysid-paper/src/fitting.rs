@@ -93,9 +93,6 @@ pub fn network(family: Family, choice: Choice, seed: u64, start: u64) -> FitOpti
 }
 
 /// Networks from so many random starts, the one with the lowest training error first.
-///
-/// # Errors
-/// As a fit.
 pub fn networks(
     data: &Dataset,
     options: impl Fn(u64) -> FitOptions + Sync,
@@ -145,10 +142,7 @@ pub fn rival(request: FitSpec, settings: Settings) -> FitSpec {
     }
 }
 
-/// Fits a model.
-///
-/// # Errors
-/// As [`identify`], and [`Error::Stopped`].
+/// Fits a model; an error as of [`identify`], or if stopped.
 pub fn fit(data: &Dataset, request: &FitSpec, observer: &dyn Observer) -> Result<Model> {
     let fit = identify(data, request, &mut |_| match observer.is_stopped() {
         true => ControlFlow::Break(()),

@@ -74,8 +74,7 @@ impl Neuron {
         (0..=cycles * ROWS).map(row).collect()
     }
 
-    /// Width of the first full cycle after a quarter: from the branch on the way up to that on the way down,
-    /// half-way between the lowest and the highest output. `None` if the output does not pass there.
+    /// Width of the first full cycle after a quarter, half-way between lowest and highest output; `None` if not passed.
     fn width(self, rate: f64) -> Option<f64> {
         let path = self.run(rate, 2);
         let cycle = &path[ROWS / 4..=5 * ROWS / 4];
@@ -267,8 +266,7 @@ mod tests {
         assert!((k - 2.0 * (1.0 - 1.0 / 1.42)).abs() < 1e-5, "{k}");
     }
 
-    /// The first quarter of a cycle slides V - 1, every half cycle from peak to peak 2 (V - 1), and each of these
-    /// begins once the argument is 2 off its peak.
+    /// The first quarter of a cycle slides V - 1, every half cycle 2 (V - 1), once 2 off its peak.
     #[test]
     fn lives_are_those_of_the_closed_form() {
         for (neuron, capacity) in [(DEMONSTRATIONS[2].0, 25.0), (VARIANT.0, 50.0)] {

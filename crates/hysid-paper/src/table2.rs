@@ -16,8 +16,7 @@ use crate::fitting::{self, Choice, SEEDS};
 use crate::spread::Spread;
 use specimens::{Property, SPECIMENS};
 
-/// A network has learnt a property if its error on unseen data of the specimen, in percent of the output's
-/// standard deviation, is at most this. Designed.
+/// Largest error on unseen data, in percent, of a network that has learnt a property. Designed.
 const LEARNT: f64 = 3.0;
 
 /// Random starts of each seed: these specimens are small.
@@ -231,8 +230,7 @@ fn errors(rows: &[Row]) -> Table {
         .with_rows(rows.iter().map(cells))
 }
 
-/// How far minor loops between the same two inputs are from congruent, for the specimen that mixes and the
-/// networks trained on it.
+/// Incongruency of minor loops, of the specimen that mixes and of the networks trained on it.
 fn incongruency_table(row: &Row) -> Result<Table> {
     let record = specimens::two_histories()?;
     let mut table = Table::new(["model", "difference, %"]).headed(format!(

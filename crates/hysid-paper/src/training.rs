@@ -67,8 +67,7 @@ struct Training {
 /// All trainings from one seed.
 struct Repetition {
     trainings: Vec<Training>,
-    /// Seconds until the sub-gradient method, begun anew after half of the hybrid's epochs, reaches the hybrid's
-    /// error; `None` if it does not within the hybrid's time.
+    /// Seconds until the sub-gradient method reaches the hybrid's error; `None` if not within the hybrid's time.
     seconds_to_match: Option<f64>,
 }
 
@@ -170,8 +169,7 @@ fn training(protocol: &Protocol, trainer: Trainer, seed: u64, observer: &dyn Obs
     })
 }
 
-/// The sub-gradient method from one start after another, each with the epochs of the hybrid's second phase, until it is
-/// as low as the hybrid was at its end.
+/// The sub-gradient method from start after start, until it is as low as the hybrid at its end.
 fn seconds_to_match(
     protocol: &Protocol,
     seed: u64,

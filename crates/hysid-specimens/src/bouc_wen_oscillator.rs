@@ -91,8 +91,7 @@ impl BoucWenOscillator {
         }
     }
 
-    /// The motion at the times of the forces in N, `time_step` in s apart, from rest. A force that is not finite makes
-    /// the motion NaN from there on.
+    /// The motion from rest at the times of the forces in N, `time_step` in s apart; NaN after an invalid force.
     pub fn motion(
         self,
         force: impl IntoIterator<Item = f64>,

@@ -56,8 +56,7 @@ impl Everett {
         self.m * self.r * arctangent + 2.0 * self.m * (1.0 - self.r) / step
     }
 
-    /// The Everett function `E(a, b)`: the decrease of `J` in T when the field falls from `a` to `b`, both
-    /// within ±`h_sat`, in A/m.
+    /// The Everett function `E(a, b)`: decrease of `J` in T from `a` to `b` within ±`h_sat`, in A/m.
     pub fn value(&self, a: f64, b: f64) -> f64 {
         self.g(-b - self.hc) * self.g(a - self.hc) - self.g(-a - self.hc) * self.g(b - self.hc)
     }

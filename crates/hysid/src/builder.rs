@@ -43,8 +43,7 @@ pub struct Fit<'a> {
 type BoxedObserver<'a> = Box<dyn FnMut(&Progress) -> ControlFlow<()> + Send + 'a>;
 
 impl<'a> Fit<'a> {
-    /// A fit with the defaults: the model `auto`, which cross-validates networks and classical models and combines the
-    /// best.
+    /// A fit with the defaults: the model `auto`.
     pub fn new() -> Self {
         Self::default()
     }
@@ -59,8 +58,7 @@ impl<'a> Fit<'a> {
         self.option("seed", seed)
     }
 
-    /// Sets any option by its name in the table of options. [`Fit::run`] reports an unknown name or an
-    /// invalid value.
+    /// Sets any option by its name; [`Fit::run`] reports an unknown name or an invalid value.
     pub fn option(mut self, name: &str, value: impl Into<Value>) -> Self {
         self.options.insert(name.into(), value.into());
         self
@@ -74,15 +72,14 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Ends the fit after this time with the best model so far. Only this option reads a clock; the result of
-    /// a fit that it has ended depends on the speed of the machine.
+    /// Ends the fit after this time with the best model so far, which then depends on the speed of the machine.
     pub fn time_limit(mut self, limit: Duration) -> Self {
         self.time_limit = Some(limit);
         self
     }
 
-    /// Calls `observer` after every epoch, and during long ones. If it returns [`ControlFlow::Break`], the
-    /// fit ends with its best model so far.
+    /// Calls `observer` after every epoch, and during long ones; [`ControlFlow::Break`] ends the fit with its best
+    /// model so far.
     pub fn observer(mut self, observer: impl FnMut(&Progress) -> ControlFlow<()> + Send + 'a) -> Self {
         self.observer = Some(Box::new(observer));
         self

@@ -63,8 +63,7 @@ pub struct RestoringForce {
     pub acceleration_filter: Option<Filter>,
     /// Standard deviation of the restoring force, in its unit.
     pub deviation: f64,
-    /// Standard deviation of its noise, in its unit: that of the acceleration times the mass, and of the applied force.
-    /// Noise is taken to be independent from row to row.
+    /// Standard deviation of its noise, in its unit, if noise is independent from row to row.
     pub noise: f64,
     /// Smoothing error of the restoring force, in its unit: the root mean square of the part of the motion that the filter
     /// of the acceleration does not follow, times the mass. An estimate, and 0 for a measured acceleration.
@@ -76,8 +75,7 @@ pub struct RestoringForce {
 pub struct RestoringRecord {
     /// `y'` in each row.
     pub velocity: Vec<f64>,
-    /// `r` in each row: NaN where something was not measured, and with a computed acceleration within half a window of
-    /// each end.
+    /// `r` in each row; NaN where something was not measured, and near the ends with a computed acceleration.
     pub force: Vec<f64>,
 }
 
@@ -276,8 +274,7 @@ fn deviation(values: impl Iterator<Item = f64> + Clone) -> Option<f64> {
     Some((known.map(|value| (value - mean).powi(2)).sum::<f64>() / count as f64).sqrt())
 }
 
-/// Standard deviation of the noise of the restoring force, in its unit: the root of the sum of the squares of what each
-/// measured channel adds.
+/// Standard deviation of the noise of the restoring force, in its unit: what the measured channels add, in squares.
 fn noise_of<'a>(records: &[Motion<'a>], mass: f64, computed: Option<&Derivative>) -> f64 {
     // An absolute acceleration has that of the base in it.
     let is_used = |motion: &Motion<'a>, column: MotionColumn| {

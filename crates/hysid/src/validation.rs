@@ -26,16 +26,12 @@ pub struct Fold {
     pub name: String,
     /// The training data.
     pub train: Dataset,
-    /// The held-out data. For a single record it is the whole record with the outputs of all other rows
-    /// blanked, so that the memory begins correctly.
+    /// The held-out data; a single record is whole, with the outputs of all other rows blanked.
     pub held_out: Dataset,
 }
 
 impl Fold {
     /// The predictions of a model for the held-out rows with an output, in free run.
-    ///
-    /// # Errors
-    /// As [`Model::simulate`].
     pub(crate) fn predicted_by(&self, model: &Model) -> Result<Vec<f64>> {
         let mut predicted = Vec::with_capacity(self.held_out.scored());
         for record in self.held_out.records() {
@@ -88,8 +84,7 @@ pub fn folds_of_cycles(data: &Dataset, count: usize) -> Vec<Fold> {
 const BLOCKS_OF_LOOP: usize = 24;
 const FOLDS_OF_LOOP: usize = 4;
 
-/// Folds of data of one loop: short blocks of rows, dealt to the folds in turn. What follows a part of a loop does not tell
-/// whether a candidate fits the loop; what lies between its parts does.
+/// Folds of data of one loop: short blocks of rows, dealt to the folds in turn, because only rows between others tell.
 pub(crate) fn folds_of_loop(data: &Dataset) -> Vec<Fold> {
     let of_fold = |fold: usize, is_held: bool| {
         let part = |record: &Record| {
@@ -115,8 +110,8 @@ pub(crate) fn folds_of_loop(data: &Dataset) -> Vec<Fold> {
     (0..FOLDS_OF_LOOP).map(fold).filter(has_enough).collect()
 }
 
-/// The folds by which candidates are chosen: those of several records; of a single one the forecasts from most of it
-/// and the block from its middle. The others choose no better and cost as much (docs/accuracy.md).
+/// The folds by which candidates are chosen: of a single record, forecasts from most of it and the block from its
+/// middle.
 pub(crate) fn folds_to_choose_by(data: &Dataset, most: usize) -> Vec<Fold> {
     let mut cuts = cuts(data, most);
     let is_telling = |cut: &Cut| match cut {
@@ -202,8 +197,7 @@ fn held_out(record: &Record, rows: RowsOf) -> Record {
     record.rows_up_to(rows.end).scored_where(|row| row >= rows.begin)
 }
 
-/// The cuts whose folds have enough to fit to and to judge on. Where there is one protocol with an output, or the
-/// protocols are too small to be held out, time decides.
+/// The cuts whose folds have enough to fit to and to judge on: by protocols if several can be held out, else by time.
 fn cuts(data: &Dataset, most: usize) -> Vec<Cut> {
     let enough =
         |cuts: Vec<Cut>| -> Vec<Cut> { cuts.into_iter().filter(|cut| has_enough(&cut.fold(data))).collect() };
@@ -287,16 +281,13 @@ pub struct FoldErrors {
 pub struct CrossValidation {
     /// Errors on each fold, without those that were not reached before the observer stopped.
     pub folds: Vec<FoldErrors>,
-    /// Errors over all held-out rows together. A row of several folds counts once, with the mean of its
-    /// squared errors.
+    /// Errors over all held-out rows; a row of several folds counts once, with the mean of its squared errors.
     pub unseen: Errors,
-    /// Geometric mean over the folds of the error on the held-out data, in percent of their standard
-    /// deviation. One fold with a large error does not dominate it.
+    /// Geometric mean over the folds of the held-out error, in percent of the standard deviation of the fold.
     pub unseen_nrmse_std_percent: Option<f64>,
 }
 
-/// A cross-validation in progress, for callers that fit the folds themselves, for instance with a time limit
-/// for each.
+/// A cross-validation in progress, for callers that fit the folds themselves.
 #[derive(Debug, Clone)]
 pub struct CrossValidator<'d> {
     data: &'d Dataset,

@@ -8,8 +8,7 @@ use crate::data::unit;
 /// Least number of values from which a course is found.
 const FEWEST: usize = 10;
 
-/// Columns whose correlation is at least this in magnitude are one signal: one deviates from a multiple of the other
-/// by a tenth of its standard deviation at most.
+/// Least correlation, in magnitude, of columns that are one signal: a tenth of a standard deviation apart.
 const ONE_SIGNAL: f64 = 0.995;
 
 /// How the values of a column change from row to row.
@@ -60,8 +59,7 @@ impl Course {
     }
 }
 
-/// The correlation of two columns if its magnitude is so close to 1 that they are one signal; otherwise
-/// `None`.
+/// The correlation of two columns if they are one signal; otherwise `None`.
 pub fn one_signal(a: &[f64], b: &[f64]) -> Option<f64> {
     let rows = || a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
     let count = rows().count();

@@ -75,8 +75,7 @@ impl InitialState {
         Self::ALL.into_iter().filter(|state| *state != Self::Unknown).map(Self::name).collect()
     }
 
-    /// The lead-in, in the unit of the first input, for its trained range and its origin in that unit. `None`
-    /// for a state that depends on the record: a periodic and an unknown one.
+    /// The lead-in for a trained range and an origin, in the unit of the input; `None` for periodic and unknown.
     pub fn lead_in(self, (low, high): (f64, f64), origin: f64) -> Option<Vec<f64>> {
         match self {
             Self::Virgin => Some(Vec::new()),

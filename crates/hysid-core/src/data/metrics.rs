@@ -28,8 +28,7 @@ pub struct Errors {
     pub mse: f64,
     /// Root mean square error, in the output's unit: `√mse` (theory.md (5.2)).
     pub rmse: f64,
-    /// `rmse` in percent of the standard deviation of the measured output (theory.md (5.3)). `None` if the
-    /// output does not vary, or so little that the percentage is no finite number.
+    /// `rmse` in percent of the standard deviation (theory.md (5.3)); `None` for a constant output.
     pub nrmse_std_percent: Option<f64>,
     /// `rmse` in percent of the range of the measured output (theory.md (5.4)). `None` as there.
     pub nrmse_range_percent: Option<f64>,

@@ -58,9 +58,6 @@ impl RateMethod {
     }
 
     /// Rates of the rows from `first` on, one for each element of `rate`.
-    ///
-    /// # Errors
-    /// As [`RateMethod::rate`].
     pub(crate) fn fill(self, excitation: &Excitation<'_>, first: usize, rate: &mut [f64]) -> Result<()> {
         let rows = first..first + rate.len();
         match (self, excitation.time()) {
@@ -123,8 +120,7 @@ fn central(time: &[f64], x: &[f64], rows: std::ops::Range<usize>, rate: &mut [f6
         let around = inner.start - 1..inner.end + 1;
         let points = time[around.clone()].windows(3).zip(x[around].windows(3));
         for (rate, (t, x)) in rate[inner.start - rows.start..].iter_mut().zip(points) {
-            // theory.md (4.1) as a mean of both one-sided slopes, each weighted with the other
-            // side's step: no squares of tiny steps.
+            // theory.md (4.1) as a weighted mean of both one-sided slopes: no squares of tiny steps.
             let (before, after) = (t[1] - t[0], t[2] - t[1]);
             let share = before / (before + after);
             *rate = share * ((x[2] - x[1]) / after) + (1.0 - share) * ((x[1] - x[0]) / before);
@@ -143,8 +139,7 @@ fn savitzky_golay_at(time: &[f64], x: &[f64], row: usize) -> f64 {
     slope_of_parabola(&time[first..=last], &x[first..=last], row - first)
 }
 
-/// Slope at `centre` of the parabola that fits the points best; of a straight line or 0 if there
-/// are fewer than three points.
+/// Slope at `centre` of the parabola that fits best; of a line or 0 for fewer than three points.
 fn slope_of_parabola(time: &[f64], x: &[f64], centre: usize) -> f64 {
     let n = time.len() as f64;
     let unit = time[time.len() - 1] - time[0];

@@ -140,14 +140,12 @@ impl Record {
         self.given_rate.as_deref()
     }
 
-    /// The turning points of the first input before the first row, in its unit: empty for the virgin state,
-    /// `None` if they were not given.
+    /// Turning points of the first input before the first row; empty for the virgin state, `None` if not given.
     pub fn lead_in(&self) -> Option<&[f64]> {
         self.lead_in.as_deref()
     }
 
-    /// The first input at each turning point of the lead-in and at the first row, in its unit; empty without a
-    /// lead-in. A fit drives the memory with them before the rows.
+    /// The first input at each turning point of the lead-in and at the first row; empty without a lead-in.
     pub fn lead_in_rows(&self) -> Vec<f64> {
         self.excitation().lead_in_rows()
     }
@@ -555,8 +553,7 @@ impl Dataset {
     }
 }
 
-/// Largest ratio of the ranges of output and input, either way. Slopes and their squares then stay far below
-/// [`LARGEST_VALUE`](crate::error::LARGEST_VALUE), which bounds the weights of laws.
+/// Largest ratio of the ranges of output and input, either way, so that slopes and their squares stay small.
 const LARGEST_RATIO: f64 = 1e50;
 
 /// Smallest and largest of the values that are not NaN.

@@ -106,8 +106,7 @@ impl Summary {
     }
 }
 
-/// True for values that jump at random: neighbours are uncorrelated, and two of three rows are turning
-/// points.
+/// True for values that jump at random: neighbours are uncorrelated, and two of three rows turn.
 fn is_without_order(values: &[f64]) -> bool {
     const FEWEST: usize = 50;
     let rows = values.len() as f64;

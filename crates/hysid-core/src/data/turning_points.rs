@@ -1,7 +1,6 @@
 //! Turning points of an input: where it reverses.
 
-/// Indices of the rows at which `x` reverses, in order. Reversals smaller than `smallest`, in the unit of
-/// `x`, are ignored. The first and last rows are not turning points.
+/// Rows at which `x` reverses by at least `smallest`, in its unit, without the first and the last.
 pub fn turning_points(x: &[f64], smallest: f64) -> Vec<usize> {
     let mut found = Vec::new();
     let (mut low, mut high) = (0, 0);

@@ -90,8 +90,7 @@ impl Conversion {
     }
 }
 
-/// The factor from numbers in one unit to those in another; `None` if a unit is unknown, or if they are units of
-/// different quantities.
+/// The factor from one unit to another; `None` if a unit is unknown or of another quantity.
 pub fn factor(from: &str, to: &str) -> Option<f64> {
     let (from, to) = (Quantity::of(from)?, Quantity::of(to)?);
     (from.dimension == to.dimension).then(|| rounded(from.factor / to.factor))
@@ -118,8 +117,7 @@ pub fn is_time(name: &str) -> bool {
     is_named_time(name, &TIME_NAMES)
 }
 
-/// True for names that may mean time, in several languages, such as `timestamp`, `Zeit` or `elapsed_ms`, and
-/// for all names with a unit of time. The values must confirm it.
+/// True for names that may mean time, in several languages, or have a unit of time.
 pub fn may_be_time(name: &str) -> bool {
     let (quantity, unit) = split(name);
     let has_word = || {

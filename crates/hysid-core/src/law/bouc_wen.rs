@@ -29,8 +29,7 @@ use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 pub use degradation::Degradation;
 
-/// Longest part of the input moved in one step of Runge and Kutta, in yield displacements, where the
-/// element answers as fast as itself.
+/// Longest part of the input in one step of Runge and Kutta, in yield displacements, at quickness 1.
 const LONGEST_PART: f64 = 0.1;
 
 /// After so many yield displacements in one direction `z` does not change any more.
@@ -73,13 +72,11 @@ pub struct BoucWen {
     /// `(1 - α) k`: initial stiffness of the hysteretic element, in the unit of the output divided by that of
     /// the input. It is negative for the loops of actuators, whose output lags.
     pub hysteretic_stiffness: f64,
-    /// `c`: damping, in the unit of the output divided by that of the rate; 0 for a law that ignores the
-    /// rate.
+    /// `c`: damping, in the unit of the output divided by that of the rate; 0 ignores the rate.
     pub damping: f64,
     /// `z_u > 0`: yield displacement, in the unit of the input.
     pub yield_displacement: f64,
-    /// `b = β/(β + γ)`, 0.05 to 3: share of the softening that depends on the direction. At 0.5 the element
-    /// unloads with its initial stiffness.
+    /// `b = β/(β + γ)`, 0.05 to 3: share of the softening that depends on the direction.
     pub b: f64,
     /// `n`, 1 to 10: sharpness of yielding.
     pub n: f64,
@@ -179,8 +176,7 @@ impl BoucWen {
         inner
     }
 
-    /// Moves up by `by` in parts, or along the yield force where the element follows it, as it does after [`SATURATED`]
-    /// yield displacements.
+    /// Moves up by `by` in parts, or along the yield force where the element follows it.
     fn degrading_upwards(&self, degradation: &Degradation, inner: Inner, part: f64, by: f64) -> Inner {
         let travel = by.min(SATURATED);
         let (mut inner, mut left) = (inner, travel);

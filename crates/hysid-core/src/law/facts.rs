@@ -29,8 +29,8 @@ pub struct Facts {
     pub errors_inside: ErrorsInside,
 }
 
-/// Errors on smaller loops of laws that were fitted to one loop, as shares of the standard deviation of the output, by the
-/// shape of the loop's branches. Designed, from the errors on ten simulated loops (docs/accuracy.md).
+/// Errors on smaller loops of laws fitted to one loop, as shares of the standard deviation, by branch shape. Designed
+/// (docs/accuracy.md).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorsInside {
     /// Branches that only become flatter, as of a structure that yields.
@@ -140,8 +140,7 @@ pub enum Rate {
 pub enum Origin {
     /// 0, for laws in which an input of 0 is a special state, as a field of 0 is.
     Zero,
-    /// 0 if it lies within the data; otherwise the value at which the records begin, or the middle of their
-    /// range.
+    /// 0 if it lies within the data; otherwise where the records begin, or the middle of their range.
     OfData,
 }
 

@@ -65,8 +65,7 @@ impl Envelope {
     }
 }
 
-/// The next value of a play with threshold `r`: `max(left - r, min(right + r, play))`, with the envelopes
-/// `left = γ_l(x)` and `right = γ_r(x)` at the present input (theory.md (8.12)).
+/// The next value of a play: `max(left - r, min(right + r, play))` between the envelopes (theory.md (8.12)).
 #[inline(always)]
 pub fn follow(play: f64, left: f64, right: f64, r: f64) -> f64 {
     (left - r).max((right + r).min(play))
@@ -99,8 +98,7 @@ pub struct GeneralizedPrandtlIshlinskii {
     pub left: Envelope,
     /// `γ_r`, followed downwards.
     pub right: Envelope,
-    /// Value of every play before the first sample: 0 for virgin; a value above `γ_r + r` for a start on the
-    /// descending envelope, as after a large input.
+    /// Value of every play before the first sample: 0 for virgin; above `γ_r + r` on the descending envelope.
     pub initial: f64,
     /// `α`: spacing of the thresholds, a pure number, not negative.
     pub spacing: f64,

@@ -197,8 +197,7 @@ impl Dynamics {
         (self.steps_of(time) * of_step) as f64
     }
 
-    /// The parameters that are free in this form, with their symbols, in scaled units where they have no unit of their
-    /// own.
+    /// The free parameters in this form, with their symbols, in scaled units where they have no unit of their own.
     pub(crate) fn parameters(&self, form: Form) -> Vec<Parameter> {
         let is_general = form == Form::StateSpace;
         let is_coupled = is_general || self.modes.len() > 1;

@@ -25,8 +25,7 @@ use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
-/// Longest part of the field moved in one step of Runge and Kutta, as a share of the smaller of `a` and
-/// `k`.
+/// Longest part of the field in one step of Runge and Kutta, as a share of the smaller of `a` and `k`.
 const LONGEST_PART: f64 = 0.05;
 
 /// Parts of a single step of the input at most.

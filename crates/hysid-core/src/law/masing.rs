@@ -42,8 +42,7 @@ pub struct MasingParts {
     pub constant: f64,
     /// Thresholds `r_1 < r_2 < ...` where the virgin curve bends, in the unit of the input, positive.
     pub thresholds: Vec<f64>,
-    /// Slopes `m_j` of the virgin curve, in the unit of the output divided by that of the input: one below
-    /// each threshold, one beyond the last.
+    /// Slopes `m_j` of the virgin curve, in the unit of output over input: below each threshold, and beyond the last.
     pub slopes: Vec<f64>,
 }
 

@@ -135,8 +135,7 @@ impl Branch {
         Self { from, start, room, roundness, chord: [(from, start); 2] }
     }
 
-    /// A lower bound of `q` at `d`, beyond the first end of the chord: the branch rises and is concave, so it is above
-    /// its chords.
+    /// A lower bound of `q` at `d` beyond the first end of the chord: the branch is concave.
     fn least(&self, d: f64) -> f64 {
         let [from, to] = self.chord;
         if d >= to.0 || from.0 >= to.0 {
@@ -399,8 +398,7 @@ mod tests {
         path
     }
 
-    /// Steel02 as its reference describes it: strains and stresses, intersections of asymptotes, without a memory of
-    /// earlier branches.
+    /// Steel02 as its reference describes it, without a memory of earlier branches.
     fn steel_02(path: &[f64]) -> Vec<f64> {
         let (modulus, strength, b, r_0, c_1, c_2, a_1, a_2) =
             (200.0, 400.0, 0.015, 15.0, 0.925, 0.15, 0.04, 1.7);

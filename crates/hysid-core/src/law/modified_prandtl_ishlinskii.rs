@@ -31,8 +31,7 @@ pub struct ModifiedPrandtlIshlinskii {
     superposition: DeadZones,
 }
 
-/// A sum of one-sided dead zones, `S(z) = c_S + w_S0 z + Σ_j w_Sj S_{r_Sj}(z)`: a rising polygon through `(0,
-/// c_S)`.
+/// A sum of one-sided dead zones, `S(z) = c_S + w_S0 z + Σ_j w_Sj S_{r_Sj}(z)`, which rises.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "DeadZoneParts", into = "DeadZoneParts")]
 pub struct DeadZones {

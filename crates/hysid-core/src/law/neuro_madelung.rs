@@ -26,8 +26,7 @@ use crate::law::turning_point_stack::TurningPointStack;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
-/// The output may leave the trained range by so many of its widths. Each branch begins at the end of the one
-/// before, so errors could otherwise grow without bound.
+/// Widths of the trained range by which the output may leave it, because errors add from branch to branch.
 const BEYOND: f64 = 1.0;
 
 /// Scaled inputs of the network are limited to this: far outside of the data it is saturated anyway.
@@ -87,8 +86,7 @@ impl Branch<'_> {
         self.limited(inputs[2] + (inputs[0] - inputs[1]) * slope)
     }
 
-    /// The inputs, limited to the trained ranges. Beyond them a branch continues with the slope of its chord
-    /// at the edge.
+    /// The inputs, limited to the trained ranges: beyond them a branch keeps the slope of its chord.
     pub fn seen(&self, inputs: &[f64]) -> [f64; 4] {
         let rate = inputs.get(3).copied().unwrap_or(0.0);
         let unit = |value: f64| value.clamp(-1.0, 1.0);

@@ -286,8 +286,7 @@ impl PeakOriented {
         state.unloading = None;
     }
 
-    /// Advances to the next input and returns the force of the positive and of the negative side in their yield
-    /// forces: `f` and 0, or 0 and `-f`.
+    /// Advances to the next input and returns the forces of both sides, in their yield forces.
     pub fn advance(&self, state: &mut PeakOrientedState, x: f64) -> [f64; 2] {
         let side = *state.side.get_or_insert(usize::from(x < 0.0));
         let d = self.displacement(side, x);

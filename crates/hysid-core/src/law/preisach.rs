@@ -53,8 +53,7 @@ pub struct PreisachWeights {
     pub constant: f64,
     /// Slope `k` of the reversible part, in the unit of the output divided by that of the input.
     pub slope: f64,
-    /// The inputs at which `N + 1` lines divide both axes of the plane, in the unit of the input, rising. No
-    /// relay switches beyond them.
+    /// Inputs of the `N + 1` lines of both axes of the plane, in the unit of the input, rising.
     pub lines: Vec<f64>,
     /// Weights `v_j` of the `N` intervals in the reversible part, in the unit of the output.
     pub reversible: Vec<f64>,

@@ -69,8 +69,7 @@ impl<T: Clone> TurningPointStack<T> {
         self.advance_with(x, value, |_| {});
     }
 
-    /// As [`TurningPointStack::advance`], and calls `changed` with every change: after a point is added, and
-    /// before points are deleted.
+    /// As [`TurningPointStack::advance`]; calls `changed` after a point is added and before points are deleted.
     pub fn advance_with(&mut self, x: f64, value: T, mut changed: impl FnMut(Change<'_, T>)) {
         if let Some(present) = &self.present {
             if x == present.x {
@@ -122,8 +121,7 @@ impl<T: Clone> TurningPointStack<T> {
         }
     }
 
-    /// The turning points, oldest first; each lies between the two before it. The present point is not
-    /// among them.
+    /// The turning points without the present point, oldest first; each lies between the two before it.
     pub fn points(&self) -> &[TurningPoint<T>] {
         &self.points
     }

@@ -22,8 +22,7 @@ const GROUP: usize = 64;
 /// Edge of a tile of sums, all of which fit into registers.
 const TILE: usize = 4;
 
-/// The factor in place of the lower triangle of `data`, `n` rows of `n` numbers; `None` unless
-/// positive definite to rounding, and once stopped.
+/// The factor in place of the lower triangle of `data`; `None` unless positive definite, and once stopped.
 pub(super) fn factorise(mut data: Vec<f64>, n: usize, stop: StopCheck<'_>) -> Option<Vec<f64>> {
     simd::run(Factorise { data: &mut data, n, pace: Pace::new(stop) }).then_some(data)
 }

@@ -115,8 +115,7 @@ impl DilatedSpace {
         }
     }
 
-    /// Dilates the space along the unit vector `along`, `B <- B (I + (γ - 1) along alongᵀ)`, and returns `B u` of
-    /// the new matrix: one pass through a matrix for both.
+    /// `B <- B (I + (γ - 1) along alongᵀ)` for a unit vector `along`; returns `B u` of the new matrix.
     pub fn dilate(&mut self, along: &[f64], gamma: f64, u: &[f64]) -> Vec<f64> {
         if let Form::Product(product) = &mut self.form {
             if product.gammas.len() < self.n {

@@ -20,15 +20,13 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::model::Model;
 
-/// Share of the trained range by which the input must leave it until only the outside weights count.
-/// Designed.
+/// Distance outside, as a share of the trained range, from which on only the outside weights count. Designed.
 const WAY_OUT: f64 = 0.06;
 
 /// Largest depth of nested groups.
 const DEEPEST: usize = 8;
 
-/// Most members of an ensemble, each counted as often as its groups name it. `auto` of the largest ensemble that its
-/// options allow has fewer.
+/// Most members of an ensemble, each counted as often as its groups name it.
 const MOST_LEAVES: usize = 2_000;
 
 /// Several models whose predictions are combined by nested weighted medians.
@@ -87,8 +85,7 @@ impl Weights {
         Self { inside: 1.0, outside: 1.0 }
     }
 
-    /// The weight `a^{1-o} b^o`, where `o` from 0 to 1 is how far the record has been outside (theory.md
-    /// (11.4)).
+    /// The weight `a^{1-o} b^o`, where `o` is how far the record has been outside, 0 to 1 (theory.md (11.4)).
     pub(crate) fn at(&self, outside: f64) -> f64 {
         if outside == 0.0 {
             self.inside
@@ -313,8 +310,7 @@ impl Group {
         (weights().map(|weights| weights.inside).sum(), weights().map(|weights| weights.outside).sum())
     }
 
-    /// The weights `(1-o) a_i/Σa + o b_i/Σb`, where the products `a_i^{1-o} b_i^o` are 0 for all nodes
-    /// (theory.md (11.9)). A class without weights takes those of the other.
+    /// The weights `(1-o) a_i/Σa + o b_i/Σb`, where all products `a_i^{1-o} b_i^o` are 0 (theory.md (11.9)).
     fn blended(&self, outside: f64) -> impl Iterator<Item = f64> {
         let (a, b) = self.sums();
         self.nodes.iter().map(move |Node { weights, .. }| {

@@ -133,8 +133,7 @@ struct Readout {
     output: Vec<f64>,
 }
 
-/// Checksum of a file's text up to the checksum itself, white space between its parts aside: it notices any
-/// change of content, and no change of layout or line ends.
+/// Checksum of a file's text up to the checksum itself, without white space between its parts.
 fn checksum(text: &str) -> Option<u32> {
     let end = text.rfind(CHECKSUM_KEY)?;
     let (mut is_within_text, mut is_escaped) = (false, false);

@@ -33,8 +33,7 @@ use crate::options::input_options::InputOptions;
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InputTransform {
-    /// `c`: origin of each input, in its unit. The memory is virgin where the first input is `c`. Empty if
-    /// all are 0 (theory.md (11.8)).
+    /// `c`: origin of each input, in its unit, where the memory is virgin; empty if all are 0 (theory.md (11.8)).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub origins: Vec<f64>,
     /// `s` of `u = asinh(x / s)`, in the unit of the input; `None` for no companding (theory.md (11.1)).
@@ -50,10 +49,7 @@ pub struct InputTransform {
 const ROWS_BELOW: f64 = 0.995;
 
 impl InputOptions {
-    /// The input transform for these data. Shares are converted to scales in the user's units.
-    ///
-    /// # Errors
-    /// A rate that cannot be computed.
+    /// The input transform for these data; shares become scales in the user's units.
     pub(crate) fn of(
         &self,
         data: &Dataset,
@@ -82,8 +78,7 @@ impl InputOptions {
     }
 }
 
-/// Share of the input range by which 0 must be away from the ends to be the origin; also the largest
-/// distance, as a share of the range, between the first values of records that begin at one point. Designed.
+/// Least share of the range between 0 and its ends if 0 is the origin, and largest between first values at one point.
 const MARGIN: f64 = 0.05;
 
 /// The origin `c` of each input (theory.md (11.8)); none if all are 0.
@@ -142,8 +137,7 @@ pub struct Transformed<'d> {
 }
 
 impl<'d> Transformed<'d> {
-    /// # Errors
-    /// Data that no model can be identified from, shares that are none, a rate that cannot be computed.
+    /// The data as seen by a model; an error for unusable data or shares, or a rate that cannot be computed.
     pub fn of(
         data: &'d Dataset,
         shaping: &InputOptions,
@@ -260,9 +254,6 @@ impl InputTransform {
     }
 
     /// The transformed columns of an excitation; `None` if they are unchanged.
-    ///
-    /// # Errors
-    /// A rate that cannot be computed.
     pub(crate) fn columns(
         &self,
         excitation: &Excitation<'_>,

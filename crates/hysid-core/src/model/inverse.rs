@@ -34,8 +34,7 @@ pub enum Reach {
     LowLimit,
     /// The wanted output is beyond that of the highest input.
     HighLimit,
-    /// The input cannot change so quickly: it takes the way towards the wanted output at the slew limit, or at the largest
-    /// trained rate.
+    /// The slew limit, or the largest trained rate, does not allow the wanted output.
     Slew,
     /// No input within the limits has the output, and the nearest is between them: the model is not monotone.
     NotMonotone,
@@ -77,8 +76,7 @@ pub struct Inverted {
     pub reach: Reach,
     /// True if the input, or its rate for a model with a rate, is outside the range of the training data.
     pub is_extrapolated: bool,
-    /// Lowest and highest input whose prediction band contains the wanted output, with a preview those on the way to it;
-    /// `None` without [`Inverse::band`].
+    /// Lowest and highest input whose band contains the wanted output; `None` without [`Inverse::band`].
     pub band: Option<(f64, f64)>,
     /// Steps of the model that the search needed, at most [`MOST_TRIALS`] without a band.
     pub trials: usize,
@@ -193,8 +191,7 @@ impl<'m> Inverse<'m> {
         Ok(self)
     }
 
-    /// The same with the arithmetic that every machine has (see [`Stepper::portable`]), and without closed inverses: as
-    /// exports compute it.
+    /// The same with portable arithmetic ([`Stepper::portable`]) and without closed inverses, as exports compute it.
     #[must_use]
     pub fn portable(mut self) -> Self {
         self.stepper = self.stepper.portable();
@@ -313,8 +310,7 @@ impl<'m> Inverse<'m> {
         })
     }
 
-    /// Searches for the input at which the output and what is added to it is the wanted one; also gives the input of the
-    /// last trial.
+    /// The input at which the output and what is added to it is the wanted one, and the last trial.
     fn find(
         &mut self,
         wanted: Wanted,
@@ -353,8 +349,7 @@ impl<'m> Inverse<'m> {
         Ok((a.min(b), a.max(b)))
     }
 
-    /// The end of a window that leads to the wanted output, by the slope of the model over the whole range. The nearest
-    /// output in a narrow window may lie the other way, and the input would rest at a local extremum.
+    /// The end of a window that leads to the wanted output by the slope over the whole range, past local extrema.
     fn towards(&self, wanted: f64, (low, high): (f64, f64)) -> (f64, Ending) {
         let rises = self.last.is_none_or(|(last, _)| wanted > last.value);
         if rises == (self.slope > 0.0) { (high, Ending::High) } else { (low, Ending::Low) }

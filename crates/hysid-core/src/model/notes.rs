@@ -22,8 +22,7 @@ impl Model {
         beginning.chain(self.one_loop_note()).chain(self.easy_rows_note()).chain(size).collect()
     }
 
-    /// A note on more parameters than rows; for an ensemble, of its largest member. For a single network
-    /// there is a warning before the fit.
+    /// A note on more parameters than rows; for an ensemble, of its largest member.
     fn size_warning(&self) -> Option<Warning> {
         // Where data were held out, their error tells more.
         if self.network().is_some() || self.provenance().validation.is_some() {
@@ -112,8 +111,7 @@ impl Model {
         })
     }
 
-    /// What a caller must know that runs the model sample by sample, if its records begin after a period that is not
-    /// known then.
+    /// A note for stepping a model whose records begin after a period, which is not known then.
     pub fn stepping_note(&self) -> Option<&'static str> {
         self.is_periodic().then_some(
             "this model was trained on steady periods: sample by sample it begins in the virgin state, so its first period \

@@ -25,8 +25,7 @@ pub struct Selection {
     /// How a single model was chosen; `None` for an ensemble.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub single: Option<SingleModel>,
-    /// The warm-up: rows at the beginning of each record that were not scored in training; `None` if there
-    /// are none.
+    /// The warm-up; `None` if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub warm_up: Option<WarmUp>,
     /// Errors by which initial states were found for the records; `None` if cross-validation did not decide it.
@@ -73,8 +72,7 @@ impl Selection {
         }
     }
 
-    /// Held-out errors of the ensemble and of the best of each kind, all over the same rows, and why something else than
-    /// the lowest error decided.
+    /// Held-out errors of the ensemble and of the best of each kind, and why the lowest did not decide.
     fn why(&self, kinds: &[&str]) -> String {
         let percent = |error: Option<f64>| match error {
             Some(error) => format!("{:.3} %", Significant(error)),
@@ -173,20 +171,17 @@ pub struct SingleModel {
     pub distilled: bool,
     /// Held-out error of the distilled model, in percent, as that of the ensemble; `None` if none was made.
     pub distilled_percent: Option<f64>,
-    /// Held-out error of the best candidate fitted to the data alone, from one start, in percent, as that of the
-    /// ensemble.
+    /// Held-out error of the best candidate fitted to the data alone, in percent, as that of the ensemble.
     pub plain_percent: Option<f64>,
 }
 
-/// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training, and
-/// their effect.
+/// Warm-up: first rows of each record that are not scored in training, and their effect.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WarmUp {
     /// Number of rows of each record.
     pub rows: usize,
-    /// Cross-validated error on the later rows, in percent of the standard deviation, of a quick model
-    /// trained without the rows of the warm-up; `None` if the user chose the warm-up.
+    /// Cross-validated error on later rows without training on the warm-up, in percent; `None` if the user chose it.
     pub without_percent: Option<f64>,
     /// The same of a model trained with them.
     pub with_percent: Option<f64>,
@@ -199,13 +194,11 @@ impl WarmUp {
     }
 }
 
-/// Effect of initial states that were found for the records, or of periodic ones: cross-validated errors of the better of two quick
-/// models, in percent of the standard deviation.
+/// Effect of found or periodic initial states: cross-validated errors of a quick model, in percent.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FoundStates {
-    /// Error with these states; held-out records begin in the most frequent of those found, or after one period of
-    /// themselves.
+    /// Error with these states; held-out records begin in the most frequent, or after a period of themselves.
     pub found_percent: f64,
     /// Error from the virgin state.
     pub virgin_percent: f64,

@@ -42,8 +42,7 @@ impl<'m> Simulation<'m> {
         Self { model, runner, band, record: String::new(), window: Window::default() }
     }
 
-    /// Begins a record of this name, from the initial state of the model, or after the lead-in of the first
-    /// rows that it takes. Pending rows of an earlier record are dropped.
+    /// Begins a record of this name, from the model's initial state or its own lead-in; drops pending rows.
     pub fn begin(&mut self, record: impl Into<String>) {
         self.runner.reset();
         self.record = record.into();

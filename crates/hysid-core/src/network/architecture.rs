@@ -16,8 +16,7 @@ pub enum Family {
     /// Preisach neural network: stops of x and a tanh layer.
     #[serde(rename = "preisach-nn")]
     PreisachNn,
-    /// Extended Preisach neural network (XPNN, EPNN): deteriorating stops of x and its rate, and a
-    /// tanh layer.
+    /// Extended Preisach neural network (XPNN, EPNN): deteriorating stops of x and its rate, tanh layer.
     #[serde(rename = "xpnn")]
     Xpnn,
     /// Beyond the paper: XPNN with relaxation neurons, a direct linear path and further inputs.

@@ -47,8 +47,7 @@ pub(crate) struct Decay {
     pub by_ln_tau: f64,
 }
 
-/// The factors of a step of `phi` relaxation times, equal to [`crate::operator::relaxation::decay`] up to rounding. A
-/// `phi` that is not above 0 counts as 0.
+/// The factors of a step of `phi` relaxation times, as [`crate::operator::relaxation::decay`] up to rounding.
 #[inline(always)]
 pub(crate) fn decay<S: Simd>(phi: f64) -> Decay {
     let phi = if phi > 0.0 { phi } else { 0.0 };

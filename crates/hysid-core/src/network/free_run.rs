@@ -22,8 +22,7 @@ pub struct FreeRun<'a> {
 }
 
 impl<'a> FreeRun<'a> {
-    /// A run from the virgin state. `rate` is the method by which the rate of the first input is found;
-    /// `None` for a network without rate.
+    /// A run from the virgin state, with this method of the rate; `None` for a network without rate.
     pub fn new(network: &'a Network, scaling: &'a Scaling, rate: Option<RateMethod>) -> Self {
         let channels = vec![Vec::new(); network.architecture().channels()];
         Self { network, simulator: network.simulator(), scaling, rate, channels }
@@ -39,8 +38,7 @@ impl<'a> FreeRun<'a> {
         self.simulator.reset();
     }
 
-    /// Drives the memory along a lead-in: the first input at each of its rows, and the further inputs at the
-    /// first row of the record.
+    /// Drives the memory along a lead-in of the first input, with further inputs as at the first row.
     pub fn lead_in(&mut self, first: &[f64], others: &[f64]) {
         self.channels.iter_mut().for_each(|channel| channel.resize(first.len(), 0.0));
         self.scaling.fill_lead_in(first, others, &mut self.channels);

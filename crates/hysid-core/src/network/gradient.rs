@@ -24,8 +24,7 @@ use crate::stop_check::StopCheck;
 /// Partial sums of each component, so that a sum over rows is SIMD code.
 const LANES: usize = 8;
 
-/// The gradient `Jᵀr` over records, `r = Φc - y`, with output weights `c` held fixed (theory.md (3.3)). Rows
-/// with a NaN target are skipped.
+/// The gradient `Jᵀr` over records, `r = Φc - y`, with output weights `c` held fixed (theory.md (3.3)).
 pub struct GradientOverRecords<'a> {
     /// Architecture of the network.
     pub architecture: &'a Architecture,

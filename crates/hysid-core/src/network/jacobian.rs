@@ -72,8 +72,7 @@ impl Network {
     }
 }
 
-/// The columns that are computed for every row with a target: features (what the output weights multiply),
-/// target and, if output weights are given, the Jacobian, in this order.
+/// Columns computed for each row with a target: features, target and, with output weights, the Jacobian.
 #[derive(Debug, Clone, Copy)]
 pub struct Columns<'a> {
     /// The network.

@@ -96,8 +96,7 @@ struct Group {
     inverse_beta: Lanes,
 }
 
-/// The state of a network: plays and slips of the stops, states of the relaxation neurons, and the last
-/// inputs.
+/// The state of a network: plays, slips, states of the relaxation neurons, and the last inputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MemoryState {
     started: bool,
@@ -243,8 +242,7 @@ impl MemoryLayer {
         self.remember(state, u, rows);
     }
 
-    /// [`MemoryLayer::forward`] for one row, to the last bit: `u` has one value for each channel, and `z` receives one for
-    /// each neuron.
+    /// [`MemoryLayer::forward`] for one row, to the last bit: one value for each channel and each neuron.
     #[inline(always)]
     pub fn step<S: Simd>(&self, state: &mut MemoryState, u: &[f64], time_step: f64, z: &mut [f64]) {
         let (linear, rest) = z[..self.neurons()].split_at_mut(usize::from(self.linear.is_some()));
@@ -317,8 +315,7 @@ impl MemoryLayer {
         self.remember(state, u, rows);
     }
 
-    /// Initializes the plays at the first row of a record; this movement is no slip, `s_0 = 0` (theory.md
-    /// (1.5)).
+    /// Initializes the plays at the first row of a record, without slip: `s_0 = 0` (theory.md (1.5)).
     #[inline(always)]
     fn begin<S: Simd>(&self, state: &mut MemoryState, first: impl Fn(usize) -> f64) {
         if state.started {
@@ -409,8 +406,7 @@ impl MemoryLayer {
     }
 }
 
-/// Input of each stop of a group in a row with the input `u` of each channel: `v = w·u`, one rounding order for every
-/// kernel.
+/// Input `v = w·u` of each stop of a group in a row, in one rounding order for every kernel.
 #[inline(always)]
 fn drive<S: Simd>(group: &Group, u: impl Fn(usize) -> f64) -> Lanes {
     let x = u(0);

@@ -5,13 +5,11 @@ use std::ops::Range;
 use crate::error::{Error, Result};
 use crate::network::Architecture;
 
-/// Positions of the parameters in the flat vector: those of the stops first (`w`, then `ln β`), then `a` of
-/// the linear neuron, `ln τ` of the relaxation neurons, and `b` and `U` of the tanh neurons.
+/// Positions of the parameters in the flat vector: stops (`w`, `ln β`), `a`, `ln τ`, then `b` and `U`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Layout {
     architecture: Architecture,
-    /// `w`: weights of the stops, one value for each channel of the first stop, then of the second, and so
-    /// on.
+    /// `w`: weights of the stops, one value for each channel of the first stop, then of the second, ...
     pub stop_weights: Range<usize>,
     /// `ln β` of each stop; empty without deterioration.
     pub ln_beta: Range<usize>,

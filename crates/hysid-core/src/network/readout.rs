@@ -56,8 +56,7 @@ impl Readout {
         (constant.first().copied().unwrap_or(0.0), hidden, direct)
     }
 
-    /// Outputs of the tanh neurons for the first `rows` rows of a block (rounded up to whole
-    /// vectors).
+    /// Outputs of the tanh neurons for the first `rows` rows of a block, rounded up to whole vectors.
     #[inline(always)]
     pub fn tanh_layer<S: Simd>(&self, simd: S, z: &[Row], rows: usize, h: &mut [Row]) {
         let z = &z[..self.memory];
@@ -113,8 +112,7 @@ impl Readout {
     }
 }
 
-/// Backward pass of the readout: the derivatives of the output by all it depends on, times a weight for each
-/// row.
+/// Backward pass of the readout: derivatives of the output by its parts, times a weight for each row.
 #[derive(Debug, Clone)]
 pub(crate) struct Backward {
     /// By the weighted sum of each tanh neuron: the weight times `c_i (1 - h_i²)`.

@@ -22,8 +22,7 @@ use crate::network::{Architecture, Drive};
 pub struct Scaling {
     /// Largest magnitude of each input in training, in its unit. It becomes 1 in scaled units.
     pub inputs: Vec<f64>,
-    /// Largest magnitude of the rate in training, in the unit of the input divided by that of time; `None`
-    /// without rate.
+    /// Largest magnitude of the rate in training, in its unit; `None` without rate.
     pub rate: Option<f64>,
     /// Mean of the output in training, in its unit. It becomes 0 in scaled units.
     pub output_mean: f64,
@@ -35,10 +34,7 @@ pub struct Scaling {
 pub(crate) const SCALES: RangeInclusive<f64> = 1e-150..=1e150;
 
 impl Scaling {
-    /// Rejects invalid factors of a file.
-    ///
-    /// # Errors
-    /// A factor that is no usable divisor, or a mean beyond the largest value of a record.
+    /// Rejects factors that are no usable divisors, and a mean beyond the largest value of a record.
     pub(crate) fn check(&self) -> Result<()> {
         let factors = self.inputs.iter().chain(&self.rate).chain([&self.output_deviation]);
         if let Some(factor) = factors.into_iter().find(|factor| !SCALES.contains(factor)) {
@@ -105,8 +101,7 @@ impl Scaling {
         Ok(Drive { channels, steps })
     }
 
-    /// Fills the channels of the rows of a lead-in: the first input, its rate, which is 0, if there is a channel
-    /// for it, and the further inputs with their values at the first row of the record.
+    /// Fills the channels of the rows of a lead-in: first input, rate 0, further inputs as at the first row.
     pub(crate) fn fill_lead_in(&self, first: &[f64], others: &[f64], channels: &mut [impl AsMut<[f64]>]) {
         let has_rate = channels.len() > self.inputs.len();
         let mut channels = channels.iter_mut().map(|channel| &mut channel.as_mut()[..first.len()]);
@@ -121,11 +116,7 @@ impl Scaling {
         }
     }
 
-    /// Fills the channels (first input, its rate if there is a method for it, further inputs) of
-    /// `rows` rows from `first` on.
-    ///
-    /// # Errors
-    /// A rate that cannot be computed.
+    /// Fills the channels (first input, its rate, further inputs) of `rows` rows from `first` on.
     pub(crate) fn fill_channels(
         &self,
         excitation: &Excitation<'_>,

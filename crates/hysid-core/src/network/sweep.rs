@@ -46,8 +46,7 @@ impl Drive {
     }
 }
 
-/// A network on its way over records: its parameters found by search, and whether derivatives are
-/// wanted.
+/// A network on its way over records: its parameters, and whether derivatives are wanted.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Walk<'a> {
     pub architecture: &'a Architecture,
@@ -69,8 +68,7 @@ pub(crate) struct Block {
     pub target: Row,
 }
 
-/// Takes blocks. A trait and no closure, because a closure would not be compiled for the instruction
-/// set of the kernel that calls it.
+/// Takes blocks. A closure would not be compiled for the instruction set of the calling kernel.
 pub(crate) trait TakeBlock {
     /// Takes the first `rows` rows of a block. What stands beyond them is finite and means nothing.
     fn take<S: Simd>(&mut self, simd: S, rows: usize, block: &Block, readout: &Readout);

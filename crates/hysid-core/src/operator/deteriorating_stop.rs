@@ -22,8 +22,7 @@
 
 use super::{InvalidOperator, Operator, checked_threshold, is_usable, play, stop};
 
-/// The slip after the play has moved from `play_before` to `play_after`: `slip + |play_after - play_before|`
-/// (theory.md (1.5)). All in the unit of `x`.
+/// The slip `slip + |play_after - play_before|` after the play has moved, in the unit of `x` (theory.md (1.5)).
 #[inline(always)]
 pub fn accumulate(slip: f64, play_before: f64, play_after: f64) -> f64 {
     slip + (play_after - play_before).abs()

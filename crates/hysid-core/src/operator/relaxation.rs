@@ -34,8 +34,8 @@ pub fn decay(time_step: f64, tau: f64) -> (f64, f64) {
     if steps > 0.0 { ((-steps).exp(), -(-steps).exp_m1() / steps) } else { (1.0, 1.0) }
 }
 
-/// The stress after a step, `E stress + G x_increment`, with the factors of [`decay`] (theory.md (1.11)).
-/// `stress` is the stress before the step; both are in the unit of `x`.
+/// The stress `E stress + G x_increment` after a step, with the factors of [`decay`], in the unit of `x` (theory.md
+/// (1.11)).
 #[inline(always)]
 pub fn advance(stress: f64, x_increment: f64, (e, g): (f64, f64)) -> f64 {
     e * stress + g * x_increment

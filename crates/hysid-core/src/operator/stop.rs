@@ -22,8 +22,7 @@
 
 use super::{InvalidOperator, Operator, checked_threshold, is_usable, play};
 
-/// The output of a stop at input `x`, from the `play` of the same threshold at the same sample: `x - play`
-/// (theory.md (1.4)). In the unit of `x`.
+/// The output of a stop at input `x`: `x - play` of the same threshold, in the unit of `x` (theory.md (1.4)).
 #[inline(always)]
 pub fn elongation(x: f64, play: f64) -> f64 {
     x - play

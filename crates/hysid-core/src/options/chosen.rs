@@ -18,8 +18,7 @@ use crate::options::network::{FitOptions, Trainer};
 use crate::options::table::{FitOption, OPTIONS, Values, check};
 use crate::options::{FitSpec, ModelName};
 
-/// Options of a fit; `None` stands for the default of the model or its trainer. [`OPTIONS`] gives the meaning
-/// of each.
+/// Options of a fit, described in [`OPTIONS`]; `None` stands for the default of the model or its trainer.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[allow(missing_docs, reason = "each field is the option of its name")]
@@ -106,8 +105,7 @@ impl NamedOptions {
         self.model.unwrap_or(ModelName::AUTO)
     }
 
-    /// The specification of the fit. `rate` is the method of the rate; `always_rate` is true if the user
-    /// chose it and wants no model without it.
+    /// The specification of the fit. `always_rate` is true if the user wants no model without the rate.
     pub fn request(&self, rate: Option<RateMethod>, always_rate: bool) -> FitSpec {
         let used = self.used();
         let alone = match self.model() {
@@ -271,8 +269,8 @@ pub struct Ignored {
 /// Choice of the rate of the first input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RateChoice {
-    /// Backward differences, if the model uses a rate and the data can show a dependence on it ([`Dataset::speeds`]), or
-    /// the model always needs one.
+    /// Backward differences, if the model needs a rate, or uses one and the data show several speeds
+    /// ([`Dataset::speeds`]).
     #[default]
     Auto,
     /// No rate.

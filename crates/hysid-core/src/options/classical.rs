@@ -89,18 +89,15 @@ impl ClassicalModel {
     }
 }
 
-/// Options of such a model. Each field has the name of its command-line option. A model ignores the options
-/// that it does not use.
+/// Options of such a model, named as on the command line. A model ignores those that it does not use.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassicalOptions {
     /// The model.
     pub model: ClassicalModel,
-    /// Plays, breakpoints, intervals of each axis of a Preisach plane, random stops, or stops of a Duhem
-    /// neural network; the model's own default if `None`.
+    /// Plays, breakpoints, intervals of a Preisach axis, or stops; the model's own default if `None`.
     pub operators: Option<usize>,
-    /// Thresholds of the plays of a Masing, Prandtl-Ishlinskii or modified Prandtl-Ishlinskii model, in the
-    /// unit of the input.
+    /// Thresholds of the plays of a (modified) Prandtl-Ishlinskii or Masing model, in the unit of the input.
     pub thresholds: Option<Vec<f64>>,
     /// Sign of the weights of plays or cells; chosen by cross-validation if `None`.
     pub sign: Option<Sign>,
@@ -108,11 +105,9 @@ pub struct ClassicalOptions {
     pub dead_zones: Option<usize>,
     /// Whether each play has a free weight, instead of an exponential law; the model's own default if `None`.
     pub free_weights: Option<bool>,
-    /// True if the thresholds of a rate-dependent Prandtl-Ishlinskii model grow with the logarithm of the
-    /// rate.
+    /// True if thresholds of a rate-dependent Prandtl-Ishlinskii model grow with the logarithm of the rate.
     pub logarithmic_thresholds: bool,
-    /// True for a Bouc-Wen law with the degradation and pinching of Baber and Noori, for a peak-oriented
-    /// law that softens and deteriorates, and for hysteretic elements of deteriorating stops.
+    /// True for Bouc-Wen with degradation and pinching, a deteriorating peak-oriented law, or deteriorating stops.
     pub degradation: bool,
     /// True for a peak-oriented or Menegotto-Pinto law with different strengths upwards and downwards.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -139,8 +134,7 @@ pub struct ClassicalOptions {
     pub starts: Option<usize>,
     /// Iterations of each start; the model's own default if `None`.
     pub epochs: Option<usize>,
-    /// Parameters found by the search of a similar fit, from which alone the search begins; empty for random
-    /// starts. It is not stored.
+    /// Searched parameters of a similar fit to begin from; empty for random starts. Not stored.
     #[serde(skip)]
     pub near: Vec<f64>,
     /// Seed of all random numbers.
@@ -234,8 +228,7 @@ pub enum Sign {
     Any,
     /// At least 0: the output lags behind the input, as that of magnets and actuators.
     NonNegative,
-    /// At most 0, with a rising reversible part: the output leads the input, as a force leads the
-    /// displacement where energy is dissipated.
+    /// At most 0, with a rising reversible part: the output leads the input, as a force leads the displacement.
     NonPositive,
 }
 

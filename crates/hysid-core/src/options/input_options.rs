@@ -13,12 +13,10 @@ use crate::options::table::check;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputOptions {
-    /// Companding of the first input, `asinh(x / s)`: `s` as a share of the largest magnitude of the input;
-    /// `None` for none (theory.md (11.1)).
+    /// Companding `asinh(x / s)` of the first input: `s` as a share of its largest magnitude (theory.md (11.1)).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub companding: Option<f64>,
-    /// Companding of the rate, `asinh(x' / s')`: `s'` as a share of the rate that 99.5 % of all rows stay
-    /// below; `None` for none.
+    /// Companding `asinh(x' / s')` of the rate: `s'` as a share of the rate that 99.5 % of all rows stay below.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rate_companding: Option<f64>,
     /// True if running peak and travelled path of the first input, `max |x| so far` and `ln(1 + 10 path so
@@ -26,7 +24,6 @@ pub struct InputOptions {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub history: bool,
     /// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training.
-    /// A record that does not begin in the virgin state reaches its own memory in these rows.
     #[serde(skip_serializing_if = "is_zero")]
     pub warm_up: usize,
     /// Initial state of every record; `None` for the lead-ins that the records have, virgin without any.

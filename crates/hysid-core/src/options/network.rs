@@ -122,26 +122,22 @@ pub struct FitOptions {
     pub shaping: InputOptions,
     /// The trainer.
     pub training: Trainer,
-    /// Number of random networks, or populations, to start from. The one with the lowest objective becomes
-    /// the model, and a few of them are cross-validated.
+    /// Number of random networks, or populations, to start from; the lowest objective becomes the model.
     pub starts: usize,
     /// Epochs of each start: Levenberg-Marquardt iterations, generations, or outer iterations of the
     /// sub-gradient method. In a hybrid each of its two methods has half of them.
     pub epochs: usize,
     /// Individuals of the genetic algorithm.
     pub population: usize,
-    /// Epochs without a relative improvement of 1e-4 after which the genetic algorithm or the
-    /// sub-gradient method ends; 0 for never.
+    /// Epochs without a relative improvement of 1e-4 after which a method ends; 0 for never.
     pub stall: usize,
     /// Seed of the random starts.
     pub seed: u64,
     /// Share of the data that is held out for the validation error; `None` for cross-validation.
     pub validation: Option<f64>,
-    /// λ: penalty `½ λ ‖c‖²` on the output weights `c`, in scaled units (theory.md (3.1)). `None` for the
-    /// default, which is left out if cross-validation gives a smaller error without it.
+    /// λ: penalty `½ λ ‖c‖²` on the output weights `c`, in scaled units (theory.md (3.1)); `None` for the default.
     pub ridge: Option<f64>,
-    /// κ: penalty `½ κ ‖θ‖²` on the weights of stops, linear neuron and tanh neurons (theory.md (3.1)).
-    /// `None` as for `ridge`.
+    /// κ: penalty `½ κ ‖θ‖²` on the weights of stops, linear and tanh neurons (theory.md (3.1)).
     pub decay: Option<f64>,
     /// Largest number of scored rows of the iterations. If there are more rows, those on straight parts of the path of
     /// the inputs are left out. The output weights, and the last iterations of Levenberg-Marquardt, use all rows.
@@ -240,8 +236,7 @@ pub const MOST_EPOCHS: usize = 1_000_000;
 /// Largest number of starts.
 pub const MOST_STARTS: usize = 10_000;
 
-/// Penalties on the weights, in scaled units: the terms `½ λ ‖c‖² + ½ κ ‖θ‖²` of the objective (theory.md
-/// (3.1)).
+/// Penalties on the weights, in scaled units: `½ λ ‖c‖² + ½ κ ‖θ‖²` of the objective (theory.md (3.1)).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Regularisation {
     /// λ, on the output weights `c`.

@@ -24,8 +24,7 @@ pub fn trained_on(data: Dataset) -> Result<(Dataset, usize)> {
     Ok((Dataset::new(data.names().clone(), vec![record])?, end))
 }
 
-/// The row from which on both ends of the input's range have been visited: what a specimen with return-point memory
-/// remembers of its beginning is gone.
+/// The row from which on both ends of the range have been visited, so that the beginning is wiped out.
 fn first_visit_of_both_ends(record: &Record) -> usize {
     let x = &record.inputs()[0];
     let first = |is_before: fn(f64, f64) -> bool| {

@@ -128,8 +128,7 @@ pub fn history(data: &Dataset, lines: &[Line]) -> Chart {
     Chart::on_axes(description, x, y, curves).with_height(230.0).with_legend(legend(lines))
 }
 
-/// Magnitude of the error in percent of the largest output over all samples, those of training first, then
-/// the unseen, each as a curve of its own.
+/// Magnitude of the error in percent of the largest output, as one curve for training and one for unseen.
 pub fn relative_errors(sets: &[(&Dataset, Vec<Line>); 2]) -> Chart {
     let mut curves: Vec<Curve> = Vec::new();
     let mut begun = 0;

@@ -15,8 +15,7 @@ use crate::spread::median;
 /// Number of folds.
 const FOLDS: usize = 5;
 
-/// The direction is an input, and stops have no capacities, only if the mean error on the folds is then below this share
-/// of that without the change. Designed, with knowledge of errors on unseen data.
+/// Mean error, relative to that without, below which direction is an input or capacities are left out. Designed.
 const CLEAR_GAIN: f64 = 0.75;
 
 /// Where unseen data lie; the folds of a single record imitate that.

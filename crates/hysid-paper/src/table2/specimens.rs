@@ -119,8 +119,7 @@ const ROWS: usize = 600;
 /// Periods of the slower tone in a record.
 const PERIODS: f64 = 7.0;
 
-/// A record of two tones that do not repeat, `speed` times as fast as at speed 1, where the slower tone has a
-/// period of 1 s.
+/// A record of two tones that do not repeat, the slower with a period of 1 s at speed 1.
 fn record(property: &Property, speed: f64, phase: f64) -> hysid::Result<Record> {
     let phases: Vec<f64> = (0..ROWS).map(|row| PERIODS * row as f64 / ROWS as f64).collect();
     let tones = |p: f64| 0.6 * (TAU * p).sin() + 0.4 * (TAU * 2.618 * p + phase).sin() - 0.4 * phase.sin();
@@ -166,8 +165,7 @@ pub fn two_histories() -> hysid::Result<Record> {
     Record::new("two histories", vec![x], y)?.with_time(time)
 }
 
-/// Largest difference between the shapes of the minor loop's branch upwards after the two histories, in percent
-/// of the branch's height.
+/// Largest difference of the minor loop's rising branch after the two histories, in percent of its height.
 pub fn incongruency(outputs: &[f64]) -> f64 {
     // The branches from low to high in the second run of either loop.
     let branch = |swing: usize| &outputs[swing * SWING..=(swing + 1) * SWING];

@@ -31,8 +31,7 @@ fn errors(percent: f64) -> Errors {
     sums.errors("force_kN").unwrap()
 }
 
-/// A repetition with these errors of genetic, sub-gradient, hybrid, Levenberg-Marquardt; the hybrid takes
-/// 10 s.
+/// A repetition with errors of genetic, sub-gradient, hybrid, Levenberg-Marquardt; the hybrid takes 10 s.
 fn repetition_of(percents: [f64; 4], seconds_to_match: Option<f64>) -> Repetition {
     let training = |(trainer, percent): (Trainer, f64)| Training {
         trainer,

@@ -73,8 +73,7 @@ const MOST_FOLDS: usize = 5;
 /// Rows with an output that candidates are fitted to and judged on, at most; the memory runs through all.
 const MOST_ROWS: usize = 4000;
 
-/// Rows that candidates with inertia are judged on, at most: the beginnings of the records, because their motion depends
-/// on every row. Their members are fitted to all rows.
+/// Rows that candidates with inertia are judged on, at most: the beginnings of the records.
 const ROWS_WITH_INERTIA: usize = 6000;
 
 /// Fits expected before anything is known.
@@ -95,9 +94,6 @@ fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
 }
 
 /// Identifies a model by cross-validation of candidates.
-///
-/// # Errors
-/// Data from which no model can be identified, and options that leave no candidate.
 pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     data.check_identifiable(FEWEST_ROWS)?;
     check([("members", json!(options.members))])?;
@@ -223,8 +219,7 @@ impl Chosen<'_, '_, '_> {
         Ok(fit(model.with_band_over(band, self.data)?)?.with_held_out(held_out))
     }
 
-    /// The ensemble of all candidates that are left, whose members are fitted here; `None` if none could be fitted in
-    /// time.
+    /// The ensemble of all candidates that are left, its members fitted; `None` if none could be fitted in time.
     fn assembled(&mut self) -> Result<Option<Assembled>> {
         let Bench { work, .. } = self.bench;
         let Some(all) = self.combination(|_| true) else { return Ok(None) };
@@ -282,8 +277,7 @@ impl Chosen<'_, '_, '_> {
         all.only(|leaf| self.trials[leaf.place].members.contains_key(&leaf.start))
     }
 
-    /// The model with the lowest training error of those that were fitted to everything before the observer asked
-    /// to stop.
+    /// The model with the lowest training error of those fitted to everything so far.
     fn without_validation(&self, alone: Model) -> Model {
         let error = |model: &&Model| model.provenance().trained_error().rmse;
         let members = self.trials.iter().flat_map(|trial| trial.members.values());
@@ -311,8 +305,7 @@ impl Chosen<'_, '_, '_> {
         })
     }
 
-    /// The rows held out of each fold, predicted with weights that were found on the other folds: rows that chose the
-    /// weights would look better than new ones.
+    /// Held-out rows of each fold, predicted with weights from the other folds, because their own would flatter them.
     fn rows_held_out(&self, combination: &Combination) -> Vec<Vec<HeldOutRow>> {
         let folds = self.bench.folds;
         let of_fold = |fold: usize| {

@@ -16,11 +16,8 @@ pub struct HeldOutRows {
 }
 
 impl HeldOutRows {
-    /// From the folds and the outputs that were predicted for the scored rows of each; `None` if there is none. A row of
-    /// several folds counts in the first of them.
-    ///
-    /// # Errors
-    /// None for folds of one data set.
+    /// The rows of these folds with their predictions; `None` if there is none. A row counts in the first fold that has
+    /// it.
     pub(crate) fn of<'f>(
         names: &ColumnNames,
         folds: impl IntoIterator<Item = (&'f Fold, &'f [f64])>,

@@ -41,11 +41,7 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
-    /// The data as they are to be fitted to: each record after its lead-in. The observer is asked whether to
-    /// stop; an unknown state is then that which was found so far.
-    ///
-    /// # Errors
-    /// Data from which no model can be identified, a rate that cannot be computed.
+    /// Each record after its lead-in. Once the observer stops, an unknown state is the one found so far.
     pub fn of<'d>(&self, data: &'d Dataset, observer: &mut Observer<'_>) -> Result<Cow<'d, Dataset>> {
         match self.state {
             None => Ok(Cow::Borrowed(data)),
@@ -60,11 +56,7 @@ impl Wanted {
         }
     }
 
-    /// Folds of data whose initial state is unknown, with what is found on each; others as they are. Asked to
-    /// stop, there are none.
-    ///
-    /// # Errors
-    /// Data from which no model can be identified, a rate that cannot be computed.
+    /// Folds with the states found on each, if the state is unknown; none once stopped.
     pub fn on_folds(&self, folds: Vec<Fold>, stop: StopCheck<'_>) -> Result<Vec<Fold>> {
         if self.state != Some(InitialState::Unknown) {
             return Ok(folds);
@@ -75,9 +67,6 @@ impl Wanted {
 }
 
 /// The data in a known initial state.
-///
-/// # Errors
-/// None for data with an input.
 pub(crate) fn known(data: &Dataset, state: InitialState, measured_from: Origin) -> Result<Dataset> {
     if state == InitialState::Periodic {
         return data.clone().with_periodic_lead_ins();
@@ -91,9 +80,6 @@ pub(crate) fn known(data: &Dataset, state: InitialState, measured_from: Origin) 
 }
 
 /// The data with the lead-ins that are found for the records; `None` once stopped.
-///
-/// # Errors
-/// Data from which no model can be identified, a rate that cannot be computed.
 pub(crate) fn found(
     data: &Dataset,
     rate: Option<RateMethod>,
@@ -106,11 +92,7 @@ pub(crate) fn found(
     data.clone().with_lead_ins(|index, _| lead_ins[index].clone()).map(Some)
 }
 
-/// A fold with the lead-ins that are found for its training data alone: held-out data begin with the most
-/// frequent of them. `None` once stopped.
-///
-/// # Errors
-/// As [`found`].
+/// A fold with lead-ins found for its training data; held-out data have the most frequent of them. `None` once stopped.
 pub(crate) fn found_on(
     fold: &Fold,
     rate: Option<RateMethod>,

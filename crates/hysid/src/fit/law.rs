@@ -77,9 +77,6 @@ pub(crate) trait SearchedLaw: Law + Into<Classical> {
     type Family: LawFamily<Law = Self>;
 
     /// The family to search, and the rows that it is compared with.
-    ///
-    /// # Errors
-    /// Invalid options, or a rate that cannot be computed.
     fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Self::Family, Vec<Series>)>;
 }
 
@@ -103,14 +100,7 @@ impl<L: SearchedLaw> Identify for L {
 
 macro_rules! fit {
     ($($module:ident::$law:ident),* $(,)?) => {
-        /// Fits a classical law. The observer is called after every round of a search; a fit without rounds
-        /// checks `stop`.
-        ///
-        /// # Errors
-        /// Data from which no model can be identified, invalid options.
-        ///
-        /// # Panics
-        /// For random stops, which are a network.
+        /// Fits a classical law, but no random stops, which are a network. A fit without rounds checks `stop`.
         pub(crate) fn fit(
             data: &Dataset,
             options: &ClassicalOptions,
@@ -132,9 +122,6 @@ for_each_law!(fit);
 
 macro_rules! linearised {
     ($($module:ident::$law:ident),* $(,)?) => {
-        /// As [`Identify::linearised`].
-        ///
-        /// # Errors
         /// As [`Identify::linearised`].
         pub(crate) fn linearised(
             law: &Classical,

@@ -209,8 +209,7 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             let layout = Layout::new(duhem_nn::shape_of(options, data.has_time()));
             let (p, m) = (layout.count() as f64, layout.shape.terms() as f64);
             let busy = threads.min(starts);
-            // Gram matrix, curvature and its damped copy, two at a time, each of which is written below its
-            // diagonal only.
+            // Gram matrix, curvature and its damped copy, two at a time, each written below its diagonal only.
             let derivatives = 1.5 * (m + p) * (m + p) + p * m + 270.0 * (m + p);
             let all = busy * derivatives + starts * 6.0 * (p + m * m) + 2.0 * copies;
             let taken_by = format!("derivatives by {p} searched parameters");
@@ -232,8 +231,7 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             let (p, starts) = (parameters as f64, options.starts() as f64);
             let at_once = data.records().len().min(hysteretic_dynamics::AT_ONCE) as f64;
             let busy = threads.min(starts * at_once);
-            // As for a Duhem network; a row of derivatives for each number that moves beside them. A start keeps the sums
-            // of some records until it adds them.
+            // As for a Duhem network. A start keeps the sums of some records until it adds them.
             let derivatives = 1.5 * p * p + 300.0 * p + starts * at_once * p * p / busy;
             let taken_by = format!("derivatives by {parameters} searched parameters");
             largest_of(

@@ -46,14 +46,12 @@ pub use checkpoint::Checkpoint;
 use fitting::Fitting;
 pub(crate) use shared_observer::SharedObserver;
 
-/// Progress of a fit. The observer gets it after every epoch; during long epochs it gets the same again
-/// without a checkpoint and a model, so that it can stop the fit.
+/// Progress of a fit, after every epoch; during long epochs the same again, without checkpoint and model.
 #[derive(Debug, Clone)]
 pub struct Progress<'a> {
     /// The model that is being fitted.
     pub model: ModelName,
-    /// True for one fit of many: of a candidate of `auto`, or to a fold of a validation. Only `done` then
-    /// refers to the whole work.
+    /// True for one fit of many (a candidate, a fold). Only `done` then refers to the whole work.
     pub is_part: bool,
     /// The present part of the fit.
     pub phase: Phase,
@@ -92,8 +90,7 @@ impl fmt::Debug for Present<'_> {
 }
 
 impl<'a> Progress<'a> {
-    /// The state from which the fit can be resumed; `None` for a model without checkpoints. It is a copy,
-    /// which is made only on request.
+    /// The state from which the fit can be resumed, copied on request; `None` for a model without checkpoints.
     pub fn checkpoint(&self) -> Option<Checkpoint> {
         match self.present? {
             Present::Network(fitting) => Some(fitting.checkpoint()),
@@ -188,8 +185,7 @@ pub struct Fitted {
     /// Parameters found by the search of a law, from which a similar fit can begin
     /// ([`near`](crate::options::classical::ClassicalOptions::near)); empty for other models.
     pub searched: Vec<f64>,
-    /// The rows that were held out in turn, with what models gave for them that were fitted without; `None` if none were
-    /// held out.
+    /// The rows that were held out in turn, with their predictions; `None` if none were held out.
     pub held_out: Option<HeldOutRows>,
 }
 

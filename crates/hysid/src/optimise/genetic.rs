@@ -55,8 +55,7 @@ pub struct Problem<'a> {
     pub cost: &'a (dyn Fn(&[f64]) -> f64 + Sync),
 }
 
-/// The state of a genetic search: a population and the numbers of generations and evaluations. It can be
-/// stored and resumed, to the last bit.
+/// The state of a genetic search, which can be stored and resumed to the last bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Genetic {
     population: Vec<Individual>,

@@ -29,11 +29,9 @@ const PATIENCE: usize = 3;
 pub struct Rules {
     /// Smallest damping, and the damping at which the search ends.
     pub damping: (f64, f64),
-    /// `m`: share of the largest earlier curvature in a direction that is kept after an iteration; 0 for the
-    /// present curvature only.
+    /// `m`: share of the largest earlier curvature that is kept after an iteration; 0 for the present one only.
     pub curvature_memory: f64,
-    /// `s`: least curvature in any direction, as a share of the largest. It limits steps in directions
-    /// without slope.
+    /// `s`: least curvature in any direction, as a share of the largest.
     pub least_curvature: f64,
     /// Largest component of a gradient that counts as 0.
     pub least_gradient: f64,
@@ -105,8 +103,7 @@ pub trait Problem {
     /// Gradient and curvature at a point with its value; `None` once stopped.
     fn slope(&self, parameters: &[f64], value: &Self::Value) -> Option<Slope<Self::Curvature>>;
 
-    /// The step that minimises the quadratic model with `damping` added to the diagonal of the curvature;
-    /// `None` if there is none, or once stopped.
+    /// The step to the minimum of the damped quadratic model; `None` if there is none, or once stopped.
     fn step(&self, slope: &Slope<Self::Curvature>, parameters: &[f64], damping: &[f64]) -> Option<Vec<f64>>;
 
     /// Moves parameters into their bounds.
@@ -267,8 +264,7 @@ impl Damping {
         }
     }
 
-    /// Raises the damping until a step lowers the function; then sets it for the next by how well
-    /// the quadratic model predicted the fall (Nielsen's rule). `None` if no step does.
+    /// Raises the damping until a step lowers the function, then resets it by Nielsen's rule; `None` if no step does.
     fn step<P: Problem>(
         &mut self,
         problem: &P,

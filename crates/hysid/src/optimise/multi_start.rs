@@ -50,8 +50,7 @@ impl<S: Start> MultiStart<S> {
         Self { starts, given_up: 0 }
     }
 
-    /// Advances all starts in rounds, counted from 1, until all have ended or `tell`, which is called after every
-    /// round, returns `Break`.
+    /// Advances all starts in rounds, counted from 1, until all have ended or `tell` breaks.
     pub fn run(
         &mut self,
         plan: Plan,

@@ -70,8 +70,7 @@ impl Quadratic {
         }
     }
 
-    /// The minimum; `None` once stopped. Where rounding makes the matrix indefinite, a ridge is added
-    /// until it is not.
+    /// The minimum, with a ridge if rounding makes the matrix indefinite; `None` once stopped.
     pub fn minimum(&self, stop: StopCheck<'_>) -> Option<Vec<f64>> {
         minimum(&self.matrix, self.right.clone(), stop)
     }
@@ -89,10 +88,7 @@ impl Quadratic {
         Some(weights)
     }
 
-    /// The minimum that a fit ends with. Asked to stop, it is still found where that takes little time.
-    ///
-    /// # Errors
-    /// A stop, where it takes long.
+    /// The minimum that a fit ends with. Once stopped, it is still found where that takes little time, else an error.
     pub fn last_minimum(self, bounds: &Bounds, stop: StopCheck<'_>) -> Result<Vec<f64>> {
         let stop = if self.right.len() <= QUICKLY_SOLVED { StopCheck::never() } else { stop };
         self.minimum_within(bounds, &[], stop).ok_or(Error::Stopped)
@@ -183,8 +179,7 @@ impl Quadratic {
 /// Exchanges of many variables without progress, before they are exchanged singly.
 const PATIENCE: usize = 3;
 
-/// Exchanges after which the result is taken as it is, with negative weights set to 0. Of the order
-/// of ten are needed.
+/// Most exchanges, after which negative weights are set to 0; about ten are needed.
 const MOST_PIVOTS: usize = 500;
 
 /// Weights that are found within some hundredths of a second.

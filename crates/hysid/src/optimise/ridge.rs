@@ -4,8 +4,7 @@
 use crate::linear_algebra::{Cholesky, Symmetric};
 use crate::stop_check::{Pace, StopCheck};
 
-/// Ridge beyond which a matrix is given up, as a multiple of its largest diagonal entry: only numbers that are none are
-/// not made definite by as much.
+/// Largest ridge, as a multiple of the largest diagonal entry: beyond it entries are no numbers.
 const LARGEST: f64 = 1e12;
 
 /// Smallest ridge that is tried, as a share of the largest diagonal entry.

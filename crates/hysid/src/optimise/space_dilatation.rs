@@ -59,8 +59,7 @@ impl Default for DilatationOptions {
 }
 
 impl DilatationOptions {
-    /// # Errors
-    /// A setting outside its meaning.
+    /// An error for a setting outside its meaning.
     pub fn check(&self) -> Result<()> {
         let within = |name: &str, value: f64, low: f64, high: f64| match value >= low && value <= high {
             true => Ok(()),
@@ -183,8 +182,7 @@ impl SpaceDilatation {
         &self.best
     }
 
-    /// One outer iteration: steps along one direction, then a dilatation. Returns why the minimisation ends,
-    /// if it does.
+    /// One outer iteration: steps along one direction, then a dilatation. Returns why the search ends, if it does.
     pub fn advance(&mut self, f: &mut impl Subdifferentiable) -> Option<Termination> {
         self.best.iterations += 1;
         if norm(&self.gradient) == 0.0 {
@@ -248,8 +246,7 @@ impl SpaceDilatation {
         }
     }
 
-    /// Forgets the dilatations. The step begins anew from the last one as it was in the undilated space:
-    /// in the dilated one it may have grown beyond all bounds.
+    /// Forgets the dilatations; the step is the last one in the undilated space, as the dilated one may be huge.
     fn begin_anew(&mut self) {
         self.space = DilatedSpace::of_scales(&self.scales);
         self.step = self.last_move / STEPS_BEFORE_GROWTH as f64;
@@ -269,8 +266,7 @@ impl SpaceDilatation {
         // R is symmetric: Bᵀg of the new space is R Bᵀg.
         dilate_vector(&mut self.transformed, &xi, gamma);
         self.direction = self.space.dilate(&xi, gamma, &unit(&self.transformed));
-        // det B falls with every dilatation. A common factor moves from B to the step without any
-        // change to the points that follow.
+        // det B falls with every dilatation: a common factor moves from B to the step, without effect on the points.
         if self.space.largest_entry() < SMALLEST_ENTRY {
             let largest = self.space.normalise();
             self.transformed.iter_mut().chain(&mut self.direction).for_each(|value| *value /= largest);

@@ -23,8 +23,7 @@ const HOLD: f64 = 0.03;
 const FEWEST_ROWS_OF_A_HOLD: usize = 8;
 const HOLDS: [f64; 2] = [0.75, 0.3];
 
-/// Largest swings of a specimen that may deteriorate: share of the range at first, and share of the rows after which the
-/// whole range is allowed. Large swings would damage it before small ones are measured.
+/// Largest first swing as a share of the range, and share of the rows until all is allowed: large swings may damage.
 const FIRST_REACH: f64 = 0.35;
 const WHOLE_REACH_AT: f64 = 0.6;
 

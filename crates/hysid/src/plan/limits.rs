@@ -50,7 +50,7 @@ pub struct Wanted {
 }
 
 impl Limits {
-    /// The limits of data, where `wanted` says no others.
+    /// The limits of the data, where `wanted` gives no others.
     ///
     /// # Errors
     /// Data from which nothing can be identified, limits that cannot be used.

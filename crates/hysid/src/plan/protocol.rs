@@ -245,8 +245,7 @@ impl Protocol {
         })
     }
 
-    /// The limits, with the rate at which the protocol takes the wanted rows, or with the rows that it takes at the
-    /// wanted rate.
+    /// The limits with the rate at which the protocol takes the wanted rows, or the rows at the wanted rate.
     fn limits(self, range: (f64, f64), wanted: &Wanted, wave: Wave) -> Result<Limits> {
         let step = wanted.step;
         let start = 0.0_f64.clamp(range.0.min(range.1), range.1);

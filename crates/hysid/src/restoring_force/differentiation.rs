@@ -15,8 +15,7 @@ const SHARE_OF_RECORD: f64 = 0.25;
 /// A channel that was differentiated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derivative {
-    /// The derivative in each row of each record. Within half a window of an end, the polynomial is that of the first or
-    /// last window.
+    /// The derivative in each row; near an end, that of the first or last window's polynomial.
     pub values: Vec<Vec<f64>>,
     /// The filter.
     pub filter: Filter,

@@ -10,8 +10,7 @@ const ORDERS: [usize; 5] = [2, 3, 4, 6, 8];
 /// Differences of an order that are taken at most.
 const MOST: usize = 20_000;
 
-/// Standard deviation of the noise of a channel, in its unit, if it is independent from row to row; with the rounding of
-/// its numbers to the steps of an instrument. Time and values of each record; NaN for a missing value.
+/// Standard deviation of independent noise with the rounding of an instrument, from time and values of each record.
 pub fn deviation(records: &[(&[f64], &[f64])]) -> f64 {
     // Without differences it is NaN, which is no minimum.
     let of_order = |&order: &usize| median(&mut differences(records, order)) / MEDIAN_OF_NORMAL;
@@ -41,8 +40,7 @@ fn differences(records: &[(&[f64], &[f64])], order: usize) -> Vec<f64> {
     sizes
 }
 
-/// Coefficients of the divided difference at these times: `1/Π_{j≠i} (t_i - t_j)`, with times in units of their mean
-/// step.
+/// Coefficients `1/Π_{j≠i} (t_i - t_j)` of the divided difference, with times in units of their mean step.
 fn coefficients(time: &[f64]) -> Vec<f64> {
     let unit = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
     let product = |&at: &f64| {

@@ -38,8 +38,8 @@ impl<'s> Search<'s> {
         Self { records, rows: tried_rows(records, on_a_side), order, noise }
     }
 
-    /// The filter with the least error among all degrees with so many rows on a side; `other` is one that smooths less than
-    /// a long one of these.
+    /// The filter with the least error among all degrees with so many rows on a side, or a long filter's shorter
+    /// `other`.
     pub fn best(&self, sides: &[usize], other: Option<&Trial>) -> Trial {
         let mut best: Option<Trial> = None;
         for degree in DEGREES {

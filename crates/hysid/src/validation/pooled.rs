@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use crate::data::metrics::{ErrorSums, Errors, ScoredRow};
 use crate::data::record::Dataset;
 
-/// Errors on rows held out, of which some may have been held out more than once: a row counts once, with the
-/// mean of its squared errors.
+/// Held-out errors; a row that is held out more than once counts once, with the mean of its squared errors.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PooledErrors {
     /// The rows of each record, by its name.

@@ -83,8 +83,7 @@ fn the_answer_is_the_nested_median_of_the_members() {
     }
 }
 
-/// The weighted median by its definition, theory.md (11.3), written another way: the weighted distribution
-/// function is inverted by bisection.
+/// The weighted median by its definition, theory.md (11.3): the weighted distribution function inverted by bisection.
 fn answer(group: &Group, of_member: &dyn Fn(usize) -> f64) -> f64 {
     let mut votes: Vec<(f64, f64)> = group
         .nodes
@@ -238,8 +237,7 @@ fn the_band_lies_about_the_output_and_widens_with_its_probability() {
         last = share;
         assert!(prediction.output.iter().zip(&prediction.low).all(|(y, low)| low <= y));
     }
-    // Three epochs of a few members do not foretell a longer record as they did their folds, but the band
-    // is no thin line.
+    // Three epochs do not predict a longer record as their folds, but the band is no thin line.
     assert!(last > 0.5, "{last}");
     for wrong in [0.0, 0.3, 1.0, f64::NAN] {
         assert!(model.predict(&excitation, wrong).unwrap_err().to_string().contains("from 0.5 to 0.99"));

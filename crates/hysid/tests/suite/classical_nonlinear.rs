@@ -187,8 +187,7 @@ fn laws_that_are_integrated_do_not_depend_on_the_sampling() {
     assert!(worst[0] < 1e-12 && worst[1..].iter().all(|worst| *worst < 2e-4), "{worst:?}");
 }
 
-/// theory.md (8.6), (8.8) to (8.11) by Euler's method of second order in steps of a thousandth of the yield
-/// displacement.
+/// theory.md (8.6), (8.8) to (8.11) by Euler's method of second order in steps of 1/1000 yield displacement.
 fn degraded_by_small_steps(law: &BoucWen, path: &[f64]) -> Vec<f64> {
     let d = law.degradation.unwrap();
     let slope = |z: f64, e: f64, direction: f64| {

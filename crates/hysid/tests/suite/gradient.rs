@@ -90,8 +90,7 @@ fn the_jacobian_is_that_of_the_whole_simulation() {
                 let largest = linearised.jacobian.iter().map(|column| norm(column)).fold(0.0, f64::max);
                 for (k, column) in linearised.jacobian.iter().enumerate() {
                     let expected = quotient(&network, &drive, k, 1e-6, 1e-6);
-                    // A column that is 0 (a stop that never slips has no use for its β) has no norm
-                    // to compare with.
+                    // A column that is 0 (a stop that never slips has no use for its β) has no norm.
                     let tolerance = 1e-6 * norm(&expected) + 1e-9 * largest;
                     let error = distance(column, &expected);
                     assert!(error < tolerance, "{}: {error} in {}", layout.names()[k], norm(&expected));
@@ -262,8 +261,7 @@ fn the_gradient_is_that_of_the_value() {
     }
 }
 
-/// The dense sums of theory.md (3.1) and (3.3) over the scored rows alone: blank rows count for
-/// nothing but the memory.
+/// The dense sums of theory.md (3.1) and (3.3) over the scored rows alone.
 #[test]
 fn value_and_gradient_are_sums_over_the_scored_rows() {
     for family in FAMILIES {

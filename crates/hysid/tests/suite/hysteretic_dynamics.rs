@@ -36,8 +36,7 @@ fn record(seed: u64, rows: usize, is_linear: bool) -> Record {
     Record::new("r", vec![at_rows(&forces)], at_rows(&motion)).unwrap().with_time(time).unwrap()
 }
 
-/// A record of a mass of 2 kg on a spring and two deteriorating stops in parallel, integrated by central differences in
-/// steps of 1/24000 s.
+/// A mass of 2 kg on a spring and two deteriorating stops, by central differences in steps of 1/24000 s.
 fn deteriorating_record(seed: u64, rows: usize) -> Record {
     let (mass, damping, stiffness) = (2.0, 10.0, 3e4);
     let mut stops = [(4e4, 4e-4), (3e4, 1.2e-3)]
@@ -65,8 +64,7 @@ fn deteriorating_record(seed: u64, rows: usize) -> Record {
     Record::new("r", vec![forces], displacements).unwrap().with_time(time).unwrap()
 }
 
-/// A record of a Duffing oscillator, whose force begins with a jump, with noise in the displacement of 1 % of the
-/// deviation.
+/// A Duffing oscillator whose force begins with a jump, with displacement noise of 1 % of the deviation.
 fn record_without_hysteresis(seed: u64, rows: usize) -> Record {
     let rate = 610.0;
     let step = 1.0 / (rate * STEPS as f64);
@@ -141,8 +139,7 @@ fn the_parameters_of_a_linear_oscillator_are_found() {
     assert!((mass / 2.0 - 1.0).abs() < 0.01, "{mass}");
 }
 
-/// A record that is cut out of a longer one begins in mid-motion. Neither that nor how it begins changes the oscillator
-/// that is found.
+/// Neither a record cut out in mid-motion nor how it begins changes the oscillator that is found.
 #[test]
 fn a_record_in_mid_motion_does_not_change_the_oscillator() {
     let whole = record(3, 1500, true);
@@ -162,8 +159,7 @@ fn a_record_in_mid_motion_does_not_change_the_oscillator() {
     assert!(unseen < 2e-3, "{unseen}");
 }
 
-/// A piezo stage has its hysteresis at the input, and one mode. A second mode in the model must not lead to a much worse
-/// one.
+/// A piezo stage has hysteresis at the input and one mode; a second mode in the model must do little harm.
 #[test]
 fn hysteresis_at_the_input_is_identified_with_a_mode_too_many() {
     let stage = |seed: u64, rows: usize| {

@@ -30,8 +30,7 @@ fn path(rows: usize, size: f64, pace: f64) -> Vec<f64> {
     (0..rows).map(|k| x(k as f64)).collect()
 }
 
-/// The record with its lead-in as rows without an output, of which the last rests at the first input, and the same
-/// with the lead-in told.
+/// The record with its lead-in as rows without an output, the last at the first input; and with the lead-in given.
 fn both_ways(record: &Record, lead_in: &[f64]) -> (Record, Record) {
     let x = &record.inputs()[0];
     let x: Vec<f64> = lead_in.iter().chain(&x[..1]).chain(x).copied().collect();
@@ -90,8 +89,7 @@ fn remanent() -> (Dataset, Dataset) {
     (untimed(train), untimed(test))
 }
 
-/// Every model without time, fitted to records that begin saturated, is the one that is fitted to the same with
-/// the lead-in as rows, and simulates the same.
+/// Every model without time is the same with the lead-in as rows and as a lead-in, and simulates the same.
 #[test]
 fn a_lead_in_drives_the_memory_as_rows_before_the_record_do() {
     let records = [record(150, "a"), record(120, "b")];

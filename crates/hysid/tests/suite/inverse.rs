@@ -322,8 +322,7 @@ fn records_are_refused_with_the_row() {
 const MONOTONE: &str = "prandtl-ishlinskii modified-prandtl-ishlinskii generalized-prandtl-ishlinskii masing \
     preisach jiles-atherton";
 
-/// The diagnosis drives a model to other pasts than the round trip: where the first finds a model monotone, the second
-/// must find the inputs.
+/// Where the diagnosis finds a model monotone, the inverse must find the inputs.
 #[test]
 fn models_judged_invertible_are_inverted() {
     const ROWS: usize = 1000;

@@ -56,8 +56,7 @@ fn refusal(text: &str) -> String {
     }
 }
 
-/// The text with its checksum made to fit again, as the file module describes it: CRC 32 of all
-/// before the key, without the white space between its parts.
+/// The text with its checksum made to fit again: CRC 32 of all before the key, without white space between parts.
 pub fn with_fitting_checksum(text: &str) -> String {
     let end = text.rfind("\"checksum\"").unwrap();
     // No text of these files has a quotation mark within.

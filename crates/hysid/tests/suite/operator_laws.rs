@@ -35,9 +35,7 @@ fn refinement() -> impl Strategy<Value = Vec<Vec<f64>>> {
     vec(vec(0.0..=1.0, 0..5), 30)
 }
 
-/// `path` with further points on its straight pieces, and where the original points are now.
-///
-/// A fraction of 0 or 1 repeats an original point.
+/// `path` with further points on its straight pieces, and the places of the original points; 0 and 1 repeat one.
 fn refine(path: &[f64], fractions: &[Vec<f64>]) -> (Vec<f64>, Vec<usize>) {
     let (mut refined, mut kept) = (vec![path[0]], vec![0]);
     for (ends, fractions) in path.windows(2).zip(fractions) {
@@ -75,8 +73,7 @@ fn relay(r: f64, s: f64) -> Relay {
     Relay::new(r, s).unwrap()
 }
 
-/// The three operators that remember turning points alone and compute without rounding in their
-/// memory: laws about memory hold for them to the last bit.
+/// Operators whose memory is turning points, without rounding: laws of memory hold to the last bit.
 fn exact_operators(r: f64, s: f64) -> [(&'static str, Box<dyn Operator>); 3] {
     [("play", Box::new(play(r))), ("stop", Box::new(stop(r))), ("relay", Box::new(relay(r, s)))]
 }
@@ -92,8 +89,7 @@ fn sine(amplitude: f64, samples: usize, cycles: usize) -> Vec<f64> {
     (0..=samples * cycles).map(|k| amplitude * phase(k).sin()).collect()
 }
 
-/// Area enclosed by the last cycle of `samples` samples in the plane of input and output, positive
-/// if work is done on the element.
+/// Area of the last cycle of `samples` samples, positive if work is done on the element.
 fn loop_area(x: &[f64], y: &[f64], samples: usize) -> f64 {
     (x.len() - samples..x.len()).map(|k| (y[k] + y[k - 1]) / 2.0 * (x[k] - x[k - 1])).sum()
 }
@@ -103,8 +99,7 @@ fn loop_area(x: &[f64], y: &[f64], samples: usize) -> f64 {
 proptest! {
     #![proptest_config(few_repeatable_cases())]
 
-    /// The stop, computed from the play, is the stop of the definition (1.3), which adds up
-    /// increments; and its output never leaves [-r, r].
+    /// The stop from the play is the stop of the definition (1.3), which adds increments, within [-r, r].
     #[test]
     fn stop_follows_its_definition(x in path(), r in threshold()) {
         let output = stop(r).run(&x);
@@ -117,8 +112,7 @@ proptest! {
         prop_assert!(output.iter().all(|y| y.abs() <= r + 1e-15));
     }
 
-    /// Play and stop share the input between them (1.4): to within the rounding of one subtraction
-    /// and one addition. A worn stop does not give its part back.
+    /// Play and stop add up to the input (1.4), within rounding; a worn stop does not give its part back.
     #[test]
     fn play_and_stop_add_up_to_the_input(x in path(), r in threshold()) {
         let (p, e) = (play(r).run(&x), stop(r).run(&x));
@@ -134,8 +128,7 @@ proptest! {
         prop_assert!(!slid_in_sight || largest_difference(&y, &e) > 1e-6);
     }
 
-    /// `R_{s-r,s+r} = +1` if and only if `P_r > s`: relays are points of the half-plane (r, s), the
-    /// play is the memory curve through it.
+    /// `R_{s-r,s+r} = +1` if and only if `P_r > s`.
     #[test]
     fn relay_tells_on_which_side_of_it_the_play_is(
         x in path(), r in threshold(), s in -2.0..2.0f64,
@@ -149,8 +142,7 @@ proptest! {
         }
     }
 
-    /// A stop of threshold r is a stop of threshold 1 seen through a magnifying glass (1.12), and
-    /// wears equally fast with the same β, whichever way round its input is connected.
+    /// A stop of threshold r is a scaled stop of threshold 1 (1.12) that wears equally fast with the same β.
     #[test]
     fn scaling_of_input_and_threshold(
         x in path(), w in prop_oneof![-4.0..-0.3f64, 0.3..4.0f64], beta in 2.0..100.0f64,
@@ -225,10 +217,7 @@ fn jump_to_the_first_sample_costs_no_strength() {
 proptest! {
     #![proptest_config(few_repeatable_cases())]
 
-    /// Semigroup property and rate independence: neither further points on monotone pieces nor
-    /// waiting (repeated points) change the outputs at the original points.
-    ///
-    /// Slip is a sum, so a deteriorating stop may differ in its rounding.
+    /// Further points on monotone pieces and repeated points change no output at the original points.
     #[test]
     fn only_turning_points_count(
         x in path(), fractions in refinement(), waits in refinement(),
@@ -261,8 +250,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, ..few_repeatable_cases() })]
 
-    /// A cycle of amplitude V > r encloses `4 r (V - r)` (1.7) and slips `4 (V - r)` (1.8), after
-    /// `V - r` in the first quarter; the area is the work against the slider, force times way.
+    /// A cycle of amplitude V > r encloses `4 r (V - r)` (1.7) and slips as much over r (1.8), `V - r` at first.
     #[test]
     fn area_and_slip_of_a_cycle(r in 0.1..2.0f64, excess in 0.01..1.5f64) {
         let (amplitude, samples) = (r + excess, 4000);
@@ -307,8 +295,7 @@ fn death(element: &mut DeterioratingStop, x: &[f64]) -> Option<usize> {
     })
 }
 
-/// The life under a sine of V = 1.42, r = 1, against the formula (1.9), which spreads the slip
-/// evenly over the cycle, and against the very instant of death, as the slip really goes.
+/// The life under a sine of V = 1.42, r = 1, against (1.9) and against the exact instant of death.
 #[test]
 fn life_of_a_deteriorating_stop() {
     let (amplitude, r, samples) = (1.42, 1.0, 10_000);
@@ -519,8 +506,7 @@ fn parameters_are_checked_and_the_message_has_value_and_rule() {
     );
 }
 
-/// A sample that is no number is a mistake of the caller: found in debug builds, without
-/// consequences for the samples after it in release builds.
+/// A sample that is no number: found in debug builds, without later consequences in release builds.
 #[test]
 #[cfg(not(debug_assertions))]
 fn bad_samples_leave_no_trace() {

@@ -189,8 +189,7 @@ fn swings_of_a_specimen_that_deteriorates_grow() {
     assert!(random.amplitude > 8.0, "{random:?}");
 }
 
-/// An electrical steel in A/m and T, after cycles over its whole range: error of a Preisach model on random reversals
-/// after the same cycles again, and after the plan.
+/// A steel after cycles over its range: error of a Preisach model after the same cycles again, and after the plan.
 fn errors_after_cycles() -> (f64, f64) {
     let (low, high) = (-300.0, 300.0);
     let limits =

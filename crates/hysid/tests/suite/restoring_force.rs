@@ -140,8 +140,7 @@ fn multisine(seed: u64, size: f64, rows: usize, step: f64) -> Vec<f64> {
     (0..rows).map(|row| scale * tones.iter().map(|tone| tone(row as f64 * step)).sum::<f64>()).collect()
 }
 
-/// An oscillator, sampled at 1500 Hz from integration at 15 kHz: time, displacement, force, and its restoring force
-/// `k y + c y' + r`.
+/// An oscillator sampled at 1500 Hz: time, displacement, force, and restoring force `k y + c y' + r`.
 fn sampled(oscillator: BoucWenOscillator, seed: u64, size: f64) -> [Vec<f64>; 4] {
     const EVERY: usize = 10;
     let step = 1.0 / 15_000.0;

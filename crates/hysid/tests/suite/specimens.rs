@@ -334,8 +334,7 @@ fn without_hysteresis_lag_and_resonance_have_their_frequency_response() {
     }
 }
 
-/// The steps of the lag are exact under a ramp, those of the resonance under a ramp of the drive; both
-/// at once only if one of them is out of the way.
+/// The steps of the lag are exact under a ramp, those of the resonance under a ramp of the drive.
 #[test]
 fn a_ramp_may_be_cut_into_any_steps() {
     let pieces = [(0.7, 2e-4), (-0.2, 5e-4), (-0.2, 1e-4), (1.0, 3e-3)];

@@ -10,8 +10,7 @@ use serde_json::json;
 /// After so long a fit is asked to stop.
 const LIMIT: Duration = Duration::from_millis(300);
 
-/// A fit that has not ended by then does not listen. Far more than the half second that is promised, because the
-/// machine may be busy; what did not listen took from ten seconds to minutes.
+/// A fit that takes longer does not listen: far more than the half second that is promised, for a busy machine.
 const GENEROUS: Duration = Duration::from_secs(5);
 
 /// A play with noise: every row turns, so that no row can be left out.

@@ -259,8 +259,7 @@ fn data_are_held_out_unless_they_are_too_few() {
     assert!(few.model.provenance().runs.iter().all(|run| run.validation_nrmse_percent.is_none()));
 }
 
-/// The validation is that of [`cross_validate`]: models that have not seen what they predict, not even for the
-/// factors of their scaling. Here the largest inputs and outputs are in one record only.
+/// The validation is that of [`cross_validate`], also if the largest values are in one record only.
 #[test]
 fn validation_is_that_of_a_cross_validation() {
     let record = |name: &str, size: f64, offset: f64| {

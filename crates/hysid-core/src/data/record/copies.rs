@@ -26,8 +26,7 @@ const SHARED: f64 = 0.9;
 /// How many times longer one unit of time is than another.
 const UNITS_OF_TIME: [f64; 5] = [1.0, 60.0, 3600.0, 1e3, 1e6];
 
-/// Largest number of places at which records are searched for in others; beyond it, only equal records are
-/// found.
+/// Most places at which records are searched for in others; beyond it only equal records are found.
 const MOST_PLACES: usize = 5_000_000;
 
 /// Similarity of a record to another.
@@ -162,8 +161,7 @@ struct Compared<'r> {
 }
 
 impl Compared<'_> {
-    /// Differences of a row of the shorter record from one so many rows later in the longer: of each input, and of the
-    /// output.
+    /// Differences of a row from one `shift` rows later in the longer record: each input, and the output.
     fn differences(&self, row: usize, shift: usize) -> impl Iterator<Item = f64> {
         let inputs = self.short.inputs.iter().zip(&self.long.inputs);
         let inputs = inputs.map(move |(short, long)| short[row] - long[row + shift]);
@@ -210,8 +208,7 @@ impl Compared<'_> {
         })
     }
 
-    /// False for a path that was run at another speed, which is another measurement although its outputs may hardly
-    /// differ; time may be in another unit.
+    /// False for a path that was run at another speed, in any unit of time.
     fn is_as_fast(&self, shift: usize) -> bool {
         let last = self.short.len() - 1;
         let (Some(short), Some(long)) = (&self.short.time, &self.long.time) else { return true };

@@ -2,8 +2,7 @@
 
 use crate::error::{Channel, DataError, DataProblem, Error, LARGEST_VALUE, MOST_TURNS, Result};
 
-/// Rows that are checked together: without a branch for each the compiler checks several at once, and a long
-/// run is not noticeably longer for it.
+/// Rows that are checked together, without a branch for each.
 const CHUNK: usize = 1024;
 
 /// The inputs of a record with time stamps and given rate, borrowed.
@@ -148,8 +147,7 @@ impl<'a> Excitation<'a> {
         self.given_rate
     }
 
-    /// The turning points of the first input before the first row; empty for the virgin state, `None` for the
-    /// initial state of the model.
+    /// Turning points of the first input before the first row; empty for virgin, `None` for the model's initial state.
     pub fn lead_in(&self) -> Option<&'a [f64]> {
         self.lead_in
     }

@@ -1,7 +1,6 @@
 //! Fingerprints by which records are recognized.
 
-/// A hash of the scored rows of a record: the bits of inputs and output, independent of names and time
-/// stamps.
+/// A hash of the scored rows of a record: bits of inputs and output, independent of names and time stamps.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fingerprint {
     /// FNV-1a, <https://datatracker.ietf.org/doc/html/rfc9923>: the same on every machine.

@@ -11,8 +11,7 @@ use crate::data::turning_points::turning_points;
 /// Difference of two inputs that count as one, as a share of their range. Designed.
 const NEAR: f64 = 0.03;
 
-/// Reversals below these shares of the range count as noise: two inputs with a reversal close to one of the shares agree
-/// at another.
+/// Reversals below these shares of the range are noise; inputs that differ at one share agree at another.
 const SMALLEST_REVERSALS: [f64; 3] = [0.03, 0.05, 0.08];
 
 /// Fewest turning points of a part of a protocol: more than one cycle. Designed.
@@ -73,8 +72,7 @@ pub struct Difference {
 }
 
 impl Protocol {
-    /// How the outputs of the first run and of the others differ, row by row; `None` if there is one run, or the runs have
-    /// other numbers of rows, or their inputs differ by more than noise.
+    /// How the outputs of the first run and the others differ, row by row; `None` unless their inputs are the same.
     pub fn difference(&self, records: &[Record]) -> Option<Difference> {
         let (&first, others) = self.runs.split_first()?;
         let first = &records[first];

@@ -13,8 +13,7 @@ const CELLS: usize = 16;
 /// Speeds, or times, that differ by less than this factor count as one. Designed.
 const ONE: f64 = 1.5;
 
-/// Share of the passages of a cell, of the cells, and of the half cycles that may differ from the others: the approach to
-/// the first cycle, a pause. Designed.
+/// Share of passages, cells and half cycles that may differ from the others. Designed.
 const FEW: f64 = 0.1;
 
 /// Reversals below this share of the range do not end a half cycle. Designed.
@@ -25,8 +24,7 @@ const SMALLEST_REVERSAL: f64 = 0.05;
 pub enum Speeds {
     /// Nothing: there are no time stamps, or one speed at each place.
     One,
-    /// Little: the speed is larger where the cycles are larger, because all take about the same time. A dependence on the
-    /// rate and one on the amplitude look alike.
+    /// Little: speed grows with amplitude, so that dependences on both look alike.
     OfAmplitude,
     /// There are several speeds at each place, or the input rests most of the time.
     Several,

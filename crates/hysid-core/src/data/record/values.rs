@@ -4,8 +4,7 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// Immutable values of a column, one for each row. Clones and parts from the first row on share one allocation, because
-/// cross-validation holds many parts of the same record.
+/// Immutable values of a column; clones and parts from the first row on share one allocation.
 #[derive(Clone)]
 pub struct Values {
     all: Arc<[f64]>,

@@ -32,8 +32,7 @@ pub fn quotient(above: &str, below: &str) -> String {
 /// Permeability of vacuum, in V s/(A m).
 const VACUUM_PERMEABILITY: f64 = 1.256_637_062e-6;
 
-/// The factor that makes a pure number of an input over an output: of two fields, or of a field over a flux density `μ0 M`.
-/// `None` where the quotient has a unit.
+/// The factor to a pure number of an input over an output, such as a field over a flux density, if it is one.
 pub fn pure_quotient(input: &str, output: &str) -> Option<f64> {
     let (above, below) = (Quantity::of(input)?, Quantity::of(output)?);
     let factor = above.factor / below.factor;

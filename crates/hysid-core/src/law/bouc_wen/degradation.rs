@@ -25,8 +25,7 @@ const QUICK: f64 = 4.0;
 /// How near to the yield force that is, as a share of it.
 const AT_REST: f64 = 1e-3;
 
-/// Largest lag of an element behind its yield force, as a share of it, with which it is taken to follow steadily: the
-/// error is the square of the lag.
+/// Largest lag behind the yield force, as a share of it, at which an element follows steadily.
 const SLOW: f64 = 3e-3;
 
 /// How near to the steady lag that is, as a share of the yield force.
@@ -169,8 +168,7 @@ impl Degradation {
         (lag <= SLOW).then(|| (ultimate * (1.0 + lag), SUNK / (drift * ultimate)))
     }
 
-    /// The element moved up by at most `by` along its yield force, and how far; `None` if it does not follow that
-    /// steadily.
+    /// The element moved up by at most `by` along its yield force, and how far; `None` if not steadily.
     pub(super) fn follow(&self, n: f64, Inner { z, e }: Inner, by: f64) -> Option<(Inner, f64)> {
         let (steady, way) = self.steady(n, e)?;
         if (z - steady).abs() > STEADY * steady {

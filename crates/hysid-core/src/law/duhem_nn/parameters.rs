@@ -51,8 +51,7 @@ impl Layout {
         self.stops.end
     }
 
-    /// True for a parameter on which weight decay acts; false for `ln c`, `ln τ` and the weights of the stops,
-    /// which are large for a small threshold.
+    /// True for a parameter with weight decay; not for `ln c`, `ln τ` and weights of stops, which may be large.
     pub fn has_decay(&self, index: usize) -> bool {
         index < self.ln_path_leaks.start
     }

@@ -35,8 +35,7 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// The Gram matrix of these columns, over all samples with a target: terms of the output, target and, if
-    /// wanted, the Jacobian. `None` once stopped.
+    /// The Gram matrix over all samples with a target: terms of the output, target, Jacobian. `None` once stopped.
     pub fn gram(self) -> Option<Gram> {
         let count = self.columns();
         let rows = GramOfRows::new(count, self.stop);

@@ -90,8 +90,7 @@ impl Element {
         Shape { stops, states, neurons, deteriorates: !self.strength_losses.is_empty() }
     }
 
-    /// Bound of the magnitude of the force, and of each state: a state is an average of its past and its targets, and
-    /// a target is no larger than the sum of its weights.
+    /// Bounds of the magnitudes of the force and of each state, which is an average of past and targets.
     pub fn bounds(&self) -> (f64, Vec<f64>) {
         let Shape { stops, states, neurons, .. } = self.shape();
         let size = |weights: &[f64]| weights.iter().map(|w| w.abs()).sum::<f64>();

@@ -7,11 +7,9 @@ use super::{DAMPING_RATIOS, Dynamics, Element, LARGEST_WEIGHT, Mode, Shape};
 /// Which coefficients are free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// An oscillator: its output is a displacement, and so is that of its elements. With one mode the element is
-    /// between the mass and the ground.
+    /// An oscillator: its output, and what moves its elements, are displacements.
     Oscillator,
-    /// A state space model: outputs, and displacements of elements, are any sums of displacements, velocities and
-    /// inputs.
+    /// A state space model: any sums of displacements, velocities and inputs.
     StateSpace,
 }
 
@@ -28,8 +26,7 @@ pub struct ModeLayout {
     pub velocity_in_output: Range<usize>,
 }
 
-/// Positions of the parameters of an element, in the order of the fields of [`Element`]; those that are not free are
-/// empty.
+/// Positions of the parameters of an element, in the order of [`Element`]; empty if not free.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[allow(missing_docs, reason = "each field is the one of its name")]
 pub struct ElementLayout {
@@ -58,8 +55,7 @@ pub struct Layout {
     pub modes: Vec<ModeLayout>,
     /// Of each element.
     pub elements: Vec<ElementLayout>,
-    /// Displacement and velocity of each mode at the first sample of a record; empty if records begin at rest. No part
-    /// of the model.
+    /// Displacement and velocity of each mode at the first sample; empty if records begin at rest.
     pub beginning: Range<usize>,
     count: usize,
 }

@@ -54,8 +54,7 @@ impl Dual {
     }
 }
 
-/// The factors of a step of a mode: `Φ_qq, Φ_qp, α_0, α_1` of the displacement, then `Φ_pq, Φ_pp, β_0, β_1` of the
-/// velocity.
+/// The factors of a step of a mode: `Φ_qq, Φ_qp, α_0, α_1` of the displacement, `Φ_pq, Φ_pp, β_0, β_1` of the velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Propagation {
     pub displacement: [f64; 4],

@@ -112,8 +112,7 @@ impl Motion {
         }
     }
 
-    /// Moves the modes by displacements and velocities, without a path from there to here: a record that begins in
-    /// mid-motion.
+    /// Moves the modes by displacements and velocities, as at the beginning of a record in mid-motion.
     #[inline(always)]
     pub(super) fn displace<S: Simd>(
         &mut self,

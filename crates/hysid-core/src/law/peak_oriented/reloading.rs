@@ -22,8 +22,7 @@ pub(super) struct Bend {
 }
 
 impl Bend {
-    /// `φ` at `τ`, between 0 and 1: `[(1 - 2wτ_b) + 2τ(w - 1)] t² + [2wτ_b - 2τ(w - 1)] t = τ` has one solution
-    /// between 0 and 1.
+    /// `φ` at `τ`: `[(1 - 2wτ_b) + 2τ(w - 1)] t² + [2wτ_b - 2τ(w - 1)] t = τ` has one solution within 0 to 1.
     pub fn height_at(&self, share: f64) -> f64 {
         let twice = 2.0 * self.weight;
         let linear = twice * self.place - 2.0 * share * (self.weight - 1.0);

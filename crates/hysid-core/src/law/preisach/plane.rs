@@ -70,8 +70,7 @@ impl Plane {
         }
     }
 
-    /// Share of a cell that the virgin curve from 0 to `h` switches; `h` may be negative, and infinite for
-    /// everything that can be switched on its side.
+    /// Share of a cell that the virgin curve from 0 to `h` switches; `h` may be negative or infinite.
     pub fn virgin_share(&self, i: usize, j: usize, h: f64) -> f64 {
         let (alpha, beta) = ((self.lines[i], self.lines[i + 1]), (self.lines[j], self.lines[j + 1]));
         // The virgin curve downwards is the one upwards of the plane mirrored at α + β = 0.

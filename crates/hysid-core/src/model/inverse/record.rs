@@ -114,8 +114,7 @@ impl Reference<'_> {
         }
     }
 
-    /// Previews to try: powers of two of the unit of time, so that other time steps of the same record lead to the
-    /// same ones.
+    /// Previews to try: powers of two of the unit of time, independent of the time step.
     fn previews(&self) -> impl Iterator<Item = f64> + use<> {
         let time = self.time.unwrap_or_default();
         let longest = match time {
@@ -240,8 +239,7 @@ impl Inverse<'_> {
 }
 
 impl Inversion {
-    /// True if rows are at a limit only where the wanted output is beyond what the model reached elsewhere: a model that
-    /// is driven to a limit in the middle of its range has been lost there.
+    /// True if rows are at a limit only where the wanted output is beyond what was reached elsewhere.
     fn bounds_are_of(&self, wanted: &[f64]) -> bool {
         let reached = || {
             let rows = self.reach.iter().zip(wanted);

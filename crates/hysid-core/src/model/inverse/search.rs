@@ -95,9 +95,6 @@ impl Wanted {
     }
 
     /// The argument at which `function` has the value, nearest to `first` in the direction that `slope` tells.
-    ///
-    /// # Errors
-    /// Those of the function.
     pub fn search<E>(
         &self,
         first: f64,

@@ -34,10 +34,7 @@ impl Snapshot {
         Self { memory, past: state.past, last: state.last, excursion: state.excursion }
     }
 
-    /// Makes the state what it was.
-    ///
-    /// # Panics
-    /// A state of another model.
+    /// Makes the state what it was; panics for a state of another model.
     pub(super) fn restore(&self, state: &mut State) {
         match (&self.memory, &mut state.memory) {
             (Remembered::Network(kept), Memory::Network(simulator, _)) => simulator.set_state(kept.clone()),

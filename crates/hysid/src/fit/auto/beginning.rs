@@ -29,8 +29,7 @@ use crate::validation::Fold;
 /// The validation error that other states must come to, as a share of that of the virgin state. Designed.
 const WORTH: f64 = 0.8;
 
-/// The ends of a record meet if they differ, in input and output, by at most this share of the range and so many of the
-/// largest steps. Designed.
+/// Largest gap between the ends of a record that meet, as a share of the range and in largest steps. Designed.
 const CLOSED: f64 = 0.1;
 const CLOSED_STEPS: f64 = 2.0;
 
@@ -52,9 +51,6 @@ pub(super) struct Beginning {
 }
 
 /// The data in the initial state that the user chose, if it is a known one.
-///
-/// # Errors
-/// None for data with an input.
 pub(super) fn as_chosen<'d>(data: &'d Dataset, options: &AutoOptions) -> Result<Cow<'d, Dataset>> {
     match options.initial_state {
         None | Some(InitialState::Unknown) => Ok(Cow::Borrowed(data)),
@@ -121,9 +117,6 @@ impl Beginning {
     }
 
     /// The data with the lead-ins of these records, which are some of their rows.
-    ///
-    /// # Errors
-    /// None for lead-ins that records have.
     pub fn of_all<'d>(&self, all: &'d Dataset) -> Result<Cow<'d, Dataset>> {
         if !self.is_changed {
             return Ok(Cow::Borrowed(all));
@@ -167,8 +160,8 @@ struct Ways<'a, 'o, 'w> {
 }
 
 impl Ways<'_, '_, '_> {
-    /// The lead-ins of all records, and those found on the training part of each fold; `None` if there was no time,
-    /// or the quick candidate cannot be fitted.
+    /// States found for all records and for the training part of each fold; `None` once stopped, or if no candidate
+    /// fits.
     fn found(&self) -> Option<OtherStates> {
         let is_to_stop = || self.work.is_to_stop();
         let stop = StopCheck::new(&is_to_stop);

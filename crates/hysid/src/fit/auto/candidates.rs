@@ -76,8 +76,7 @@ const COMPANDING: [f64; 2] = [0.1, 0.02];
 /// Scale of the companding of the rate.
 const RATE_COMPANDING: f64 = 0.1;
 
-/// Penalties that the best networks are tried with too: those of a single fit and, for data without noise, as good as
-/// none.
+/// Penalties that the best networks are also tried with: those of a single fit, and near-zero ones for noise-free data.
 const OTHER_PENALTIES: [Regularisation; 2] =
     [Regularisation { ridge: 1e-6, decay: 1e-7 }, Regularisation { ridge: 1e-10, decay: 1e-12 }];
 
@@ -94,8 +93,7 @@ const STARTS_OF_DYNAMIC: usize = 2;
 const STARTS_ON_A_FOLD: usize = 2;
 const EPOCHS_ON_A_FOLD: usize = 80;
 
-/// Random stops with a linear readout, and with a random tanh layer: numbers of stops and tanh neurons. As
-/// above.
+/// Random stops with a linear readout, and with a random tanh layer: stops and tanh neurons. Designed.
 const LINEAR_RANDOM_STOPS: (usize, usize) = (300, 0);
 const LAYERED_RANDOM_STOPS: (usize, usize) = (100, 100);
 
@@ -103,8 +101,7 @@ const LAYERED_RANDOM_STOPS: (usize, usize) = (100, 100);
 const STARTS_OF_A_SEARCH: usize = 4;
 const ROWS_OF_A_SEARCH: usize = 1500;
 
-/// Starts and epochs of a search that tells whether a law is worth more, and of the searches that begin with what
-/// it found.
+/// Starts and epochs of a screening search, and epochs of the searches that begin with its result.
 const STARTS_IN_HASTE: usize = 4;
 const EPOCHS_IN_HASTE: usize = 16;
 const EPOCHS_NEAR: usize = 12;
@@ -155,8 +152,7 @@ impl Candidate {
         }
     }
 
-    /// The same as it is fitted to the training part of a fold: a model with inertia and hysteresis from fewer starts and
-    /// in fewer epochs.
+    /// The same with fewer starts and epochs on a fold, for a model with inertia and hysteresis.
     pub fn on_a_fold(&self) -> Cow<'_, Self> {
         let FitSpec::Classical(options) = &self.request else { return Cow::Borrowed(self) };
         if !self.is_dynamic() || self.has_no_hysteresis() {
@@ -191,8 +187,8 @@ impl Candidate {
         self.is_dynamic() && matches!(&self.request, FitSpec::Classical(options) if options.has_no_memory())
     }
 
-    /// True if this has hysteresis or is another kind of model, and the other is a model with inertia without hysteresis;
-    /// or if both are state space models, and this has more modes.
+    /// True if this has hysteresis or another kind, and the other has inertia only; or for more modes of state space
+    /// models.
     pub fn has_more_parts_than(&self, other: &Self) -> bool {
         let modes_of_state_space = |candidate: &Self| match &candidate.request {
             FitSpec::Classical(options) if options.model == ClassicalModel::HystereticStateSpace => {
@@ -367,8 +363,8 @@ fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
     all.into_iter().map(of).collect()
 }
 
-/// Models with inertia, a network and a recurrent network. If only the changes of the output show the resonance, the
-/// structure has yielded and may have lost strength: oscillators with degradation are tried.
+/// Models with inertia, a network and a recurrent network. With degradation if only changes show the resonance
+/// (yielding).
 fn candidates_with_inertia(data: &Dataset, options: &AutoOptions, compared: Compared) -> Vec<Candidate> {
     use ClassicalModel::{HystereticOscillator, HystereticStateSpace};
     let of = |model: ClassicalModel, modes: usize| ClassicalOptions {
@@ -459,8 +455,7 @@ fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
     laws
 }
 
-/// The laws that are searched, each in all its variants. Where there is a rate, the variants without it are left
-/// out: the weight of the rate may be 0.
+/// The searched laws in all variants; with a rate, those without it are left out, because its weight may be 0.
 fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
     let is_searched = |model: &ClassicalModel| model.is_searched() && !model.is_random();
     let searched = ClassicalModel::ALL.iter().copied().filter(is_searched);

@@ -10,13 +10,11 @@ use crate::model::{
     Ensemble, Group, HeldOutRow, MedianBuffers, Model, Node, NodeKind, Provenance, Weights, disagreement,
 };
 
-/// Power `p` of the weights `(e^S / e^{S_best})^{-p}` among candidates (theory.md (11.6)), and the number of
-/// candidates with a weight.
+/// Power `p` of the weights `(e^S / e^{S_best})^{-p}` (theory.md (11.6)), and number of candidates with a weight.
 const POWER: f64 = 3.0;
 const MOST_CANDIDATES: usize = 8;
 
-/// Fewest starts of an ensemble, where there are so many: fewer are as good on held-out data, and worse on other data
-/// that no candidate fits well (docs/accuracy.md).
+/// Fewest starts of an ensemble: fewer are worse on data that no candidate fits well (docs/accuracy.md).
 const FEWEST: usize = 5;
 
 /// Largest error of fewer starts on held-out data, relative to that of all.
@@ -25,8 +23,7 @@ const WORTH: f64 = 1.01;
 /// Share of the whole weight below which a candidate does not count.
 const TOO_LITTLE: f64 = 0.02;
 
-/// A start of a candidate: what it predicts of the folds is validated, and its fit to everything is a member of
-/// the ensemble.
+/// A start of a candidate: validated on the folds; its fit to all data is a member of the ensemble.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Leaf {
     /// Place of the candidate among the trials.
@@ -42,8 +39,7 @@ pub(super) struct Combination {
 }
 
 impl Combination {
-    /// Of the trials that are complete, weighted by the folds that are `counted`; `None` if no trial is
-    /// complete.
+    /// Of the complete trials, weighted by the folds that are `counted`; `None` without a complete trial.
     pub fn of(
         trials: &[Trial],
         folds: &[HeldOut],
@@ -151,8 +147,7 @@ impl Combination {
         Score::of(&self.predictions(trials, folds), folds, |_| true)
     }
 
-    /// The fewest leaves whose error on the folds that are `counted` is at most 1 % above that of all; at most
-    /// `most`.
+    /// The fewest leaves, at most `most`, whose error on the `counted` folds is at most 1 % above that of all.
     pub fn smallest(
         &self,
         trials: &[Trial],
@@ -171,8 +166,7 @@ impl Combination {
         of_fewer.next().or_else(|| self.first(most))
     }
 
-    /// The first `most` leaves at most: the first of each candidate before the second of any, and those that
-    /// count most before the others.
+    /// The first `most` leaves: the first of each candidate before the second of any, by weight.
     pub fn first(&self, most: usize) -> Option<Self> {
         let share = |leaf: &Leaf| {
             let of_place = self.shares().into_iter().find(|(place, _)| *place == leaf.place);
@@ -188,9 +182,6 @@ impl Combination {
     }
 
     /// The ensemble of the models of each leaf; leaves without a model are left out.
-    ///
-    /// # Errors
-    /// None that a combination of complete trials could cause.
     pub fn ensemble(
         &self,
         model: impl Fn(usize, usize) -> Option<Model>,
@@ -269,8 +260,7 @@ mod tests {
         Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap()
     }
 
-    /// Trials of all kinds whose predictions are off by chance, inside and outside by factors of their own, from
-    /// one to three starts.
+    /// Trials of all kinds, of one to three starts, with random errors inside and outside.
     fn trials(model: &Model, folds: &[HeldOut], generator: &mut Xoshiro256PlusPlus) -> Vec<Trial> {
         let requests = [
             FitSpec::Network(FitOptions { model: Family::Xpnn, ..FitOptions::default() }),

@@ -10,12 +10,11 @@ use crate::fit::auto::score::Score;
 /// Training error of an ensemble, relative to that of the candidate that fits best. Designed.
 const FITS: f64 = 1.3;
 
-/// What may be added to it for data of one loop, in percent of the standard deviation: how a candidate behaves inside the
-/// loop matters more than small errors on it. Designed.
+/// Slack for data of one loop, in percent of the standard deviation: behaviour inside the loop matters more. Designed.
 const SLACK_OF_ONE_LOOP: f64 = 0.5;
 
-/// Held-out error of a candidate, relative to that of the ensemble, at which the candidate is preferred: the lowest of
-/// many errors is low by chance. Designed.
+/// Held-out error, relative to the ensemble's, at which a candidate is preferred: the lowest of many is low by chance.
+/// Designed.
 const CLEARLY_BETTER: f64 = 0.9;
 
 /// A step in which misfits are dropped.

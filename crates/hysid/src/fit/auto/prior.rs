@@ -49,8 +49,7 @@ const STEEPER: f64 = 2.0;
 pub(super) enum Evidence {
     /// The data hold loops of several sizes, or one at several speeds.
     SeveralLoops,
-    /// All reversals of the first input lie at the ends of its range, and all records are run at one speed, as far
-    /// as the data tell.
+    /// All reversals of the first input lie at the ends of its range, and all records have one speed.
     OneLoop(Shape),
 }
 
@@ -124,8 +123,8 @@ fn shape(data: &Dataset) -> Shape {
     }
 }
 
-/// Slopes of equal parts of a branch from the row `first` to `last`; `None` for a branch over less than half the range, or
-/// with too few outputs.
+/// Slopes of equal parts of the branch from row `first` to `last`; `None` below half the range, or with too few
+/// outputs.
 fn slopes(x: &[f64], y: &[f64], first: usize, last: usize, range: f64) -> Option<Vec<f64>> {
     let (from, to) = (x[first], x[last]);
     if (to - from).abs() < 0.5 * range {

@@ -20,8 +20,7 @@ const OWN_CLASS: f64 = 0.75;
 /// Errors that scores tell apart, as shares of the standard deviation.
 const ERRORS: (f64, f64) = (1e-12, 1e150);
 
-/// Mean over the folds of `ln(rmse_f / σ_f)`, separately for rows inside and outside the trained range
-/// (theory.md (11.5)). With the logarithm, one fold with a large error does not dominate.
+/// Mean over the folds of `ln(rmse_f / σ_f)`, for rows inside and outside the trained range (theory.md (11.5)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Score {
     pub inside: f64,
@@ -65,8 +64,7 @@ impl Score {
         Self { inside, outside }
     }
 
-    /// With the error to be expected on loops that the data do not show, as a share of the standard deviation
-    /// (theory.md (11.14)).
+    /// With the error expected on unseen loops, as a share of the standard deviation (theory.md (11.14)).
     pub fn with_unseen(self, error: f64) -> Self {
         if error == 0.0 {
             return self;
@@ -111,8 +109,7 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Weights by scores, `(score / best)^-power` (theory.md (11.6)), and 0 after the best `most` in either
-/// class.
+/// Weights `(score / best)^-power` (theory.md (11.6)); 0 after the best `most` in either class.
 pub(super) fn weights(scores: &[Score], power: f64, most: usize) -> Vec<Weights> {
     let of_class = |score: fn(&Score) -> f64| -> Vec<f64> {
         let best = scores.iter().map(score).fold(f64::INFINITY, f64::min);

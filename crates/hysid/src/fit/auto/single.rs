@@ -32,8 +32,7 @@ use crate::options::auto::AutoOptions;
 const STARTS: usize = 12;
 const STARTS_ON_A_FOLD: usize = 4;
 
-/// Shares of the measured input on which the ensemble teaches beside the data: paths that nobody measured,
-/// but that the model may meet.
+/// Shares of the measured input on which the ensemble teaches beside the data, as unmeasured paths.
 const SHARES: [f64; 2] = [0.5, 0.75];
 
 /// A single model, and what models made in the same way predict on the folds.
@@ -121,9 +120,6 @@ pub(super) struct Makers<'w, 'o, 'a> {
 
 impl Makers<'_, '_, '_> {
     /// The single model; `None` if no candidate is small, or there was no time.
-    ///
-    /// # Errors
-    /// As a free run over the data.
     pub fn single(mut self, ensemble: &Model) -> Result<Option<Single>> {
         let unmeasured = Taught::unmeasured(self.bench.data, ensemble)?;
         let deviation = deviation(self.bench.data);
@@ -256,8 +252,7 @@ fn scaled(record: &Record, share: f64, origin: f64) -> Result<Record> {
     Ok(scaled)
 }
 
-/// Fits the candidate to the data and to what the ensemble predicts beside them, from several starts; gives
-/// the fit that is nearest to the ensemble over all of it. `None` if there was no time.
+/// Fits the candidate to the data and the ensemble's predictions beside them; gives the start nearest to the ensemble.
 fn distilled(
     ensemble: &Model,
     candidate: &Candidate,

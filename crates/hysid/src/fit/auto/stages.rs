@@ -17,8 +17,7 @@ use crate::options::auto::AutoOptions;
 /// Candidates that are tried side by side. It does not depend on the number of threads, nor does the result.
 const SIDE_BY_SIDE: usize = 4;
 
-/// A candidate is dropped if its first start predicts the first folds with more than so many times the error of
-/// the best candidate so far, or if so many of its kind are better.
+/// Largest error on the first folds, relative to the best, and places within a kind, of a candidate that is kept.
 const HOPELESS: f64 = 3.0;
 const HOPEFUL_OF_KIND: usize = 6;
 
@@ -28,16 +27,13 @@ const ABOUT_AS_GOOD: f64 = 1.2;
 /// With so many folds at most, all are first folds.
 const FEW_FOLDS: usize = 3;
 
-/// A law is tried on the folds if its error on what it was fitted to in haste is at most so many times the
-/// error of the best candidate so far on what was held out.
+/// A law passes screening if its quick-fit error is at most this many times the best held-out error.
 const WORTH_A_TRIAL: f64 = 2.0;
 
-/// For data without noise, a law is tried on the folds if its error in haste, as a share of the standard deviation, is at
-/// most this: a thorough search may end at a fraction of it.
+/// For noise-free data, a law passes screening up to this error, as a share of the standard deviation.
 const NEARLY_EXACT: f64 = 0.03;
 
-/// A law fitted in haste is given up if, up to an epoch, its error is more than so many times what it may be in the
-/// end.
+/// Largest errors of a screening search up to an epoch, relative to what passes in the end.
 const PROMISING: [(usize, f64); 3] = [(3, f64::INFINITY), (6, 3.0), (10, 1.7)];
 
 /// The held-out error with the rate that makes up for not knowing it at other speeds, relative to that without. Designed.
@@ -86,8 +82,7 @@ impl Stages<'_, '_, '_> {
         self.further_starts();
     }
 
-    /// Tells how many fits may still come if `others` candidates and `laws` are untried, of which about a third and
-    /// a quarter will go on.
+    /// Announces the fits still to come; about a third of the `others` and a quarter of the `laws` go on.
     fn expect(&self, others: usize, laws: usize) {
         let (first_folds, other_folds) = self.first_folds();
         let of_all = other_folds.len() + 1;
@@ -102,8 +97,8 @@ impl Stages<'_, '_, '_> {
         candidates * further * (self.bench.folds.len() + 1)
     }
 
-    /// One start of each: on the first folds, and of the best of each kind on the others and everything. The very
-    /// first few are tried on all, should that be all there is time for.
+    /// One start of each on the first folds, of the best of each kind on all. The very first few are tried on all at
+    /// once.
     fn first_starts(&mut self, candidates: Vec<Candidate>, first: Option<Model>) {
         let begun = self.trials.len();
         self.trials.extend(candidates.into_iter().map(Trial::of));
@@ -142,8 +137,7 @@ impl Stages<'_, '_, '_> {
         });
     }
 
-    /// How many of the first candidates are tried on everything at once. A model with inertia takes long to fit to
-    /// everything: only the first, which has been.
+    /// Number of candidates tried on everything at once; of slow models with inertia only the first.
     fn urgent(&self) -> usize {
         let has_inertia = self.trials.first().is_some_and(|trial| trial.candidate.is_dynamic());
         if has_inertia { 1 } else { SIDE_BY_SIDE }
@@ -179,8 +173,7 @@ impl Stages<'_, '_, '_> {
         }
     }
 
-    /// Of the candidates at some places, the best of each kind on these folds, best first, unless their errors are
-    /// far above that of the best.
+    /// The best candidates of each kind on these folds, best first, without those far above the best.
     fn hopeful(&self, places: &[usize], folds: &[usize]) -> Vec<usize> {
         let score = |&place: &usize| {
             let trial = &self.trials[place];
@@ -231,8 +224,7 @@ impl Stages<'_, '_, '_> {
         score.with_unseen(trial.unseen_error(self.evidence))
     }
 
-    /// The best networks so far with other penalties, unless the user has decided. One loop does not tell which
-    /// penalties serve inside it.
+    /// The best networks so far with other penalties, unless the user decided or one loop cannot tell.
     fn refined(&self) -> Vec<Candidate> {
         let Self { options, .. } = self;
         if self.evidence.is_one_loop()

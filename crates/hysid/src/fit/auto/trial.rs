@@ -105,8 +105,8 @@ impl Trial {
         evidence.unseen_error(self.candidate.asked())
     }
 
-    /// What the start that is under way predicts, fold by fold; nothing on folds that it has not been fitted
-    /// to. `None` if it failed on one of those that are `wanted`.
+    /// Predictions of the start under way, fold by fold, empty where not fitted; `None` if it failed on a `wanted`
+    /// fold.
     pub fn predicted_so_far(&self, wanted: &[usize]) -> Option<Vec<Vec<f64>>> {
         let is_there = |fold: &usize| self.under_way.get(*fold).is_some_and(Option::is_some);
         let predicted = |on_fold: &Option<OnFold>| on_fold.as_ref().map(|fold| fold.predicted.clone());
@@ -191,8 +191,7 @@ impl Bench<'_, '_, '_> {
         self.end_start(trials, places);
     }
 
-    /// Tries a start of some candidates on some folds, and fits it to everything if asked and not yet done. Of
-    /// what fails, or was not finished in time, nothing is kept.
+    /// Tries a start of some candidates on some folds and, on request, on everything; failures are dropped.
     pub fn try_folds(
         &self,
         trials: &mut [Trial],

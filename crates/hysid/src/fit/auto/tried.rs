@@ -21,8 +21,7 @@ pub struct Tried<'a> {
     pub of: usize,
     /// How the candidate stands.
     pub standing: Standing,
-    /// The candidate, fitted to all folds together or, before that, to the training rows of one fold; `None` if no fit
-    /// succeeded.
+    /// The candidate, fitted to all folds together or to one of them; `None` if no fit succeeded.
     pub model: Option<&'a Model>,
 }
 
@@ -31,8 +30,7 @@ pub struct Tried<'a> {
 pub enum Standing {
     /// It has not been fitted to all folds.
     Trying,
-    /// It has been fitted to all folds and can be part of the model. It is told again, with the error of the median of
-    /// its starts, after each further start.
+    /// Fitted to all folds, so that it can be part of the model; reported again after each further start.
     Complete,
     /// It was given up: its error is far above the best, many of its kind are better, or a fit failed.
     Dropped,

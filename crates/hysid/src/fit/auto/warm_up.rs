@@ -15,8 +15,7 @@ const SHARE: f64 = 0.05;
 /// What leaving rows out must better the error by to be worth it. Designed.
 const WORTH: f64 = 0.9;
 
-/// Rows at the beginning of each record that are better not trained on: 0, or a share of the shortest
-/// record. Both ways are judged on the same rows, behind those, by a candidate that is quickly fitted.
+/// Rows to leave out at the beginning of each record: 0 or a share of the shortest, judged on the same later rows.
 pub(super) fn better(quick: Candidate, data: &Dataset, folds: &[Fold], work: &Work) -> WarmUp {
     let none = WarmUp::decided(0);
     let shortest = data.records().iter().map(|record| record.len()).min().unwrap_or_default();

@@ -57,10 +57,7 @@ impl<'o, 'a> Work<'o, 'a> {
         fits.expected = fits.done + to_come.max(1);
     }
 
-    /// A fit that is needed whatever happens: stopped, it gives the best so far.
-    ///
-    /// # Errors
-    /// As [`identify`].
+    /// A fit that is needed in any case; stopped, it gives the best so far.
     pub fn first_fit(&self, candidate: &Candidate, data: &Dataset) -> Result<Model> {
         let fitted = identify(data, &candidate.request(0), &mut |progress| self.observe(progress))?;
         self.fits().done += 1;
@@ -68,17 +65,11 @@ impl<'o, 'a> Work<'o, 'a> {
     }
 
     /// A fit of a candidate from one of its starts; `None` if there was no time for it.
-    ///
-    /// # Errors
-    /// As [`identify`].
     pub fn fit(&self, candidate: &Candidate, data: &Dataset, start: usize) -> Result<Option<Fitted>> {
         self.fit_while(candidate, data, start, |_| true)
     }
 
     /// As [`Work::fit`], ended early once its progress is not `promising`.
-    ///
-    /// # Errors
-    /// As [`identify`].
     pub fn fit_while(
         &self,
         candidate: &Candidate,

@@ -52,9 +52,6 @@ const WORTH: f64 = 0.3;
 const TOGETHER: usize = 64;
 
 /// The lead-in of each record, those of records without an output virgin; `None` once stopped.
-///
-/// # Errors
-/// Data from which no model can be identified, a rate that cannot be computed.
 pub(super) fn lead_ins(
     data: &Dataset,
     rate: Option<RateMethod>,

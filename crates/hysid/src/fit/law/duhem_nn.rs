@@ -327,8 +327,7 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Mean time step and duration of the longest record; 0 without time stamps. The steps of a lead-in are infinite
-/// and do not count.
+/// Mean finite time step and duration of the longest record; 0 without time stamps.
 fn time_scales(series: &[Series]) -> (f64, f64) {
     let steps = |series: &Series| -> f64 {
         series.samples.iter().map(|sample| sample.step).filter(|step| step.is_finite()).sum()

@@ -17,8 +17,7 @@ use crate::law::play_weights::MOST_PLAYS;
 use crate::law::series::{Series, slope, work};
 use crate::options::classical::ClassicalOptions;
 
-/// An envelope rises by at least this share of its full height over the range of the input: otherwise
-/// it would leap where the input leaves the range.
+/// Least rise of an envelope over the input range, as a share of its height: otherwise it would leap outside.
 const SMALLEST_SHARE: f64 = 0.1;
 
 impl SearchedLaw for GeneralizedPrandtlIshlinskii {
@@ -66,8 +65,7 @@ impl Plays {
             Variable::logarithmic(0.3, 10.0),
             // The largest threshold.
             Variable::logarithmic(0.02, 3.0),
-            // Where the plays are at first: 0 is virgin, 1 is as after a large input that has been
-            // lowered, -1 as after a low one that has been raised.
+            // Where the plays are at first: 0 virgin, 1 as after a large input, -1 as after a low one.
             Variable::linear(-1.0, 1.0),
         ];
         let mut non_negative = vec![false];
@@ -84,8 +82,7 @@ impl Plays {
         Self { low, high, sign, operators, free_weights, variables, non_negative }
     }
 
-    /// The envelope that has the value `from` at the lower end of the range and rises by `rise` to the
-    /// upper end.
+    /// The envelope with the value `from` at the lower end of the range, rising by `rise` to the upper end.
     fn envelope(&self, centre: f64, width: f64, from: f64, rise: f64) -> Envelope {
         let (a1, a2) = (1.0 / width, -centre / width);
         let shape = |x: f64| (a1 * x + a2).tanh();

@@ -4,11 +4,7 @@ use crate::error::{Error, OptionError, Result};
 use crate::fit::law::linear::lowest;
 use crate::law::thresholds::check_thresholds;
 
-/// `count` thresholds over the range of the input, `r_i = X (i/(n+1))^e`, with the largest magnitude `X` of
-/// the input and an exponent `e` (theory.md (7.5)).
-///
-/// # Errors
-/// No operator, or more than 1000.
+/// Thresholds `r_i = X (i/(n+1))^e` with the largest input `X` (theory.md (7.5)); an error for none or more than 1000.
 fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
     if !(1..=MOST_OPERATORS).contains(&count) {
         return Err(OptionError::value("operators", count, format!("choose 1 to {MOST_OPERATORS}")).into());
@@ -19,11 +15,7 @@ fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
 /// Exponents that thresholds are spread with: `r_i ∝ (i/n)^exponent`. Designed.
 const SPREADS: [f64; 3] = [1.0, 1.5, 2.5];
 
-/// The sets of thresholds that a fit tries: the given one, or `count` of them spread over the range of the input
-/// in several ways.
-///
-/// # Errors
-/// As [`check_thresholds`] and [`spread`].
+/// The sets of thresholds that a fit tries: the given one, or `count` of them spread in several ways.
 pub(crate) fn candidates(given: Option<&[f64]>, count: usize, largest: f64) -> Result<Vec<Vec<f64>>> {
     match given {
         Some(thresholds) => {
@@ -34,10 +26,7 @@ pub(crate) fn candidates(given: Option<&[f64]>, count: usize, largest: f64) -> R
     }
 }
 
-/// Fits to several grids, one after another. A stop after the first leaves out those that are missing.
-///
-/// # Errors
-/// That of a fit; a stop before the first is done.
+/// Fits to several grids; a stop after the first leaves out the others.
 pub(crate) fn fits_on_grids<F>(grids: &[Vec<f64>], fit: impl Fn(&[f64]) -> Result<F>) -> Result<Vec<F>> {
     let mut fits = Vec::new();
     for grid in grids {
@@ -53,9 +42,6 @@ pub(crate) fn fits_on_grids<F>(grids: &[Vec<f64>], fit: impl Fn(&[f64]) -> Resul
 const MOST_OPERATORS: usize = 1000;
 
 /// The grid whose fit has the lowest score, with the weights found on it.
-///
-/// # Errors
-/// As [`fits_on_grids`].
 pub(crate) fn best_on_grids(
     mut grids: Vec<Vec<f64>>,
     fit: impl Fn(&[f64]) -> Result<(f64, Vec<f64>)>,

@@ -67,15 +67,13 @@ struct Stage {
 /// Epochs after which the penalty follows the error again.
 const EPOCHS_OF_PENALTY: usize = 20;
 
-/// Number of first stages with longer integration steps. The best parameters are close to those for the steps of the model,
-/// at half the cost of an iteration.
+/// First stages with longer integration steps, which cost half and end close to the best parameters.
 const COARSE_STAGES: usize = STAGES.len() + 2;
 
 /// Length of the steps in these stages, in steps of the model.
 const COARSE: f64 = 2.0;
 
-/// Size that weights are expected to have: with the penalty `ε²/(9 N)` a weight of 3 costs as much as one standard
-/// error.
+/// Expected size of weights, squared: with the penalty `ε²/(9 N)` a weight of 3 costs as much as one standard error.
 const EXPECTED_SQUARE: f64 = 9.0;
 
 /// First leaks along the path, in standard deviations of the displacement.
@@ -100,8 +98,7 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
-    /// # Errors
-    /// Numbers that no model can have.
+    /// The request, or an error for numbers that no model can have.
     pub fn of(form: Form, options: &ClassicalOptions) -> Result<Self> {
         let modes = options.modes();
         let shape = Shape {
@@ -197,11 +194,9 @@ pub(super) fn identify(
 /// What sets a start apart, beside its random weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Kind {
-    /// True if the elements are driven by the input, false if by the displacement: hysteresis of an actuator or of a
-    /// structure.
+    /// True if the input drives the elements (an actuator), false if the displacement does (a structure).
     is_driven_by_input: bool,
-    /// True if only the first mode moves in the first stages. All modes together may end in a worse minimum than one
-    /// mode alone.
+    /// True if only the first mode moves in the first stages, which may end in a better minimum.
     has_one_mode_first: bool,
 }
 

@@ -39,10 +39,7 @@ pub(crate) struct TrainingRows {
 }
 
 impl TrainingRows {
-    /// All rows of a data set with one input, which is all that a classical model can be fitted to.
-    ///
-    /// # Errors
-    /// Data that nothing can be identified from, or more than one input.
+    /// All rows of identifiable data with one input.
     pub fn of(data: &Dataset) -> Result<Self> {
         data.check_identifiable(FEWEST_ROWS)?;
         let found = data.names().inputs.len();
@@ -273,8 +270,7 @@ impl<'a> Gatherer<'a> {
         self.folds[self.fold].gram.gather(&mut self.batch, &mut self.pace);
     }
 
-    /// # Errors
-    /// A stop before all rows were gathered.
+    /// The sums; an error if a stop left out rows.
     pub fn finish(mut self) -> Result<FoldSums> {
         self.flush();
         if self.pace.is_over(0) {

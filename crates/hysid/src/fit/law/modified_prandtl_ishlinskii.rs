@@ -166,8 +166,6 @@ struct Point {
 }
 
 impl Problem {
-    /// # Errors
-    /// A stop.
     fn new(rows: &TrainingRows, grid: &[f64], dead_zones: usize, stop: StopCheck<'_>) -> Result<Self> {
         let mut pace = Pace::new(stop);
         let TrainingRows { series, folds, scaling } = rows;
@@ -218,10 +216,7 @@ impl Problem {
         }
     }
 
-    /// Mean over the folds of the logarithm of the mean square error of outputs held out.
-    ///
-    /// # Errors
-    /// A stop.
+    /// Mean over the folds of the logarithm of the mean square held-out error.
     fn score(&self, prior: Prior, stop: StopCheck<'_>) -> Result<f64> {
         let judge = |&fold: &usize| {
             if stop.is_asked() {
@@ -239,10 +234,7 @@ impl Problem {
         Ok(sum / self.folds.judged.len() as f64)
     }
 
-    /// How well the convex problem forecasts rows held out.
-    ///
-    /// # Errors
-    /// A stop.
+    /// Score of the convex problem on held-out rows.
     fn convex_score(&self, sign: Sign, stop: StopCheck<'_>) -> Result<f64> {
         let (sums, penalty, _) = self.convex_problem(stop)?;
         let plays = 2..self.drives[0].len();
@@ -254,9 +246,6 @@ impl Problem {
     }
 
     /// Sums and penalty of the convex problem, and the knots of the inverse polygon.
-    ///
-    /// # Errors
-    /// A stop.
     fn convex_problem(&self, stop: StopCheck<'_>) -> Result<(FoldSums, Penalty, Vec<f64>)> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
@@ -288,9 +277,6 @@ impl Problem {
     }
 
     /// Step 1.
-    ///
-    /// # Errors
-    /// A stop.
     fn convex_start(&self, prior: Prior, stop: StopCheck<'_>) -> Result<Point> {
         let (sums, penalty, knots) = self.convex_problem(stop)?;
         let first = self.drives[0].len();

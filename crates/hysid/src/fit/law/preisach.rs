@@ -116,8 +116,7 @@ impl LineDensity {
     }
 }
 
-/// Least squares on a plane: features are constant, input, reversible intervals, cells; the output is
-/// scaled.
+/// Least squares on a plane: constant, input, reversible intervals, cells; the output is scaled.
 pub(crate) struct Problem {
     plane: Plane,
     penalty: Penalty,
@@ -172,9 +171,6 @@ impl Problem {
     }
 
     /// The features of the rows that have an output.
-    ///
-    /// # Errors
-    /// A stop.
     pub fn rows(&self, series: &Series, scaling: &Scaling, stop: StopCheck<'_>) -> Result<Vec<Vec<f64>>> {
         let (mut rows, mut pace) = (Rows::new(&self.plane), Pace::new(stop));
         let mut all = Vec::new();
@@ -190,8 +186,6 @@ impl Problem {
         Ok(all)
     }
 
-    /// # Errors
-    /// A stop.
     fn sums(
         &self,
         series: &[Series],
@@ -214,10 +208,7 @@ impl Problem {
         gatherer.finish()
     }
 
-    /// The model with the weights of a penalty that was chosen.
-    ///
-    /// # Errors
-    /// A stop.
+    /// The model with the weights of the chosen penalty.
     fn weighted(
         &self,
         sums: FoldSums,

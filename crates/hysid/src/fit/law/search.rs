@@ -46,8 +46,7 @@ pub(crate) use rows::{Memory, measured, spread, thinned, thinned_to};
 /// Random points looked at for each start.
 const DRAWS_PER_START: usize = 24;
 
-/// Starts are at least this far apart, root mean square of the differences in `u`, where there are
-/// enough points.
+/// Least distance of starts, root mean square of the differences in `u`, where there are enough points.
 const APART: f64 = 0.12;
 
 /// After so many rounds half of the starts are given up, and again after as many more.
@@ -105,8 +104,7 @@ pub(crate) trait Family: Sync {
     /// Whether the weight of each feature must not be negative; its length is the number of features.
     fn non_negative(&self) -> &[bool];
 
-    /// Runs over a record and gives the features of every row that has an output; ends early once
-    /// [`Columns::is_over`].
+    /// Appends the features of every row with an output; ends early once [`Columns::is_over`].
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>);
 
     /// Starting points that the data suggest, better than random ones.
@@ -124,8 +122,7 @@ pub struct SearchProgress<'a> {
     pub rounds: usize,
     /// Free runs of the law so far, all starts together.
     pub evaluations: usize,
-    /// Error of the best start in free run, in percent of the standard deviation of the output; NaN before
-    /// there is one.
+    /// Error of the best start in free run, in percent of the standard deviation; NaN before there is one.
     pub train_nrmse_percent: f64,
     pub(crate) law: LawSoFar<'a>,
 }
@@ -164,8 +161,7 @@ pub struct Identified<L> {
     pub evaluations: usize,
     /// Why the search ended.
     pub termination: Termination,
-    /// The parameters found by search, from which a similar fit can begin ([`ClassicalOptions::near`]); empty
-    /// for a law that is not searched in this way.
+    /// The parameters found by search ([`ClassicalOptions::near`]); empty for a law that is not searched in this way.
     pub searched: Vec<f64>,
 }
 
@@ -244,8 +240,7 @@ where
     found.try_map(|weights| law(&searched, &weights))
 }
 
-/// Searches the parameters of a family, and the weights that stand in the place of a law; `law` is made of both for an
-/// observer that asks for it.
+/// Searches parameters and weights; `law` is made of both for an observer that asks for it.
 fn search_parameters(
     family: &dyn Family,
     law: &MakesLaw<'_>,
@@ -291,8 +286,7 @@ fn search_parameters(
     })
 }
 
-/// The point that was asked for, or else the best of many points that lie apart: those that the data suggest and
-/// random ones.
+/// The requested point, or the best of many that lie apart: suggested and random ones.
 fn beginnings(objective: &Objective<'_>, options: &ClassicalOptions) -> Vec<Descent> {
     let variables = objective.family.variables();
     let starts = options.starts();
@@ -311,8 +305,7 @@ fn beginnings(objective: &Objective<'_>, options: &ClassicalOptions) -> Vec<Desc
         variables.iter().map(|_| generator.random()).collect()
     };
     let count = suggested.len().max(starts * DRAWS_PER_START);
-    // Only what the points reach is kept, and the best of them: a residual of each would be gigabytes for thousands of
-    // starts.
+    // Only the best point keeps its residual: thousands of them would be gigabytes.
     let best: Mutex<Option<Descent>> = Mutex::new(None);
     let reached = |index| {
         let u = draw(index);

@@ -39,8 +39,8 @@ impl Curvature {
         }
     }
 
-    /// The step to where gradient and curvature, with `damping` added to its diagonal, see the minimum; `None` if
-    /// it is not positive definite, or once stopped.
+    /// The step to the minimum of the quadratic model with `damping` on the diagonal; `None` if there is none, or once
+    /// stopped.
     pub fn step(&self, gradient: &[f64], damping: &[f64], stop: StopCheck<'_>) -> Option<Vec<f64>> {
         match self {
             Self::Matrix(matrix) => damped_step(matrix, gradient, damping, stop),
@@ -62,8 +62,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// From features, target and Jacobian, column by column, and the output weights there. `None` once asked to
-    /// stop.
+    /// From the columns of features, target and Jacobian and the output weights; `None` once stopped.
     pub fn new(
         columns: Vec<Vec<f64>>,
         solution: &OutputSolution,

@@ -43,8 +43,7 @@ const STARTS_ON_FOLDS: usize = 3;
 /// Penalties of data without noise, as good as none: what they would bias is exact.
 const NO_PENALTIES: Regularisation = Regularisation { ridge: 1e-10, decay: 1e-12 };
 
-/// The error that leaving the penalties out must come to, as a share of the error with them, if they are to be left
-/// out.
+/// Largest error without penalties, as a share of the error with them, at which they are left out.
 const WORTH: f64 = 0.9;
 
 /// The best starts on everything, which go on without penalties where these are left out.
@@ -168,10 +167,7 @@ impl<'a> Fitting<'a> {
         })
     }
 
-    /// As [`Fitting::new`], from a state on.
-    ///
-    /// # Errors
-    /// A state that no fit with these options comes to.
+    /// As [`Fitting::new`], from a state; an error for one that no fit with these options comes to.
     pub fn from(self, state: State) -> Result<Self> {
         let starts = self.asked.starts;
         let most = |runs: &[TrainingRun], most: usize| require(runs.len() <= most, "its number of runs");
@@ -185,10 +181,7 @@ impl<'a> Fitting<'a> {
         Ok(Self { state, ..self })
     }
 
-    /// Goes on to the end, or until the observer says stop.
-    ///
-    /// # Errors
-    /// A stop before there was any network.
+    /// Runs to the end, or until the observer stops; an error if there is no network by then.
     pub fn run(mut self, observer: &mut Observer<'_>) -> Result<Fitted> {
         let observer = &SharedObserver::new(observer, Some(Progress::of_beginning(&self.asked)));
         let penalties = self.asked.penalties();
@@ -238,8 +231,7 @@ impl<'a> Fitting<'a> {
         Checkpoint::of(&self.asked, self.measured, &self.state)
     }
 
-    /// The network with the lowest objective so far, of the last stage on everything that has begun, with the output
-    /// weights that were found there; `None` if there is none yet.
+    /// The network with the lowest objective so far of the last stage on all data; `None` if there is none yet.
     pub fn model_so_far(&self) -> Option<Model> {
         let State { all_data, all_exact, all_rows, .. } = &self.state;
         let run = [all_rows, all_exact, all_data].into_iter().find_map(|runs| best_of(runs))?;
@@ -269,8 +261,7 @@ impl<'a> Fitting<'a> {
         if self.state.all_data.is_empty() { Err(Error::Stopped) } else { Ok(()) }
     }
 
-    /// A few starts on each fold, where several were asked for: the lowest objective of each fold predicts what
-    /// was held out of it.
+    /// A few starts on each fold, if there are several: the lowest objective of each fold predicts its held-out rows.
     fn validate(
         &mut self,
         penalties: Regularisation,

@@ -80,8 +80,8 @@ impl OutputProblem<'_> {
         OutputSolution { objective, weights, mean_square, ridge: added, factor }
     }
 
-    /// Gradient `Jᵀr/N`, theory.md (3.3), and Gauss-Newton matrix (3.4) without the decay terms, for a
-    /// Gram matrix that goes on with `p` columns of the Jacobian.
+    /// Gradient `Jᵀr/N`, theory.md (3.3), and Gauss-Newton matrix (3.4) without decay; the Gram matrix ends with `p`
+    /// columns of `J`.
     pub fn linearise(&self, solution: &OutputSolution, p: usize) -> (Vec<f64>, Symmetric) {
         let m = self.features;
         let first = m + 1;

@@ -45,8 +45,7 @@ pub struct Objective<'a> {
 pub struct Value {
     /// The objective `F`, in scaled units.
     pub objective: f64,
-    /// Mean square residual in scaled units; if all data are the training set, the square of NRMSE (of the
-    /// standard deviation).
+    /// Mean square residual in scaled units.
     pub mean_square: f64,
     solution: OutputSolution,
 }
@@ -58,14 +57,13 @@ impl Value {
     }
 }
 
-/// Operations of one evaluation with its slope from which on it is worth to be broken off: about ten
-/// milliseconds.
+/// Operations of an evaluation with slope, about ten milliseconds, from which on it is worth breaking off.
 const LONG: usize = 20_000_000;
 
 /// Tolerance of the polyline of an input, in standard deviations of its noise.
 const NOISE_OFF_PATH: f64 = 4.0;
-/// Limits of that tolerance, as shares of the largest magnitude of the input. The rate has no upper limit, because it may
-/// be mostly noise.
+/// Limits of that tolerance, as shares of the largest magnitude of the input. The rate, mostly noise, has no upper
+/// limit.
 const LEAST_OFF_PATH: f64 = 1e-3;
 const MOST_OFF_PATH: f64 = 1e-2;
 
@@ -97,8 +95,7 @@ impl<'a> Objective<'a> {
         })
     }
 
-    /// The same objective, whose long evaluations check whether to stop. A value is then infinite, and a
-    /// gradient invalid.
+    /// The same objective, whose long evaluations check `stop`; a value is then infinite, and a gradient invalid.
     pub(crate) fn until(self, stop: StopCheck<'a>) -> Self {
         let columns = self.layout.len() + self.architecture.output_weights();
         // Rows without a target are run through, but not gathered.
@@ -236,8 +233,7 @@ impl<'a> Objective<'a> {
     }
 }
 
-/// Indices of the kept rows of a long record: rows with a target, and the rows of a polyline that follows the inputs within
-/// their tolerances.
+/// Indices of the kept rows of a long record: rows with a target, and those of a polyline that follows the inputs.
 fn rows_of_path(drive: &Drive, rate: bool, target: &[f64]) -> Vec<usize> {
     let is_rate = |channel: usize| rate && channel == 1;
     let tolerance = |channel: usize, values: &[f64]| {

@@ -35,8 +35,7 @@ use crate::validation::RowFolds;
 pub struct RandomStopsOptions {
     /// Stops, 1 to 1000.
     pub stops: usize,
-    /// Number of random tanh neurons beside the direct path from the stops to the output, 0 to 1000. `None`
-    /// for 0 or 100, chosen by cross-validation.
+    /// Random tanh neurons beside the direct path, 0 to 1000; `None` for 0 or 100, chosen by cross-validation.
     pub hidden: Option<usize>,
     /// Method of the rate of the first input; `None` for no rate.
     pub rate: Option<RateMethod>,
@@ -67,8 +66,7 @@ pub struct RandomStops {
     pub scaling: Scaling,
     /// The penalty `λ` that cross-validation chose.
     pub ridge: f64,
-    /// Root mean square error on held-out rows, in percent of the standard deviation of the output: geometric
-    /// mean over the folds.
+    /// Root mean square error on held-out rows, in percent of the standard deviation: geometric mean over the folds.
     pub validation_nrmse_percent: f64,
 }
 
@@ -126,9 +124,6 @@ pub(crate) struct Drawn {
 
 impl Drawn {
     /// The stops for these data, with the first of the architectures that the options leave open.
-    ///
-    /// # Errors
-    /// Numbers of neurons that no network has.
     pub fn of(data: &Dataset, options: &RandomStopsOptions) -> Result<Self> {
         let (deterioration, hidden) = (options.deterioration.unwrap_or(false), options.hidden.unwrap_or(0));
         let architecture = architecture(data, options, deterioration, hidden)?;
@@ -141,11 +136,7 @@ impl Drawn {
         self.architecture.output_weights()
     }
 
-    /// The features of the output layer and then the target, column by column, of the rows of a record that
-    /// have an output.
-    ///
-    /// # Errors
-    /// A rate that cannot be computed, or a stop.
+    /// The features of the output layer and then the target, column by column, of the rows with an output.
     pub fn rows(
         &self,
         record: &Record,
@@ -184,8 +175,7 @@ fn architecture(
     Ok(architecture)
 }
 
-/// Random stops, with few digits: a thousand numbers with all of theirs would fill most of a model file. A bound that is
-/// rounded may be out of bounds, and keeps its digits.
+/// Random stops rounded to few digits, because all digits would fill the model file; rounding keeps the bounds.
 fn drawn(architecture: &Architecture, seed: u64) -> Vec<f64> {
     let short = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
     let mut values: Vec<f64> =
@@ -241,8 +231,7 @@ fn fit_readout(
     })
 }
 
-/// Sums of the output layer's features, fold by fold. The memory runs through every row of every record;
-/// rows of other folds have no target.
+/// Sums of the output layer's features, fold by fold; the memory runs through every row.
 fn fold_sums(
     columns: &Columns,
     drives: &[Drive],

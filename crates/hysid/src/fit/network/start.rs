@@ -31,8 +31,7 @@ pub(crate) fn random(objective: &Objective, seed: u64, start: usize) -> Vec<f64>
     draw(objective.architecture(), CAPACITIES, objective.time_scales(), seed)
 }
 
-/// Parameters of a network: thresholds spread evenly in their logarithm over the input range, relaxation
-/// times likewise over the shortest and the longest span of time, all else drawn at random.
+/// Random parameters; thresholds and relaxation times are spread evenly in their logarithms over the data's scales.
 pub(crate) fn draw(
     architecture: &Architecture,
     capacities: Capacities,

@@ -147,8 +147,7 @@ const LAWS: &[Property] = &[
 const WITHOUT_CONGRUENCY: &[Property] = LAWS.split_first().unwrap().1;
 
 impl Subject {
-    /// `Some(true)` if it has the property, `Some(false)` if not; `None` where it is near the threshold, or
-    /// where the record does not tell.
+    /// `None` where it is near the threshold, or where the record does not tell.
     pub fn truth(&self, property: Property) -> Option<bool> {
         let place = Property::ALL.iter().position(|other| *other == property).unwrap();
         match self.truth.as_bytes()[place] {

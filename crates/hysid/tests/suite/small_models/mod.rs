@@ -9,8 +9,7 @@ use hysid::options::classical::ClassicalOptions;
 use hysid::options::network::FitOptions;
 use hysid::options::{FitSpec, ModelName};
 
-/// A play-like output that lags behind its input, so that every model has something to find. Another name is
-/// another measurement.
+/// A play-like output that lags behind its input; another name is another measurement.
 pub fn record(rows: usize, name: &str) -> Record {
     let letters: u32 = name.bytes().map(u32::from).sum();
     let pace = 0.19 + 0.004 * f64::from((letters + 1) % 7);

@@ -45,8 +45,7 @@ impl OfStops {
         self.slips.fill(0.0);
     }
 
-    /// A step without `∂δ` and `∂ν` at its end; `point` has the rows of `δ` and `ν` at its beginning, and `outputs`
-    /// takes `∂z`.
+    /// A step without `∂δ` and `∂ν` at its end; `point` has them at its beginning, `outputs` takes `∂z`.
     #[inline(always)]
     pub fn take<S: Simd>(&mut self, ends: Ends<'_>, point: &[f64], outputs: &mut [f64]) {
         let Ends { element, layout, from, step, .. } = ends;

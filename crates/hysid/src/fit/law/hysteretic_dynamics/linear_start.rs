@@ -31,8 +31,7 @@ const EPOCHS: usize = 25;
 /// Steps in a period of the fastest mode that vibrates.
 const STEPS_PER_PERIOD: f64 = 60.0;
 
-/// An input is smooth if the variance of its fourth difference is less than this share of what it is for a random
-/// sequence, `1 + 16 + 36 + 16 + 1` times the variance.
+/// Largest variance of the fourth difference of a smooth input, as a share of that of a random sequence.
 const SMOOTH: f64 = 0.02;
 const OF_RANDOM_SEQUENCE: f64 = 70.0;
 
@@ -43,8 +42,7 @@ const CLEARLY_BETTER: f64 = 0.95;
 /// Rows at most that tell how a motion began.
 const MOST_FIRST_ROWS: f64 = 1000.0;
 
-/// Distance of the first rows from a motion from rest, in standard deviations of the output, up to which a record
-/// begins at rest.
+/// Largest distance of the first rows from a motion from rest, in standard deviations, for a record at rest.
 const LEAST_MOTION: f64 = 0.1;
 
 /// Records whose beginnings are searched, at most: the first. Each adds parameters.
@@ -173,8 +171,7 @@ fn mode_by_mode(
     Some(systems)
 }
 
-/// A linear system with its steps, its hold and how it begins, improved on all rows; and which records begin in
-/// mid-motion. `None` once stopped.
+/// A linear system improved on all rows, and which records begin in mid-motion; `None` once stopped.
 fn finished(
     system: &Dynamics,
     records: &Records,
@@ -237,8 +234,7 @@ fn rows_of_quarter(frequency: f64, step: f64) -> usize {
     quarter.clamp(2.0, MOST_FIRST_ROWS).ceil() as usize
 }
 
-/// True if the input has next to nothing of the highest frequencies that its samples could have: the variance of its
-/// fourth difference, compared with that of a random sequence.
+/// True if the input has next to no power at the highest frequencies, by the variance of its fourth difference.
 fn is_smooth(drives: &[Drive]) -> bool {
     let (mut difference, mut square) = (0.0, 0.0);
     for drive in drives {
@@ -283,8 +279,7 @@ fn best_of_grid(
 
 const NO_ELEMENT: Shape = Shape { stops: 0, states: 0, neurons: 1, deteriorates: false };
 
-/// The least square with the best offset, direct share, gains and velocities, from the derivatives at a gain of 1; and
-/// the gain and velocity of the last mode. `None` if they are not determined.
+/// Least square with the best linear coefficients, and gain and velocity of the last mode; `None` if not determined.
 fn linear_part(gram: &Gram, layout: &Layout) -> Option<(f64, f64, f64)> {
     let mut places = vec![0, 1];
     for mode in &layout.modes {

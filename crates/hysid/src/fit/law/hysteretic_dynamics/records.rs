@@ -124,8 +124,7 @@ fn begun(drive: &Drive, share: f64) -> Drive {
     }
 }
 
-/// A record of equal periods as its first and the mean of the others; `None` for another, and for one whose second
-/// period is not in steady state.
+/// A record of equal periods as its first and the mean of the others; `None` if not in steady state from the second on.
 fn averaged(drive: &Drive, equal: f64) -> Option<Drive> {
     let rows = drive.x.len();
     if drive.targets.iter().any(|target| target.is_nan()) {
@@ -150,8 +149,7 @@ fn averaged(drive: &Drive, equal: f64) -> Option<Drive> {
     };
     let counted = (periods - 2) as f64;
     if periods > FEWEST_PERIODS {
-        // Of n values, one differs from the mean of all by a share 1 - 1/n of the variance, and a further value from it
-        // by 1 + 1/n.
+        // Of n values, one differs from their mean by 1 - 1/n of the variance, a further value by 1 + 1/n.
         let noise = deviation(periods - 1, 2) / (1.0 - 1.0 / counted);
         if deviation(1, 2) > LARGEST_TRANSIENT * LARGEST_TRANSIENT * noise * (1.0 + 1.0 / counted) {
             return None;

@@ -10,8 +10,7 @@ use crate::optimise::levenberg_marquardt::{Problem, Rules, Slope, step_within};
 use crate::optimise::parallel;
 use crate::stop_check::StopCheck;
 
-/// Bounds of the leak along the path, in standard deviations of the displacement. States that move more slowly would
-/// drift over long records without having been seen to.
+/// Bounds of the leak, in standard deviations of the displacement; slower states would drift over long records.
 const PATH_LEAKS: (f64, f64) = (0.13, 1e3);
 
 /// Records whose Gram matrices are computed side by side, so that many records need no more memory than a few.
@@ -20,8 +19,7 @@ pub(crate) const AT_ONCE: usize = 8;
 /// A model may change its frequencies by this factor.
 const LARGEST_SHIFT: f64 = 30.0;
 
-/// Records, and the parameters that are searched: those of the model, and then of each record that does not begin at rest
-/// the displacements and velocities of the modes at its first row.
+/// Records and searched parameters: those of the model, then the first displacements and velocities of moving records.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
     pub layout: &'a Layout,
@@ -49,8 +47,7 @@ pub(super) struct Begun {
 pub(super) enum Beginning {
     /// Not at all.
     AtRest,
-    /// At rest, but the input between the first rows is not known well: of each mode the expected size of the displacement
-    /// and velocity that this adds. Without them, the memory of the elements would be fitted to the error.
+    /// At rest, but an unknown input between the first rows adds displacements and velocities of these expected sizes.
     NearRest(Vec<f64>),
     /// A record in mid-motion: displacements and velocities may have any size.
     InMotion,
@@ -151,8 +148,7 @@ impl<'a> Task<'a> {
         self.layout.count() + self.records.iter().map(|record| record.beginning.count(modes)).sum::<usize>()
     }
 
-    /// A penalty on every weight of the elements and on no other parameter of the model; on displacements and velocities at
-    /// first rows, a penalty that follows from their expected size.
+    /// The penalty on weights of elements, and on first displacements and velocities by their expected size.
     pub fn penalties(&self, penalty: f64) -> Vec<f64> {
         let of_model =
             (0..self.layout.count()).map(|index| f64::from(u8::from(self.layout.has_decay(index))));

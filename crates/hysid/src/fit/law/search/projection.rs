@@ -25,8 +25,7 @@ impl<'a> Columns<'a> {
         Self { columns: vec![Vec::with_capacity(rows); count], pace: Pace::new(stop) }
     }
 
-    /// A free run over a record: `advance` moves a law to each sample and gives the features there, of which as many
-    /// count as there are columns. Rows without an output only drive the memory. Ends early once stopped.
+    /// A free run: `advance` gives the features at each sample. Rows without an output only drive the memory.
     pub fn run<const FEATURES: usize>(
         &mut self,
         series: &Series,
@@ -72,8 +71,7 @@ impl<'a> Columns<'a> {
         self.columns
     }
 
-    /// The weights that come closest to `target`. Of columns that were not finished the residual is beyond that
-    /// of any other.
+    /// The weights that come closest to `target`; an unfinished run has the largest residual.
     pub fn project(&mut self, target: &[f64], non_negative: &[bool]) -> Projection {
         if self.pace.is_over(0) {
             return Projection::unfinished();

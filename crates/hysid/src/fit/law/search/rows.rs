@@ -8,15 +8,13 @@ use crate::law::series::Series;
 /// Maximum number of scored rows.
 const MOST_COMPARED: usize = 5000;
 
-/// Maximum number of rows of a search. From longer data, the search uses the first part of each record, unless that has
-/// less than a twentieth of the scored rows.
+/// Most rows of a search; of longer data the first parts of the records, unless they have few scored rows.
 const MOST_RUN: usize = 200_000;
 
 /// With more rows than this, rows on straight parts of the path are left out.
 const LONG: usize = 20_000;
 
-/// Tolerance of the polyline and longest step where rows are left out, as shares of the largest magnitude. The steps are
-/// limited because the result of a law depends on their length.
+/// Tolerance of the polyline and longest step, as shares of the largest magnitude. A law depends on the step.
 const STEPS_OF_INPUT: [f64; 2] = [1e-3, 1e-2];
 /// The same for the rate.
 const STEPS_OF_RATE: [f64; 2] = [1e-2, 5e-2];
@@ -159,8 +157,7 @@ mod tests {
         assert_eq!(thinned(vec![zigzag(1_000_000)], Memory::Path)[0].samples.len(), MOST_RUN);
     }
 
-    /// The path of a long record is kept with its time, in short steps, and as many rows are compared where only its
-    /// beginning is run through.
+    /// Long paths keep time and short steps, and their beginning alone has as many compared rows.
     #[test]
     fn long_paths_keep_their_shape_and_their_time() {
         let signal = |row: usize| (0.002 * row as f64).sin();
