@@ -239,9 +239,6 @@ fn parts() -> Result<(Record, Record)> {
     let (trained, tested) = FURTHER;
     let further = path::wandering(trained + tested, RANGE);
     let (train, test) = further.split_at(trained);
-    let (strain, trained) = path::continued(&[&TRAIN[..], train].concat(), test, STEP);
-    let stress = Concrete::new(ConcreteParameters::typical()).run(&strain);
-    let time = path::every(1.0, strain.len());
-    let whole = Record::new("cyclic compression", vec![strain], stress)?.with_time(time)?;
-    Ok(path::cut(&whole, trained))
+    let law = |strain: &[f64]| Concrete::new(ConcreteParameters::typical()).run(strain);
+    path::continued("cyclic compression", &[&TRAIN[..], train].concat(), test, STEP, 1.0, law)
 }

@@ -1,6 +1,7 @@
 //! Paths that drive specimens, and what they have in common when made into records.
 
 use hysid_core::data::record::Record;
+use hysid_core::error::Result;
 
 /// Fewest steps of a swing, so that a small loop is a loop.
 const FEWEST_STEPS: f64 = 4.0;
@@ -44,11 +45,45 @@ pub fn travel(turning: &[f64]) -> f64 {
     turning.windows(2).map(|ends| (ends[1] - ends[0]).abs()).sum()
 }
 
-/// A path through the turning points of training and on through those of the test, and how many of
-/// its rows are for training.
-pub(super) fn continued(training: &[f64], test: &[f64], longest_step: f64) -> (Vec<f64>, usize) {
+/// A path for training that goes on through other turning points for the test.
+pub(super) struct Continued {
+    /// Name of the record.
+    pub record: &'static str,
+    /// Turning points to begin training with.
+    pub training: &'static [f64],
+    /// Number of [covering] pairs of turning points of training that follow, and their range.
+    pub further: (usize, (f64, f64)),
+    /// Turning points of the test.
+    pub test: &'static [f64],
+    /// Largest step between two rows.
+    pub longest_step: f64,
+    /// Time between two rows in s.
+    pub sampling: f64,
+}
+
+impl Continued {
+    /// The training and the test record of a law.
+    pub fn records(&self, law: impl Fn(&[f64]) -> Vec<f64>) -> Result<(Record, Record)> {
+        let (pairs, range) = self.further;
+        let training = [self.training, &covering(pairs, range)].concat();
+        continued(self.record, &training, self.test, self.longest_step, self.sampling, law)
+    }
+}
+
+/// The record of a law on a path through the turning points of training, and the whole record with this part blanked on
+/// through those of the test.
+pub(super) fn continued(
+    name: &str,
+    training: &[f64],
+    test: &[f64],
+    longest_step: f64,
+    sampling: f64,
+    law: impl Fn(&[f64]) -> Vec<f64>,
+) -> Result<(Record, Record)> {
     let path = through(&[training, test].concat(), longest_step);
-    (path, through(training, longest_step).len())
+    let (output, time) = (law(&path), every(sampling, path.len()));
+    let whole = Record::new(name, vec![path], output)?.with_time(time)?;
+    Ok(cut(&whole, through(training, longest_step).len()))
 }
 
 /// Cuts a record without blanks before row `end`: the head ends there, the tail is the whole record

@@ -14,40 +14,33 @@
 
 use hysid_core::data::record::Record;
 use hysid_core::error::Result;
+use hysid_core::law::rate_dependent_prandtl_ishlinskii::{
+    PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
+};
+use hysid_core::law::{Law, Sample};
 
 use super::specimen::{Columns, Specimen};
 use super::tones::{self, Tone};
 
-/// A rate-dependent actuator with its memory, initially virgin.
+/// A rate-dependent actuator with its memory, initially virgin: voltage in V to displacement in µm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RateDependentActuator {
-    /// `a0`: weight of the voltage, in µm/V.
-    pub spring: f64,
-    /// `a_1, a_2, ...`: weights of the plays in µm/V.
-    pub weights: Vec<f64>,
-    /// `α`: spacing of the thresholds in V.
-    pub spacing: f64,
-    /// `β`: growth of every threshold with the rate, in s.
-    pub growth: f64,
+    law: RateDependentPrandtlIshlinskii,
     plays: Vec<f64>,
 }
 
 impl RateDependentActuator {
-    /// A virgin actuator.
-    pub fn new(spring: f64, weights: Vec<f64>, spacing: f64, growth: f64) -> Self {
-        let plays = vec![0.0; weights.len()];
-        Self { spring, weights, spacing, growth, plays }
+    /// A virgin actuator of `a0` and `a_i` in µm/V, `α` in V and `β` in s.
+    pub fn new(spring: f64, weights: Vec<f64>, spacing: f64, beta: f64) -> Self {
+        let (thresholds, weights) = (Thresholds::Linear { beta }, PlayWeights::Free(weights));
+        let law = RateDependentPrandtlIshlinskii { offset: 0.0, spring, spacing, thresholds, weights };
+        Self { plays: law.virgin(), law }
     }
 
-    /// The actuator of the catalogue: `n = 10`, `a0 = 0.5`, `a_i = 0.4 e^{-0.12 i}`,
-    /// `r_i = 0.6 i + 0.002 |v'|`. Designed.
+    /// The actuator of the catalogue: `n = 10`, `a0 = 0.5`, `a_i = 0.4 e^{-0.12 i}`, `r_i = 0.6 i + 0.002 |v'|`.
+    /// Designed.
     pub fn designed() -> Self {
         Self::new(0.5, (1..=10).map(|i| 0.4 * (-0.12 * f64::from(i)).exp()).collect(), 0.6, 2e-3)
-    }
-
-    /// Returns to the virgin state.
-    pub fn reset(&mut self) {
-        self.plays.fill(0.0);
     }
 
     /// The displacement in µm at the next voltage in V, which changes at `rate` in V/s. The rate between two
@@ -57,13 +50,7 @@ impl RateDependentActuator {
         if !(voltage.is_finite() && rate.is_finite()) {
             return f64::NAN;
         }
-        let mut y = self.spring * voltage;
-        for (index, (play, weight)) in self.plays.iter_mut().zip(&self.weights).enumerate() {
-            let r = self.spacing * (index + 1) as f64 + self.growth * rate.abs();
-            *play = (voltage - r).max((voltage + r).min(*play));
-            y += weight * *play;
-        }
-        y
+        self.law.step(&mut self.plays, Sample { x: voltage, rate, step: 0.0 })
     }
 }
 

@@ -18,11 +18,8 @@
 //! licence is not stated. *Designed*: our path of the voltage
 //! and its speed.
 
-use hysid_core::data::record::Record;
-use hysid_core::error::Result;
-
 use super::generalized_play::{Envelope, GeneralizedPlays, Start};
-use super::path;
+use super::path::Continued;
 use super::specimen::{Columns, Specimen};
 
 /// The actuator before its first sample: voltage in V to the published output, whose unit is not
@@ -48,32 +45,18 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     testing: "the voltage goes on to other peaks and other minor loops in the same range; the training part comes \
               first, with blank outputs, so that the memory is carried over",
     columns: Columns { time: Some("t_s"), input: "voltage_V", output: "output" },
-    train: |_| Ok(vec![parts()?.0]),
-    test: |_| Ok(vec![parts()?.1]),
+    train: |_| Ok(vec![PATH.records(|voltage| law().run(voltage))?.0]),
+    test: |_| Ok(vec![PATH.records(|voltage| law().run(voltage))?.1]),
 };
 
-/// Turning points of the voltage in V to begin training with.
-const TRAIN: [f64; 19] =
-    [0.0, 2.4, 0.0, 2.0, 0.0, 1.8, 0.0, 1.7, 0.0, 1.6, 0.0, 1.5, 0.0, 2.2, 1.0, 1.6, 0.8, 2.0, 0.0];
-
-/// Turning points of training that follow, all over the range in V.
-const FURTHER: (usize, (f64, f64)) = (40, (0.0, 2.4));
-
-/// Turning points that follow.
-const TEST: [f64; 14] = [1.9, 0.0, 1.75, 0.0, 1.65, 0.0, 1.55, 0.0, 2.3, 1.2, 1.5, 1.1, 1.8, 0.0];
-
-/// Largest step of the voltage between two rows, in V.
-const STEP: f64 = 0.025;
-
-/// Time between two rows in s.
-const SAMPLING: f64 = 5.0;
-
-fn parts() -> Result<(Record, Record)> {
-    let (pairs, range) = FURTHER;
-    let train = [&TRAIN[..], &path::covering(pairs, range)].concat();
-    let (voltage, trained) = path::continued(&train, &TEST, STEP);
-    let output = law().run(&voltage);
-    let time = path::every(SAMPLING, voltage.len());
-    let whole = Record::new("heating and cooling", vec![voltage], output)?.with_time(time)?;
-    Ok(path::cut(&whole, trained))
-}
+/// The voltage in V.
+const PATH: Continued = Continued {
+    record: "heating and cooling",
+    training: &[
+        0.0, 2.4, 0.0, 2.0, 0.0, 1.8, 0.0, 1.7, 0.0, 1.6, 0.0, 1.5, 0.0, 2.2, 1.0, 1.6, 0.8, 2.0, 0.0,
+    ],
+    further: (40, (0.0, 2.4)),
+    test: &[1.9, 0.0, 1.75, 0.0, 1.65, 0.0, 1.55, 0.0, 2.3, 1.2, 1.5, 1.1, 1.8, 0.0],
+    longest_step: 0.025,
+    sampling: 5.0,
+};

@@ -12,11 +12,8 @@
 //! *Published*: the law, and that triangular currents between -0.7 and 1.2 A drove the actuator.
 //! *Designed*: all values, and the turning points of the current.
 
-use hysid_core::data::record::Record;
-use hysid_core::error::Result;
-
 use super::generalized_play::{Envelope, GeneralizedPlays, Start};
-use super::path;
+use super::path::Continued;
 use super::specimen::{Columns, Specimen};
 
 /// The actuator, virgin: current in A to displacement in µm. All values are designed.
@@ -38,36 +35,16 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     testing: "the current goes on to other turning points in the same range; the training part comes first, with \
               blank outputs, so that the memory is carried over",
     columns: Columns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
-    train: |_| Ok(vec![parts()?.0]),
-    test: |_| Ok(vec![parts()?.1]),
+    train: |_| Ok(vec![PATH.records(|current| law().run(current))?.0]),
+    test: |_| Ok(vec![PATH.records(|current| law().run(current))?.1]),
 };
 
-/// Turning points of the current in A to begin training with; the first seven swings have the paper's extremes.
-const TRAIN: [f64; 13] = [0.0, 1.2, -0.7, 1.2, -0.7, 1.2, -0.5, 1.0, -0.3, 0.8, -0.1, 0.6, 1.2];
-
-/// Turning points of training that follow, all over the paper's range in A.
-const FURTHER: (usize, (f64, f64)) = (40, (-0.7, 1.2));
-
-/// Turning points that follow.
-const TEST: [f64; 14] = [-0.6, 0.9, -0.2, 0.5, -0.4, 1.1, 0.0, 0.7, 0.2, 1.0, -0.65, 0.3, -0.05, 1.15];
-
-/// Largest step of the current between two rows, in A.
-const STEP: f64 = 0.016;
-
-/// Time between two rows in s.
-const SAMPLING: f64 = 0.01;
-
-fn parts() -> Result<(Record, Record)> {
-    driven(|current| law().run(current))
-}
-
-/// The triangles of training and of the test, with the displacements of this law.
-pub(super) fn driven(law: impl Fn(&[f64]) -> Vec<f64>) -> Result<(Record, Record)> {
-    let (pairs, range) = FURTHER;
-    let train = [&TRAIN[..], &path::covering(pairs, range)].concat();
-    let (current, trained) = path::continued(&train, &TEST, STEP);
-    let displacement = law(&current);
-    let time = path::every(SAMPLING, current.len());
-    let whole = Record::new("triangles", vec![current], displacement)?.with_time(time)?;
-    Ok(path::cut(&whole, trained))
-}
+/// The current in A; the first seven swings have the paper's extremes.
+pub(super) const PATH: Continued = Continued {
+    record: "triangles",
+    training: &[0.0, 1.2, -0.7, 1.2, -0.7, 1.2, -0.5, 1.0, -0.3, 0.8, -0.1, 0.6, 1.2],
+    further: (40, (-0.7, 1.2)),
+    test: &[-0.6, 0.9, -0.2, 0.5, -0.4, 1.1, 0.0, 0.7, 0.2, 1.0, -0.65, 0.3, -0.05, 1.15],
+    longest_step: 0.016,
+    sampling: 0.01,
+};

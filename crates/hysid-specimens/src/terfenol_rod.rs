@@ -46,6 +46,6 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     training: "as for terfenol-actuator",
     testing: "as for terfenol-actuator",
     columns: Columns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
-    train: |_| Ok(vec![terfenol_actuator::driven(run)?.0]),
-    test: |_| Ok(vec![terfenol_actuator::driven(run)?.1]),
+    train: |_| Ok(vec![terfenol_actuator::PATH.records(run)?.0]),
+    test: |_| Ok(vec![terfenol_actuator::PATH.records(run)?.1]),
 };

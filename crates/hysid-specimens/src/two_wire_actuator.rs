@@ -18,11 +18,8 @@
 //!
 //! [`shape_memory_actuator`]: super::shape_memory_actuator
 
-use hysid_core::data::record::Record;
-use hysid_core::error::Result;
-
 use super::ferromagnet::Ferromagnet;
-use super::path;
+use super::path::Continued;
 use super::specimen::{Columns, Specimen};
 
 /// Angles of the two wires, fully contracted, in degrees.
@@ -63,34 +60,19 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     testing: "the current goes on to other turning points in the same range; the training part comes first, with \
               blank outputs, so that the memory is carried over",
     columns: Columns { time: Some("t_s"), input: "current_A", output: "angle_deg" },
-    train: |_| Ok(vec![parts()?.0]),
-    test: |_| Ok(vec![parts()?.1]),
+    train: |_| Ok(vec![PATH.records(run)?.0]),
+    test: |_| Ok(vec![PATH.records(run)?.1]),
 };
 
-/// Turning points of the current in A to begin training with.
-const TRAIN: [f64; 11] = [0.0, 1.0, -1.0, 1.0, -0.8, 0.8, -0.65, 0.65, -0.5, 0.5, 0.0];
-
-/// Turning points of training that follow, all over the range in A.
-const FURTHER: (usize, (f64, f64)) = (40, (-1.0, 1.0));
-
-/// Turning points of the test.
-const TEST: [f64; 20] = [
-    0.9, 0.35, 0.7, -0.7, -0.3, -0.55, 0.95, 0.5, 0.6, -0.9, -0.4, -0.75, 0.45, 0.2, 0.85, -0.6, 0.55, -0.95,
-    0.75, 0.0,
-];
-
-/// Largest step of the current between two rows, in A.
-const STEP: f64 = 0.02;
-
-/// Time between two rows in s.
-const SAMPLING: f64 = 4.0;
-
-fn parts() -> Result<(Record, Record)> {
-    let (pairs, range) = FURTHER;
-    let train = [&TRAIN[..], &path::covering(pairs, range)].concat();
-    let (current, trained) = path::continued(&train, &TEST, STEP);
-    let angle = run(&current);
-    let time = path::every(SAMPLING, current.len());
-    let whole = Record::new("heating and cooling", vec![current], angle)?.with_time(time)?;
-    Ok(path::cut(&whole, trained))
-}
+/// The current in A.
+const PATH: Continued = Continued {
+    record: "heating and cooling",
+    training: &[0.0, 1.0, -1.0, 1.0, -0.8, 0.8, -0.65, 0.65, -0.5, 0.5, 0.0],
+    further: (40, (-1.0, 1.0)),
+    test: &[
+        0.9, 0.35, 0.7, -0.7, -0.3, -0.55, 0.95, 0.5, 0.6, -0.9, -0.4, -0.75, 0.45, 0.2, 0.85, -0.6, 0.55,
+        -0.95, 0.75, 0.0,
+    ],
+    longest_step: 0.02,
+    sampling: 4.0,
+};
