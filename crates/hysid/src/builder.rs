@@ -17,7 +17,6 @@ use crate::options::chosen::{NamedOptions, RateChoice};
 use crate::options::{FitSpec, ModelName};
 use crate::validation::CrossValidation;
 
-/// Largest number of folds.
 const FOLDS: usize = 5;
 
 /// A fit with its options. Options have the names and ranges of the table in

@@ -122,7 +122,6 @@ fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_
     Ok(Fitted { searched: found.searched, ..fitted })
 }
 
-/// The history of a search, as of the only start.
 fn run_of_law(history: Vec<HistoryPoint>, termination: Termination) -> Run {
     Run {
         phase: Phase::AllData,

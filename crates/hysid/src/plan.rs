@@ -111,7 +111,6 @@ impl Plan {
     }
 }
 
-/// Time stamps of a drive.
 fn time(limits: Limits, rows: usize) -> Option<Vec<f64>> {
     limits.step.map(|step| (0..rows).map(|row| row as f64 * step).collect())
 }

@@ -215,7 +215,6 @@ fn check(motion: &Motion<'_>, record: usize, window: usize) -> Result<()> {
     Ok(())
 }
 
-/// The columns that a motion has.
 fn columns<'a>(motion: &Motion<'a>) -> impl Iterator<Item = (MotionColumn, &'a [f64])> {
     let acceleration = match motion.acceleration {
         Acceleration::Computed => None,

@@ -210,12 +210,10 @@ fn cuts(data: &Dataset, most: usize) -> Vec<Cut> {
     enough(in_time(data, &protocols.into_iter().flat_map(|protocol| protocol.runs).collect::<Vec<usize>>()))
 }
 
-/// Enough to fit to and to judge on.
 fn has_enough(fold: &Fold) -> bool {
     fold.train.check_identifiable(FEWEST_ROWS).is_ok() && fold.held_out.scored() > 0
 }
 
-/// Folds of several protocols.
 fn of_protocols(protocols: &[Protocol], most: usize) -> Vec<Cut> {
     deal(protocols, most).into_iter().map(Cut::Records).collect()
 }

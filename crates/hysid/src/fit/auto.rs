@@ -67,7 +67,6 @@ use trial::{Bench, HeldOut, Trial, fit_members};
 pub use tried::{Standing, Tried};
 use work::Work;
 
-/// Most folds.
 const MOST_FOLDS: usize = 5;
 
 /// Rows with an output that candidates are fitted to and judged on, at most; the memory runs through all.
@@ -93,7 +92,6 @@ fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
     }
 }
 
-/// Identifies a model by cross-validation of candidates.
 pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     data.check_identifiable(FEWEST_ROWS)?;
     check([("members", json!(options.members))])?;
@@ -181,9 +179,7 @@ struct Chosen<'w, 'o, 'a> {
 /// An ensemble, and what is known of it from the folds.
 struct Assembled {
     combination: Combination,
-    /// The rows held out of each fold with their errors.
     rows: Vec<Vec<HeldOutRow>>,
-    /// What is predicted for them.
     predicted: Vec<Vec<f64>>,
     selection: Selection,
     model: Model,
@@ -238,7 +234,6 @@ impl Chosen<'_, '_, '_> {
         Ok(Some(Assembled { combination, rows, predicted, selection, model }))
     }
 
-    /// The outputs that were predicted for the scored rows of each fold.
     fn predicted(&self, rows: &[Vec<HeldOutRow>]) -> Vec<Vec<f64>> {
         let of_fold = |(fold, rows): (&HeldOut, &Vec<HeldOutRow>)| {
             let measured =
@@ -253,7 +248,6 @@ impl Chosen<'_, '_, '_> {
         HeldOutRows::of(self.data.names(), folds.zip(predicted.iter().map(Vec::as_slice)))
     }
 
-    /// The errors of what was predicted for the scored rows of each fold.
     fn errors_held_out(&self, predicted: &[Vec<f64>]) -> Option<Errors> {
         errors_held_out(predicted, self.bench.folds, &self.data.names().output)
     }
@@ -337,7 +331,6 @@ impl Chosen<'_, '_, '_> {
     }
 }
 
-/// The errors of what was predicted for the scored rows of each fold, over all of them together.
 fn errors_held_out(predicted: &[Vec<f64>], folds: &[HeldOut], output: &str) -> Option<Errors> {
     let mut pooled = PooledErrors::default();
     for (fold, predicted) in folds.iter().zip(predicted) {
@@ -346,7 +339,6 @@ fn errors_held_out(predicted: &[Vec<f64>], folds: &[HeldOut], output: &str) -> O
     pooled.errors(output)
 }
 
-/// An ensemble with what is known of it.
 fn ensemble(
     body: Predictor,
     data: &Dataset,
@@ -367,7 +359,6 @@ fn ensemble(
     Model::new(body, InputTransform::default(), options.rate, data, found)
 }
 
-/// How a single model came about.
 fn provenance_of(
     model: &Model,
     selection: Option<Selection>,

@@ -26,7 +26,6 @@ const MOST_ROWS: usize = 6000;
 pub(crate) const QUICK: RandomStopsOptions =
     RandomStopsOptions { stops: 60, hidden: Some(0), rate: None, deterioration: Some(true), seed: 1 };
 
-/// Intervals of each axis of a Preisach plane that takes a moment to fit.
 pub(crate) const QUICK_INTERVALS: usize = search::INTERVALS;
 
 /// The initial state that is asked for, and what is needed to find it.

@@ -38,7 +38,6 @@ use eigenvectors::Eigenvectors;
 /// Probability of the intervals.
 pub const PROBABILITY: f64 = 0.95;
 
-/// Most variables of a fit whose intervals are found.
 const MOST_VARIABLES: usize = 130;
 
 /// Eigenvalues of `H`, of columns of length 1, below this share of the largest are 0 to the precision of the differences.
@@ -164,7 +163,6 @@ fn as_begun(model: &Model, data: &Dataset) -> Result<Dataset> {
     begun.with_lead_ins(|_, record| record.lead_in().unwrap_or(model.lead_in()).to_vec())
 }
 
-/// The intervals of parameters.
 fn intervals(parameters: &[ParameterInUnits], linearised: &Linearised) -> ParameterIntervals {
     let spread = Spread::of(linearised);
     let named = parameters.iter().zip(&linearised.gradients);
@@ -196,7 +194,6 @@ fn intervals(parameters: &[ParameterInUnits], linearised: &Linearised) -> Parame
 
 /// How much the variables of a fit scatter.
 struct Spread {
-    /// The variables that are free.
     free: Vec<usize>,
     /// Length of the column of each free variable.
     lengths: Vec<f64>,

@@ -73,7 +73,6 @@ pub trait Identify: Law {
 
 /// A law that is found by a search over a family.
 pub(crate) trait SearchedLaw: Law + Into<Classical> {
-    /// The family, in the form of the search.
     type Family: LawFamily<Law = Self>;
 
     /// The family to search, and the rows that it is compared with.

@@ -21,7 +21,6 @@ use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::options::input_options::HISTORY_INPUTS;
 use crate::options::network::{FitOptions, Trainer};
 
-/// Bytes of a number.
 const NUMBER: f64 = 8.0;
 
 /// Rows that a search compares with the measured output, at most.
@@ -87,7 +86,6 @@ pub fn memory_need(data: &Dataset, request: &FitSpec, threads: usize) -> Result<
     }
 }
 
-/// Numbers that the data consist of.
 fn numbers(data: &Dataset) -> f64 {
     let columns =
         data.names().inputs.len() + 1 + usize::from(data.has_time()) + usize::from(data.has_given_rate());

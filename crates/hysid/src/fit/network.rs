@@ -76,7 +76,6 @@ pub struct Progress<'a> {
 #[derive(Clone, Copy)]
 pub(crate) enum Present<'a> {
     Network(&'a Fitting<'a>),
-    /// The search of a law, by the model that it has come to.
     Law(&'a (dyn Fn() -> Option<Model> + Sync)),
 }
 
@@ -121,17 +120,14 @@ impl<'a> Progress<'a> {
         Progress { tried: None, present: None, ..self.clone() }
     }
 
-    /// The same with the state of the fit.
     pub(crate) fn with_state(self, present: Present<'a>) -> Self {
         Self { present: Some(present), ..self }
     }
 
-    /// Of a network's fit before its first epoch.
     pub(crate) fn of_beginning(options: &FitOptions) -> Self {
         Self::beginning(ModelName::Network(options.model), options.training.plan(options.epochs)[0].0)
     }
 
-    /// Of a model's fit that has no rounds.
     pub(crate) fn of_least_squares(model: ClassicalModel) -> Self {
         Self::beginning(ModelName::Classical(model), Method::LeastSquares)
     }
@@ -160,7 +156,6 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Of a classical model's search.
     pub(crate) fn of_search(model: ClassicalModel, progress: &SearchProgress) -> Self {
         Self {
             epoch: progress.round,
@@ -195,7 +190,6 @@ impl Fitted {
         Self { model, evaluations, searched: Vec::new(), held_out: None }
     }
 
-    /// With rows that were held out.
     pub(crate) fn with_held_out(self, held_out: Option<HeldOutRows>) -> Self {
         Self { held_out, ..self }
     }
@@ -217,7 +211,6 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
     Fitting::new(data, &seen, options.clone())?.run(observer)
 }
 
-/// The initial state that is asked for.
 fn wanted_of(options: &FitOptions) -> Wanted {
     let FitOptions { shaping, rate, seed, .. } = *options;
     Wanted { state: shaping.initial_state, origin: Origin::OfData, rate, seed }

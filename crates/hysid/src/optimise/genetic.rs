@@ -163,7 +163,6 @@ impl Problem<'_> {
     }
 }
 
-/// The generator of an individual.
 fn generator(seed: u64, generation: usize, index: usize) -> Xoshiro256PlusPlus {
     let mixed = mix(mix(mix(seed) ^ generation as u64) ^ index as u64);
     Xoshiro256PlusPlus::seed_from_u64(mixed)

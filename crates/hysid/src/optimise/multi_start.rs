@@ -11,15 +11,12 @@ use std::ops::ControlFlow;
 use crate::optimise::parallel;
 use crate::termination::Termination;
 
-/// A start on its way.
 pub(crate) trait Start: Send {
     /// Which of two is the better, which comes first.
     fn order(&self, other: &Self) -> Ordering;
 
-    /// Evaluations so far.
     fn evaluations(&self) -> usize;
 
-    /// Why it ended, if it has.
     fn ended(&self) -> Option<Termination>;
 }
 
@@ -36,7 +33,6 @@ pub(crate) struct Plan {
     pub finalists: usize,
 }
 
-/// Starts, the best first.
 #[derive(Debug, Clone)]
 pub(crate) struct MultiStart<S> {
     starts: Vec<S>,

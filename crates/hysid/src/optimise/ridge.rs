@@ -10,12 +10,9 @@ const LARGEST: f64 = 1e12;
 /// Smallest ridge that is tried, as a share of the largest diagonal entry.
 const SMALLEST: f64 = 1e-14;
 
-/// Why there is no factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NoFactor {
-    /// Stopped.
     Stopped,
-    /// The matrix is not finite.
     NotFinite,
 }
 

@@ -153,7 +153,6 @@ impl Drive {
         may_be_run
     }
 
-    /// Adds a test of a loop about the middle, as large as fits.
     fn add_test_of_a_loop(&mut self, kind: Kind, legs: impl Fn(f64, f64) -> Vec<Leg>) {
         let limits = self.path.limits;
         let (middle, half) = (0.5 * (limits.range.0 + limits.range.1), 0.5 * limits.width());

@@ -40,7 +40,6 @@ struct Piece {
     legs: Vec<Level>,
 }
 
-/// A leg between levels.
 enum Level {
     Swing(f64, f64),
     Hold,
@@ -304,7 +303,6 @@ fn at_speeds(amplitudes: &[f64]) -> Vec<Piece> {
     amplitudes.iter().flat_map(of_amplitude).collect()
 }
 
-/// Reversal curves from both ends.
 fn reversal_curves() -> Vec<Piece> {
     let curve = |end: f64, turn: f64| Piece {
         kind: Kind::ReversalCurve,

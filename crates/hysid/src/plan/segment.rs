@@ -68,7 +68,6 @@ impl Kind {
         }
     }
 
-    /// Why it is run at this share of the largest rate.
     pub(super) fn reason(self, share: f64) -> String {
         let words = self.purpose();
         match share {

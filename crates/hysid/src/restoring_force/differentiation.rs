@@ -77,7 +77,6 @@ mod tests {
     use crate::optimise::random::{generator, normal};
     use crate::restoring_force::noise;
 
-    /// A vibration of three tones, and its second derivative.
     fn vibration(time: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let tones = [(1.0, 6.0, 0.0), (0.4, 17.0, 1.0), (0.15, 31.0, 2.0)];
         let sum = |t: &f64, of: &dyn Fn(f64, f64, f64) -> f64| {

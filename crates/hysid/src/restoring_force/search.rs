@@ -61,7 +61,6 @@ impl<'s> Search<'s> {
         best.unwrap_or_else(|| self.trial(smallest, None))
     }
 
-    /// Tries a filter; `other` is the best of those that were tried before.
     fn trial(&self, filter: Filter, other: Option<&Trial>) -> Trial {
         let (mut values, mut gain) = (Vec::new(), 0.0);
         let (mut apart, mut apart_by_noise) = (0.0, 0.0);
@@ -140,7 +139,6 @@ impl Trial {
     }
 }
 
-/// Mean square of the difference of two filters.
 #[derive(Debug, Clone, Copy)]
 struct Apart {
     total: f64,

@@ -8,7 +8,6 @@ use crate::data::record::Dataset;
 /// Held-out errors; a row that is held out more than once counts once, with the mean of its squared errors.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PooledErrors {
-    /// The rows of each record, by its name.
     records: BTreeMap<String, Vec<Row>>,
 }
 
@@ -17,7 +16,6 @@ struct Row {
     measured: f64,
     square_errors: f64,
     largest: f64,
-    /// How often it was held out.
     times: u32,
 }
 

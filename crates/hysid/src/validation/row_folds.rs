@@ -66,7 +66,6 @@ impl RowFolds {
         Self { of_rows, count, judged }
     }
 
-    /// Blocks of all rows together, or, where records repeat each other, of each record.
     fn blocks(data: &Dataset, used: &[usize], of_all: bool) -> Self {
         let mut seen = 0;
         let of_rows = used.iter().map(|&record| {

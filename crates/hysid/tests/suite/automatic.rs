@@ -17,7 +17,6 @@ fn data() -> Dataset {
     Dataset::new(names(), vec![noisy(150, "a"), noisy(110, "b"), noisy(130, "c")]).unwrap()
 }
 
-/// Several tests ask the same ensemble.
 fn shared() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
     MODEL.get_or_init(|| fitted(&data(), options(None)))

@@ -46,7 +46,6 @@ fn rate_dependent_actuator() -> RateDependentPrandtlIshlinskii {
     }
 }
 
-/// A steel-like element of designed values.
 fn bouc_wen(n: f64) -> BoucWen {
     BoucWen { b: 0.6, n, ..BoucWen::new(2.0, 30.0, 1.5).unwrap() }
 }
@@ -106,7 +105,6 @@ fn sine(frequency: f64, amplitude: f64, samples: usize, periods: usize) -> Vec<S
     (0..=periods * samples).map(sample).collect()
 }
 
-/// Area that the last period encloses.
 fn last_area(samples: &[Sample], y: &[f64], period: usize) -> f64 {
     let first = samples.len() - 1 - period;
     let rows = first..samples.len() - 1;

@@ -36,7 +36,6 @@ enum Wave {
 }
 
 impl Wave {
-    /// At a number of periods.
     fn at(self, periods: f64) -> f64 {
         let phase = periods.rem_euclid(1.0);
         match self {
@@ -104,7 +103,6 @@ fn sound() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     columns(&data.records()[0])
 }
 
-/// The only complaint about data.
 fn only(data: &Dataset, kind: DataIssueKind) -> DataIssue {
     let found = doctor(data);
     assert!(found.len() == 1 && found[0].kind == kind, "{kind:?} wanted: {found:#?}");
@@ -154,7 +152,6 @@ fn specimens_are_not_complained_of_without_reason() {
     }
 }
 
-/// The lag that is complained of, if any.
 fn lag(data: &Dataset) -> Option<f64> {
     let lag = doctor(data).into_iter().find(|complaint| complaint.kind == DataIssueKind::Lag)?;
     assert_eq!(lag.unit.as_deref(), Some("s"));
@@ -197,7 +194,6 @@ fn a_delay_of_half_a_millisecond_is_found_at_one_speed() {
     }
 }
 
-/// Records at three speeds.
 fn at_speeds(law: Law, wave: Wave, delay: f64) -> Dataset {
     dataset([5.0, 15.0, 50.0].map(|frequency| delayed(law, wave, frequency, 1e-4, delay, 10.0)).into())
 }

@@ -15,7 +15,6 @@ fn all() -> Vec<Subject> {
     laws().into_iter().chain(timed()).chain(specimens()).collect()
 }
 
-/// How often a verdict was right, wrong, or not given.
 #[derive(Debug, Default, Clone, Copy)]
 struct Count {
     right: usize,

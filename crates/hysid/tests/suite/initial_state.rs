@@ -24,7 +24,6 @@ fn without_time(record: &Record) -> Record {
     .unwrap()
 }
 
-/// Small oscillations about 0 that grow and shrink.
 fn path(rows: usize, size: f64, pace: f64) -> Vec<f64> {
     let x = |k: f64| size * (pace * k).sin() * (0.35 + 0.3 * (0.37 * pace * k).sin());
     (0..rows).map(|k| x(k as f64)).collect()
@@ -293,7 +292,6 @@ fn a_forecast_begins_with_the_state_of_its_record() {
     assert!(found < told + 0.1 && found < virgin - 0.5, "{found} found, {told} told, {virgin} virgin");
 }
 
-/// The automatic model with few candidates, so that it is quick.
 fn few_candidates() -> FitSpec {
     let FitSpec::Auto(options) = small(ModelName::AUTO, None) else { panic!("auto was asked for") };
     FitSpec::Auto(AutoOptions {

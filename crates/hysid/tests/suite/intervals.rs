@@ -43,7 +43,6 @@ fn noise(seed: u64, a: f64) -> Vec<f64> {
     all
 }
 
-/// A law that makes data, and how it is fitted to them.
 struct Case<L> {
     law: L,
     options: ClassicalOptions,
@@ -88,7 +87,6 @@ impl<L: Law> Case<L> {
     }
 }
 
-/// Share of all intervals together that contain the parameter.
 fn share(coverage: &Coverage) -> f64 {
     let (inside, all) = coverage.iter().fold((0, 0), |sum, one| (sum.0 + one.1, sum.1 + one.2));
     inside as f64 / all as f64

@@ -39,7 +39,6 @@ const AFTER_A_JUMP: f64 = 0.1;
 /// A second difference of the input in the first rows above this share of its range is a jump. Designed.
 const JUMP: f64 = 0.01;
 
-/// Data whose records begin as it was chosen, and their folds.
 pub(super) struct Beginning {
     pub data: Dataset,
     pub folds: Vec<Fold>,
@@ -132,7 +131,6 @@ fn jumps(record: &Record, range: f64) -> bool {
     first_second_difference(&record.inputs()[0]) > JUMP * range
 }
 
-/// Data and folds with other lead-ins.
 struct OtherStates {
     data: Dataset,
     folds: Vec<Fold>,

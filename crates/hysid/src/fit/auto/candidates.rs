@@ -22,15 +22,11 @@ use crate::options::{FitSpec, ModelName};
 /// A kind of candidates. The best of each kind pass the first folds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Trained networks.
     Networks,
-    /// Networks of random stops.
     RandomStops,
     /// Classical models: relays, plays and the like.
     Classical,
-    /// Recurrent networks.
     Recurrent,
-    /// Models with inertia.
     Dynamic,
 }
 
@@ -38,7 +34,6 @@ impl Kind {
     pub const ALL: [Kind; 5] =
         [Kind::Classical, Kind::Networks, Kind::RandomStops, Kind::Recurrent, Kind::Dynamic];
 
-    /// That of a specification.
     fn of(request: &FitSpec) -> Self {
         match request {
             FitSpec::Network(_) => Kind::Networks,
@@ -73,17 +68,14 @@ pub(super) struct Candidate {
 /// Scale of the companding of the input: for what happens within a tenth or a fiftieth of its range.
 const COMPANDING: [f64; 2] = [0.1, 0.02];
 
-/// Scale of the companding of the rate.
 const RATE_COMPANDING: f64 = 0.1;
 
 /// Penalties that the best networks are also tried with: those of a single fit, and near-zero ones for noise-free data.
 const OTHER_PENALTIES: [Regularisation; 2] =
     [Regularisation { ridge: 1e-6, decay: 1e-7 }, Regularisation { ridge: 1e-10, decay: 1e-12 }];
 
-/// Epochs of a network. As above.
 const EPOCHS: usize = 25;
 
-/// Epochs of a recurrent network.
 const EPOCHS_OF_RECURRENT: usize = 40;
 
 /// Starts of a model with inertia for each start of another candidate; its search drops those with the larger errors.
@@ -339,7 +331,6 @@ fn networks(options: &AutoOptions) -> Vec<FitOptions> {
     networks
 }
 
-/// Networks whose stops are not trained.
 fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
     let as_it_is = InputOptions::default();
     let tenth = companded(COMPANDING[0]);
@@ -407,7 +398,6 @@ fn candidates_with_inertia(data: &Dataset, options: &AutoOptions, compared: Comp
     if all.iter().any(Candidate::is_dynamic) { all } else { Vec::new() }
 }
 
-/// Recurrent networks, for data with time stamps and a rate.
 fn recurrent(data: &Dataset, options: &AutoOptions) -> Vec<ClassicalOptions> {
     if options.rate.is_none() || !data.has_time() {
         return Vec::new();
@@ -440,7 +430,6 @@ fn of_law(options: &AutoOptions, model: ClassicalModel) -> ClassicalOptions {
     }
 }
 
-/// The laws that follow by linear least squares.
 fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
     let [tenth, fiftieth] = COMPANDING.map(companded);
     let mut laws = Vec::new();

@@ -32,7 +32,6 @@ pub(super) const STEPS: [Step; 2] = [
     Step { about_as_good: 1.0, keeps_better_predictors: false },
 ];
 
-/// Errors of a candidate or an ensemble, in percent of the standard deviation.
 #[derive(Debug, Clone, Copy)]
 struct Fitness {
     training: f64,

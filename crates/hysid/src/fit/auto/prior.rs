@@ -38,7 +38,6 @@ pub(super) const POWER: f64 = 8.0;
 /// Errors of networks inside a loop, as of a law ([`ErrorsInside`]).
 const OF_NETWORKS: ErrorsInside = ErrorsInside { softening: 0.25, sigmoid: 0.25, other: 0.6 };
 
-/// Parts of a branch whose slopes are compared. Designed.
 const PARTS: usize = 10;
 
 /// A part of a branch is steeper than another if its slope is so many times as large. Designed.
@@ -53,7 +52,6 @@ pub(super) enum Evidence {
     OneLoop(Shape),
 }
 
-/// Shape of the branches of a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     /// Steepest after the reversal, and never much steeper again.

@@ -95,7 +95,6 @@ fn squares<'a>(predicted: &'a [f64], fold: &'a Rows) -> impl Iterator<Item = (f6
     rows.map(|((predicted, measured), outside)| ((predicted - measured) * (predicted - measured), *outside))
 }
 
-/// Logarithm of the root mean square over a deviation.
 fn logarithm(squares: impl Iterator<Item = f64>, deviation: f64) -> f64 {
     let (rows, sum) = squares.fold((0, 0.0), |(rows, sum), square| (rows + 1, sum + square));
     let error = (sum / f64::from(rows.max(1))).sqrt() / deviation;

@@ -7,7 +7,6 @@ use crate::fit::auto::trial::{HeldOut, Trial};
 use crate::model::Weights;
 use crate::model::selection::{CandidateResult, Selection};
 
-/// Of a combination.
 pub(super) fn selection(
     trials: &[Trial],
     left_out: &[Trial],

@@ -109,7 +109,6 @@ fn closest_to_training(trial: &Trial) -> Option<&Model> {
     trial.members.values().min_by(|a, b| error(a).total_cmp(&error(b)))
 }
 
-/// What a single model is made from.
 pub(super) struct Makers<'w, 'o, 'a> {
     pub trials: &'w mut Vec<Trial>,
     pub bench: Bench<'w, 'o, 'a>,
@@ -174,7 +173,6 @@ impl Makers<'_, '_, '_> {
         errors_held_out(predicted, self.bench.folds, "")?.nrmse_std_percent
     }
 
-    /// The fit to everything with the lowest training error.
     fn plain(&mut self, place: usize) -> Option<Model> {
         let wanted: Vec<(usize, usize)> =
             (0..self.trials[place].starts.len()).map(|start| (place, start)).collect();
@@ -217,7 +215,6 @@ impl Makers<'_, '_, '_> {
     }
 }
 
-/// Standard deviation of the measured output, in its unit.
 fn deviation(data: &Dataset) -> f64 {
     let records = data.records().iter();
     let measured: Vec<f64> =

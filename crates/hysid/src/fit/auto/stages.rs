@@ -39,7 +39,6 @@ const PROMISING: [(usize, f64); 3] = [(3, f64::INFINITY), (6, 3.0), (10, 1.7)];
 /// The held-out error with the rate that makes up for not knowing it at other speeds, relative to that without. Designed.
 const EARNED: f64 = 0.8;
 
-/// Networks that are tried with other penalties too.
 const REFINED: usize = 2;
 
 /// Error of the best network, as a share of the standard deviation, below which there is hardly any noise.
@@ -48,7 +47,6 @@ const WITHOUT_NOISE: f64 = 0.01;
 /// Rows with an output that a law is fitted to in haste, at most.
 const ROWS_IN_HASTE: usize = 600;
 
-/// What is tried and on what.
 pub(super) struct Stages<'w, 'o, 'a> {
     pub bench: Bench<'w, 'o, 'a>,
     pub options: &'w AutoOptions,
@@ -152,7 +150,6 @@ impl Stages<'_, '_, '_> {
         }
     }
 
-    /// Tells the observer how some candidates stand.
     fn tell(&self, places: &[usize], standing: Standing) {
         let Bench { folds, work, .. } = self.bench;
         for trial in places.iter().map(|&place| &self.trials[place]) {
@@ -291,7 +288,6 @@ impl Stages<'_, '_, '_> {
         worth.into_iter().map(|hasty| hasty.law).collect()
     }
 
-    /// Further starts of the random candidates that count.
     fn further_starts(&mut self) {
         let Bench { folds, work, .. } = self.bench;
         let Some(combination) = Combination::of(&self.trials, folds, self.evidence, |_| true) else { return };
@@ -332,7 +328,6 @@ impl Stages<'_, '_, '_> {
     }
 }
 
-/// The lowest scores of each class.
 fn lowest(scores: impl Iterator<Item = Score>) -> Option<Score> {
     scores.reduce(|a, b| Score { inside: a.inside.min(b.inside), outside: a.outside.min(b.outside) })
 }

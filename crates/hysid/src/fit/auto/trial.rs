@@ -11,7 +11,6 @@ use crate::model::{Excursion, Model, Predictions};
 use crate::optimise::parallel;
 use crate::validation::Fold;
 
-/// A fold with its held-out rows.
 #[derive(Debug, Clone)]
 pub(super) struct HeldOut {
     pub fold: Fold,
@@ -54,7 +53,6 @@ impl Rows {
     }
 }
 
-/// A model that was fitted to the training part of a fold.
 #[derive(Debug, Clone)]
 pub(super) struct OnFold {
     pub model: Model,
@@ -168,7 +166,6 @@ struct Job {
     fold: Option<usize>,
 }
 
-/// What came of a job.
 #[allow(clippy::large_enum_variant)]
 enum Tried {
     OnFold(OnFold),

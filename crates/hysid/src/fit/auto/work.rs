@@ -12,13 +12,11 @@ use crate::fit::identify;
 use crate::fit::network::{Fitted, Observer, Progress, SharedObserver};
 use crate::model::Model;
 
-/// The observer, shared by all fits.
 pub(super) struct Work<'o, 'a> {
     observer: SharedObserver<'o, 'a>,
     fits: Mutex<Fits>,
 }
 
-/// Fits that are done and fits that are expected.
 #[derive(Debug, Clone, Copy)]
 struct Fits {
     done: usize,
@@ -101,7 +99,6 @@ impl<'o, 'a> Work<'o, 'a> {
         let _ = self.observer.tell(&Progress::of_candidate(candidate.asked().model(), self.share(), tried));
     }
 
-    /// The completed share of the work.
     fn share(&self) -> f64 {
         let mut fits = self.fits();
         fits.told = fits.told.max((fits.done as f64 / fits.expected as f64).min(1.0));

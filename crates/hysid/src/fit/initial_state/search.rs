@@ -30,7 +30,6 @@ use crate::options::input_options::InputOptions;
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
 
-/// Rounds over all records, at most.
 const ROUNDS: usize = 4;
 
 /// Of the lead-ins tried, those from which the search begins with all records: virgin, and either end.
@@ -80,7 +79,6 @@ pub(super) fn lead_ins(
     Ok(Some(found))
 }
 
-/// The records whose lead-ins are found already.
 struct Before {
     total: Sums,
     /// Lead-in of most records of the last part.
@@ -145,7 +143,6 @@ impl Features {
     }
 }
 
-/// The search for the lead-ins of some records, after those before.
 struct Search<'s> {
     features: &'s Features,
     /// Of each record with each lead-in.
@@ -196,7 +193,6 @@ impl Search<'_> {
         Some((objective, chosen))
     }
 
-    /// Sums of all records with these lead-ins.
     fn total(&self, chosen: &[usize]) -> Sums {
         let mut chosen = self.sums.iter().zip(chosen).map(|(sums, &place)| &sums[place]);
         let first = self.before.map(|before| &before.total).or_else(|| chosen.next());

@@ -3,7 +3,6 @@
 
 use crate::linear_algebra::Symmetric;
 
-/// Sweeps over all entries, at most; a few suffice.
 const SWEEPS: usize = 60;
 
 /// Eigenvalues with their eigenvectors, of length 1.

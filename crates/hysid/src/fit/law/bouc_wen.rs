@@ -27,7 +27,6 @@ impl SearchedLaw for BoucWen {
     }
 }
 
-/// Bouc-Wen elements, in the form of the search.
 pub(crate) struct Elements {
     degradation: bool,
     variables: Vec<Variable>,

@@ -53,7 +53,6 @@ const MOST_COMPARED: usize = 2000;
 /// After so many epochs half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 12;
 
-/// Bounds of `c`.
 const PATH_LEAKS: (f64, f64) = (1e-3, 1e3);
 
 /// First path constants `1/c`, as shares of half the range of the input.
@@ -84,7 +83,6 @@ impl Identify for DuhemNn {
     }
 }
 
-/// All starts on their way.
 struct Training<'a> {
     /// What they are trained on, and what judges them.
     kept: &'a Task<'a>,
@@ -180,7 +178,6 @@ struct Frame {
     /// Without a network.
     law: DuhemNn,
     layout: Layout,
-    /// Bounds of each parameter.
     bounds: Vec<(f64, f64)>,
     /// Mean time step and duration of the longest record.
     times: (f64, f64),
@@ -214,7 +211,6 @@ struct Task<'a> {
     frame: &'a Frame,
     drives: Vec<Vec<Input>>,
     targets: Vec<Vec<f64>>,
-    /// Rows with a target.
     rows: usize,
     /// Breaks evaluations off.
     stop: StopCheck<'a>,
@@ -321,7 +317,6 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// The parameters with a penalty.
     fn weights<'p>(&'p self, parameters: &'p [f64]) -> impl Iterator<Item = (usize, &'p f64)> {
         parameters.iter().enumerate().filter(|(index, _)| self.frame.layout.has_decay(*index))
     }
@@ -412,7 +407,6 @@ impl Problem for Task<'_> {
     }
 }
 
-/// A start on its way.
 struct Walk {
     search: LevenbergMarquardt<Value>,
     ended: Option<Termination>,

@@ -38,7 +38,6 @@ impl SearchedLaw for GeneralizedPrandtlIshlinskii {
     }
 }
 
-/// Generalized plays, in the form of the search.
 pub(crate) struct Plays {
     low: f64,
     high: f64,

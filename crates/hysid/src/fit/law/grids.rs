@@ -38,7 +38,6 @@ pub(crate) fn fits_on_grids<F>(grids: &[Vec<f64>], fit: impl Fn(&[f64]) -> Resul
     Ok(fits)
 }
 
-/// Most operators of a bank.
 const MOST_OPERATORS: usize = 1000;
 
 /// The grid whose fit has the lowest score, with the weights found on it.

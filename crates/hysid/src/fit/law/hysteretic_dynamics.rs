@@ -88,7 +88,6 @@ const FIRST_THRESHOLDS: (f64, f64) = (0.1, 2.0);
 /// First loss of strength of a stop, in the inverse unit of the displacement.
 const FIRST_STRENGTH_LOSS: f64 = 1e-3;
 
-/// What is asked for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Asked {
     form: Form,
@@ -269,7 +268,6 @@ struct Tasks<'a> {
     fine: Task<'a>,
 }
 
-/// A start on its way.
 struct Walk {
     kind: Kind,
     search: LevenbergMarquardt<Value>,
@@ -323,7 +321,6 @@ impl Walk {
     }
 }
 
-/// The stage of an epoch.
 fn stage(epoch: usize, epochs: usize) -> usize {
     let scaled = if epochs < SCHEDULED { epoch * SCHEDULED / epochs } else { epoch };
     match STAGES.iter().position(|stage| scaled <= stage.end) {

@@ -60,7 +60,6 @@ fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Materials, Vec<S
     Ok((Materials::new(low.abs().max(high.abs()), form), series))
 }
 
-/// Jiles-Atherton laws, in the form of the search.
 struct Materials {
     form: JilesAthertonForm,
     variables: [Variable; 4],

@@ -29,7 +29,6 @@ use crate::validation::RowFolds;
 /// Rows that are copied into a batch together: a cache line.
 const LINE: usize = 8;
 
-/// What a law that is linear in its weights is fitted to.
 #[derive(Debug, Clone)]
 pub(crate) struct TrainingRows {
     pub series: Vec<Series>,
@@ -103,7 +102,6 @@ impl Sums {
     }
 }
 
-/// Sums of each fold.
 #[derive(Debug, Clone)]
 pub(crate) struct FoldSums {
     folds: Vec<Sums>,
@@ -164,7 +162,6 @@ impl FoldSums {
     }
 }
 
-/// What cross-validation chose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Choice {
     /// Mean over the folds of the logarithm of the mean square error.

@@ -63,14 +63,11 @@ pub struct Linearised {
     pub(crate) rows_each: f64,
 }
 
-/// A family that knows its law.
 pub(crate) trait LawFamily: Family {
     type Law: Law;
 
-    /// The law with these searched parameters and weights.
     fn whole(&self, searched: &[f64], weights: &[f64]) -> Self::Law;
 
-    /// The searched parameters of a law.
     fn searched(&self, law: &Self::Law) -> Vec<f64>;
 }
 
@@ -143,7 +140,6 @@ pub(crate) fn of_search<F: LawFamily>(family: &F, series: &[Series], law: &F::La
     }
 }
 
-/// The measured outputs of each series.
 fn scored(series: &[Series]) -> impl Iterator<Item = impl Iterator<Item = f64> + '_> + '_ {
     series.iter().map(|series| series.output.iter().copied().filter(|y| !y.is_nan()))
 }

@@ -25,7 +25,6 @@ impl SearchedLaw for Lugre {
     }
 }
 
-/// LuGre laws, in the form of the search.
 pub(crate) struct Contacts {
     variables: [Variable; 3],
 }

@@ -26,7 +26,6 @@ impl SearchedLaw for MenegottoPinto {
     }
 }
 
-/// Steels, in the form of the search.
 pub(crate) struct Steels {
     range: f64,
     asymmetric: bool,

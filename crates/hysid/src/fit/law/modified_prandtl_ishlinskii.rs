@@ -30,13 +30,11 @@ use crate::optimise::parallel;
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
-/// Most dead zones on each side.
 const MOST_DEAD_ZONES: usize = 100;
 
 /// Smallest slope of the dead zones, where that of a straight line through the data is about 1.
 const LEAST_SLOPE: f64 = 1e-3;
 
-/// Iterations of the refinement.
 const ITERATIONS: usize = 40;
 
 /// Iterations of a refinement that is only judged.
@@ -131,7 +129,6 @@ impl Identify for ModifiedPrandtlIshlinskii {
     }
 }
 
-/// Values of the ridge that are tried.
 const RIDGES: usize = 7;
 
 /// What is believed of the plays beforehand.
@@ -160,7 +157,6 @@ struct Point {
     thresholds: Vec<f64>,
     /// Value at 0.
     constant: f64,
-    /// Slope of each piece.
     slopes: Vec<f64>,
     prior: Prior,
 }
@@ -204,7 +200,6 @@ impl Problem {
         Penalty::ridge((0..count).map(of))
     }
 
-    /// The rows of some folds.
     fn part(&self, chosen: impl Fn(usize) -> bool) -> Self {
         let rows: Vec<usize> = (0..self.targets.len()).filter(|&row| chosen(self.fold_of[row])).collect();
         Self {
@@ -516,7 +511,6 @@ impl Point {
         self.hysteresis.iter().copied().chain([self.constant]).chain(slopes).collect()
     }
 
-    /// The point of other parameters.
     fn at(&self, values: &[f64]) -> Self {
         let first = self.hysteresis.len();
         Self {

@@ -65,7 +65,6 @@ impl Identify for NeuroMadelung {
     }
 }
 
-/// All starts on their way.
 struct Training<'a> {
     /// What they are trained on, and what judges them.
     kept: &'a Task<'a>,
@@ -433,7 +432,6 @@ impl Problem for Objective<'_, '_> {
     }
 }
 
-/// A start on its way.
 struct Walk {
     search: LevenbergMarquardt<Value>,
     forced: bool,

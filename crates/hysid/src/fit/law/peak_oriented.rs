@@ -26,7 +26,6 @@ impl SearchedLaw for PeakOriented {
     }
 }
 
-/// Members, in the form of the search.
 pub(crate) struct Members {
     range: f64,
     asymmetric: bool,

@@ -165,7 +165,6 @@ impl Problem {
         FIRST + self.plane.intervals() + self.plane.cells()
     }
 
-    /// Weights of the intervals.
     fn reversible(&self) -> std::ops::Range<usize> {
         FIRST..FIRST + self.plane.intervals()
     }

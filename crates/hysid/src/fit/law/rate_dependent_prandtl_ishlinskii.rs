@@ -31,7 +31,6 @@ impl SearchedLaw for RateDependentPrandtlIshlinskii {
     }
 }
 
-/// Rate-dependent plays, in the form of the search.
 pub(crate) struct Plays {
     /// Largest magnitudes of input and rate.
     input: f64,

@@ -98,7 +98,6 @@ impl Variable {
 /// A family of laws, in the form of the search. The search knows it by reference only, so that the compiler makes one
 /// search for all families: a call costs nothing beside the run over a record that it asks for.
 pub(crate) trait Family: Sync {
-    /// The parameters that are searched.
     fn variables(&self) -> &[Variable];
 
     /// Whether the weight of each feature must not be negative; its length is the number of features.
@@ -191,7 +190,6 @@ pub(super) struct Objective<'a> {
     target: Vec<f64>,
     /// Sum of the squared deviations of the output from its mean.
     variation: f64,
-    /// Breaks evaluations off.
     stop: StopCheck<'a>,
 }
 

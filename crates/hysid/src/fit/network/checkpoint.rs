@@ -20,7 +20,6 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// A copy of the state of a fit.
     pub(crate) fn of(options: &FitOptions, data: &Dataset, state: &State) -> Self {
         Self { options: options.clone(), data: checksum(data), state: state.clone() }
     }
@@ -75,7 +74,6 @@ impl Checkpoint {
     }
 }
 
-/// Checksum of all that a fit takes from the data.
 fn checksum(data: &Dataset) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     let mut add = |values: &[f64]| {

@@ -34,10 +34,8 @@ use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use crate::validation::{Fold, PooledErrors, folds};
 
-/// Most folds that a fit is validated on.
 const MOST_FOLDS: usize = 5;
 
-/// Starts on each fold.
 const STARTS_ON_FOLDS: usize = 3;
 
 /// Penalties of data without noise, as good as none: what they would bias is exact.
@@ -57,7 +55,6 @@ const RUNS_PER_THREAD: usize = 4;
 /// Numbers that the states of these runs hold at most, if there are several of them.
 const MOST_NUMBERS: usize = 32 << 20;
 
-/// All runs of a fit so far.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct State {
     /// The starts on everything.
@@ -103,10 +100,8 @@ struct Beginning {
 /// Runs that advance together.
 struct Stage<'o> {
     phase: Phase,
-    /// Where the runs are kept.
     runs: Runs,
     objectives: &'o [Objective<'o>],
-    /// Epochs of each run.
     epochs: usize,
     /// Epochs that the observer is to add to those of the runs.
     epochs_before: usize,
@@ -510,7 +505,6 @@ impl<'a> Fitting<'a> {
         Ok(())
     }
 
-    /// Where a run is.
     fn progress(&mut self, stage: &Stage, index: usize) -> Progress<'_> {
         let done = self.done();
         let run = &(stage.runs)(&mut self.state)[index];
@@ -548,7 +542,6 @@ pub(crate) fn room(parameters: usize, epochs: usize, threads: usize) -> usize {
 /// Where the runs of a stage are kept.
 type Runs = fn(&mut State) -> &mut Vec<TrainingRun>;
 
-/// Runs on the training parts of all folds.
 #[derive(Clone, Copy)]
 struct FoldStage {
     phase: Phase,
@@ -594,7 +587,6 @@ fn onward(objective: usize, run: &TrainingRun) -> Beginning {
     Beginning { objective, start: run.start(), from: From::Parameters(run.best().parameters.clone()) }
 }
 
-/// The run with the lowest objective; `None` if no run has begun.
 fn best_of(runs: &[TrainingRun]) -> Option<&TrainingRun> {
     runs.iter().min_by(|a, b| a.objective().total_cmp(&b.objective()))
 }

@@ -250,7 +250,6 @@ fn rows_of_path(drive: &Drive, rate: bool, target: &[f64]) -> Vec<usize> {
     polyline(&columns, step, |row| !target[row].is_nan())
 }
 
-/// Mean time step and duration of the longest record; `None` without time stamps.
 fn time_scales(drives: &[Drive]) -> Option<(f64, f64)> {
     // The rows of a lead-in take an infinite time.
     fn measured(drive: &Drive) -> impl Iterator<Item = &f64> {

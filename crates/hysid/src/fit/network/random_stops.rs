@@ -153,7 +153,6 @@ impl Drawn {
     }
 }
 
-/// The architecture of random stops.
 fn architecture(
     data: &Dataset,
     options: &RandomStopsOptions,

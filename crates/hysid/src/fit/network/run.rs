@@ -24,7 +24,6 @@ use crate::termination::Termination;
 const POINTS_KEPT: usize = 100;
 const FALL_KEPT: f64 = 0.005;
 
-/// A start on its way.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct TrainingRun {
     phase: Phase,
@@ -71,9 +70,7 @@ enum Search {
     Over,
 }
 
-/// Where a run begins.
 pub(crate) enum From {
-    /// At random, by the seed and the number of the start.
     Random,
     /// At given parameters. A genetic algorithm is passed over: it has done its part.
     Parameters(Vec<f64>),
@@ -369,7 +366,6 @@ impl Search {
 }
 
 impl Point {
-    /// The objective's value at some parameters.
     fn of(parameters: Vec<f64>, value: &Value) -> Self {
         let (objective, mean_square) = (value.objective, value.mean_square);
         Self { parameters, output: value.output_weights().to_vec(), objective, mean_square }
@@ -412,7 +408,6 @@ fn begin_genetic(objective: &Objective, options: &FitOptions, start: usize) -> R
     Ok((Search::Genetic { search, encoding, stall }, best))
 }
 
-/// Begins a method that descends from given parameters.
 fn begin(
     method: Method,
     objective: &Objective,

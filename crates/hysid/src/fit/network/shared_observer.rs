@@ -8,7 +8,6 @@ use std::sync::{Mutex, MutexGuard};
 use crate::fit::network::{Observer, Progress};
 use crate::termination::Termination;
 
-/// An observer and what it has said.
 pub(crate) struct SharedObserver<'o, 'a> {
     observer: Mutex<Told<'o, 'a>>,
     is_over: AtomicBool,

@@ -25,7 +25,6 @@ pub(crate) struct Capacities {
 /// Capacities that a search starts from.
 const CAPACITIES: Capacities = Capacities { typical: 1000.0, spread: 1.0 };
 
-/// Parameters of start number `start`.
 pub(crate) fn random(objective: &Objective, seed: u64, start: usize) -> Vec<f64> {
     let seed = seed_of(seed, start as u64);
     draw(objective.architecture(), CAPACITIES, objective.time_scales(), seed)

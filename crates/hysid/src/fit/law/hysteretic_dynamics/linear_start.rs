@@ -15,7 +15,6 @@ use crate::stop_check::StopCheck;
 /// Rows of the grid at most, at the beginning of the records.
 const ROWS_OF_GRID: usize = 6000;
 
-/// Frequencies of the grid.
 const FREQUENCIES: usize = 60;
 
 /// Damping ratios of the grid, of an oscillator and of a state space model.

@@ -112,7 +112,6 @@ fn evened(mut steps: Vec<f64>) -> Vec<f64> {
     steps
 }
 
-/// The first rows of a record.
 fn begun(drive: &Drive, share: f64) -> Drive {
     let rows = (share * drive.x.len() as f64).ceil() as usize;
     let first = |values: &[f64]| values[..rows.min(values.len())].to_vec();

@@ -35,7 +35,6 @@ pub(super) struct Task<'a> {
     stop: StopCheck<'a>,
 }
 
-/// A record, and how it begins.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Begun {
     pub drive: Drive,

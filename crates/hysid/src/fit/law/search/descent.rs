@@ -15,7 +15,6 @@ use super::projection::Projection;
 /// Step of a finite difference in `u`.
 const DIFFERENCE: f64 = 1e-5;
 
-/// Where a start is.
 #[derive(Debug, Clone)]
 pub(crate) struct Descent {
     search: LevenbergMarquardt<Projection>,
@@ -50,7 +49,6 @@ impl Start for Descent {
         self.value().square_residual.total_cmp(&other.value().square_residual)
     }
 
-    /// Free runs of the law.
     fn evaluations(&self) -> usize {
         self.search.evaluations()
     }

@@ -13,7 +13,6 @@ pub(crate) const UNFINISHED: f64 = f64::INFINITY;
 /// Ridge, as a share of each feature's own square: it only makes collinear features solvable.
 const RIDGE: f64 = 1e-10;
 
-/// Features of all scored rows, by columns.
 #[derive(Debug, Clone)]
 pub(crate) struct Columns<'a> {
     columns: Vec<Vec<f64>>,

@@ -48,12 +48,10 @@ pub(crate) fn thinned_to(series: Vec<Series>, memory: Memory, most: usize) -> Ve
     if scored(&begun) < scored(&series) / 20 { whole } else { condensed(&begun, memory, most) }
 }
 
-/// Number of rows that are run through.
 fn rows(series: &[Series]) -> usize {
     series.iter().map(|series| series.samples.len()).sum()
 }
 
-/// Number of rows with an output.
 fn scored(series: &[Series]) -> usize {
     series.iter().map(|series| series.output.iter().filter(|y| !y.is_nan()).count()).sum()
 }
