@@ -154,7 +154,6 @@ impl Parameter {
         Self { symbol: symbol.into(), meaning, value, bounds, unit }
     }
 
-    /// Rejects a value that is not finite or out of bounds.
     pub(crate) fn check(&self, law: &'static str) -> Result<()> {
         let (low, high) = self.bounds;
         if self.value >= low && self.value <= high {

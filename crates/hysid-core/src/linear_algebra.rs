@@ -51,7 +51,6 @@ impl Batch {
         self.rows += rows;
     }
 
-    /// Empties the batch. Rows beyond those appended are zero when it is used.
     fn clear(&mut self) {
         self.rows = 0;
     }

@@ -186,7 +186,6 @@ pub struct TrainedRanges {
 /// Largest number of records whose fingerprints a model stores.
 pub const MOST_REMEMBERED: usize = 1000;
 impl TrainedRanges {
-    /// Rejects invalid ranges of a file.
     fn check(&self) -> Result<()> {
         let is_range =
             |&(low, high): &(f64, f64), most: f64| low <= high && low.abs().max(high.abs()) <= most;
@@ -445,7 +444,6 @@ impl Model {
         }
     }
 
-    /// Number of inputs of a record.
     pub(crate) fn inputs(&self) -> usize {
         match &self.body {
             Predictor::Network { scaling, .. } => scaling.inputs.len() - self.preprocessing.added_inputs(),

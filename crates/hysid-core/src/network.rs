@@ -224,7 +224,6 @@ impl Simulator {
     }
 }
 
-/// A scaled input, limited to the largest magnitude that the network accepts.
 #[inline(always)]
 fn limited(u: f64) -> f64 {
     let low = if u > -LARGEST_SCALED { u } else { -LARGEST_SCALED };

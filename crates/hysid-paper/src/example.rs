@@ -24,7 +24,6 @@ use catalogue::{Case, Example, Figure, Opponent, Wanted};
 /// A model with an error above this, in percent of the output's standard deviation, is worse than a constant.
 const DIVERGED: f64 = 100.0;
 
-/// What a model makes of a set of data.
 struct Run {
     /// Outputs of each record.
     simulated: Vec<Vec<f64>>,
@@ -41,7 +40,6 @@ struct Contestant {
     history: Vec<history::Run>,
 }
 
-/// A case that has been run.
 struct Played<'a> {
     case: &'a Case,
     specimen: &'static Specimen,
@@ -49,7 +47,6 @@ struct Played<'a> {
     unseen: Dataset,
     /// Rows at the beginning of the training data whose outputs no model is fitted to.
     blanked: usize,
-    /// The XPNN, then the other models.
     contestants: Vec<Trained>,
     /// How the networks were trained, with their names.
     chosen: Vec<(String, Chosen)>,
@@ -84,7 +81,6 @@ fn spaced(name: &str) -> String {
     name.replace("example", "example ")
 }
 
-/// What a case is run with.
 struct Bench<'a> {
     what: String,
     train: &'a Dataset,
@@ -186,7 +182,6 @@ impl Bench<'_> {
         Ok(Trained { one, several: Some(several) })
     }
 
-    /// A law, fitted from each seed.
     fn law(&self, name: &str, request: impl Fn(u64) -> FitSpec) -> Result<Trained> {
         let mut one = Contestant::new(name);
         for seed in fitting::seeds(self.settings) {
@@ -254,7 +249,6 @@ fn errors(data: &Dataset, simulated: &[Vec<f64>], is_wanted: impl Fn(&str) -> bo
     sums.errors(&data.names().output)
 }
 
-/// Largest magnitude of the output.
 fn largest(data: &Dataset) -> f64 {
     let (low, high) = data.output_range();
     low.abs().max(high.abs())
@@ -332,7 +326,6 @@ impl Played<'_> {
         self.case.wanted.iter().map(|wanted| self.target(wanted)).collect()
     }
 
-    /// The case in a sentence.
     fn verdict(&self) -> String {
         let percent = |figure: Figure, of: &Contestant| {
             self.figure(figure, of, None).map_or("–".to_string(), |spread| number(spread.median, 2))

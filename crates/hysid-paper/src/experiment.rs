@@ -66,7 +66,6 @@ mod tests {
 
     use super::*;
 
-    /// Somebody who stops everything at once.
     struct Impatient;
 
     impl Observer for Impatient {

@@ -44,7 +44,6 @@ const RATES: [f64; 3] = [0.1, 0.2, 0.5];
 /// Cycles at each rate.
 const CYCLES: usize = 3;
 
-/// Rows of a cycle.
 const ROWS: usize = 2000;
 
 /// Most cycles that a neuron is followed to its end.

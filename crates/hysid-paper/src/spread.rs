@@ -13,7 +13,6 @@ pub struct Spread {
     pub high: f64,
 }
 
-/// Significant digits.
 const DIGITS: usize = 3;
 
 impl Spread {

@@ -72,7 +72,6 @@ pub fn chapter(settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
     })
 }
 
-/// What the paper claims of the networks.
 fn targets(rows: &[Row]) -> Vec<Target> {
     let target = |figure: &str, wanted: String, one: String| Target {
         specimen: "all specimens".into(),
@@ -255,7 +254,6 @@ fn specimens_table() -> Table {
 }
 
 impl Property {
-    /// The specimen's outputs along a record.
     fn outputs(&self, record: &Record) -> Vec<f64> {
         specimens::outputs(self, record.time().unwrap_or_default(), &record.inputs()[0])
     }

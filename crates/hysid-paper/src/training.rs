@@ -21,7 +21,6 @@ pub use page::FILES;
 /// Stands in for the paper's second example, on which it compares the trainers.
 const SPECIMEN: &str = "reinforced-concrete-joint";
 
-/// Repetitions, each from another seed.
 const SEEDS: u64 = 5;
 
 /// Epochs of every trainer of the paper.
@@ -34,7 +33,6 @@ const SHARE_OF_EPOCHS: usize = 10;
 const TRAINERS: [Trainer; 4] =
     [Trainer::Genetic, Trainer::Subgradient, Trainer::Hybrid, Trainer::LevenbergMarquardt];
 
-/// What is run.
 struct Protocol {
     specimen: &'static Specimen,
     train: Dataset,
@@ -43,7 +41,6 @@ struct Protocol {
     epochs: usize,
 }
 
-/// A moment of a training.
 #[derive(Debug, Clone, Copy)]
 struct Moment {
     epoch: usize,
@@ -53,7 +50,6 @@ struct Moment {
     nrmse_percent: f64,
 }
 
-/// One training.
 struct Training {
     trainer: Trainer,
     seed: u64,
@@ -64,7 +60,6 @@ struct Training {
     evaluations: usize,
 }
 
-/// All trainings from one seed.
 struct Repetition {
     trainings: Vec<Training>,
     /// Seconds until the sub-gradient method reaches the hybrid's error; `None` if not within the hybrid's time.
@@ -72,7 +67,6 @@ struct Repetition {
 }
 
 impl Repetition {
-    /// The training by this trainer.
     fn of(&self, trainer: Trainer) -> Option<&Training> {
         self.trainings.iter().find(|training| training.trainer == trainer)
     }
@@ -122,7 +116,6 @@ fn compared(protocol: &Protocol, observer: &dyn Observer) -> Result<Chapter> {
     Ok(page::chapter(protocol, &repetitions))
 }
 
-/// All trainers from one seed.
 fn repetition(protocol: &Protocol, seed: u64, observer: &dyn Observer) -> Result<Repetition> {
     let mut trainings = Vec::new();
     for trainer in TRAINERS {

@@ -166,7 +166,6 @@ impl Motion {
     }
 }
 
-/// The specimen of the catalogue.
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "bouc-wen-oscillator",
     example: None,
@@ -183,10 +182,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     test: tests,
 };
 
-/// Rows a second.
 const ROWS_PER_SECOND: f64 = 750.0;
 
-/// Steps of the integration a row.
 const STEPS_PER_ROW: usize = 20;
 
 /// Factors of the decimation, in their order.
@@ -195,7 +192,6 @@ const DECIMATION: [usize; 3] = [2, 2, 5];
 /// Rows that are integrated beyond the last one, so that the low-pass filters do not reach the end of the signal.
 const ROWS_BEYOND: usize = 10;
 
-/// Rows of a period of a multisine.
 const PERIOD: usize = 8192;
 
 /// Band of the multisines in Hz.
@@ -213,7 +209,6 @@ const NOISE: f64 = 8e-6;
 /// Amplitude in N of the swept sine, its first and last frequency in Hz, and its rate in Hz/s.
 const SWEEP: (f64, f64, f64, f64) = (40.0, 20.0, 50.0, 10.0 / 60.0);
 
-/// The training records of a seed.
 fn training(seed: u64) -> Result<Vec<Record>> {
     let mut draw = Draw::new(seed, 0);
     let force = multisine(&mut draw, PERIODS);
@@ -235,7 +230,6 @@ fn tests(seed: u64) -> Result<Vec<Record>> {
     ])
 }
 
-/// The force of a multisine at all steps.
 fn multisine(draw: &mut Draw, periods: usize) -> Vec<f64> {
     let line = ROWS_PER_SECOND / PERIOD as f64;
     let lines = (BAND.0 / line).floor() as usize..=(BAND.1 / line).ceil() as usize;
@@ -244,7 +238,6 @@ fn multisine(draw: &mut Draw, periods: usize) -> Vec<f64> {
     period.into_iter().cycle().take(steps).collect()
 }
 
-/// The force of the swept sine at all steps.
 fn swept_sine() -> Vec<f64> {
     let (amplitude, first, last, rate) = SWEEP;
     let rows = ((last - first) / rate * ROWS_PER_SECOND).round() as usize;
@@ -276,7 +269,6 @@ fn response(force: &[f64]) -> Vec<f64> {
     rows
 }
 
-/// A record of rows.
 fn record(name: &str, force: Vec<f64>, displacement: Vec<f64>) -> Result<Record> {
     let time = path::every(1.0 / ROWS_PER_SECOND, force.len());
     Record::new(name, vec![force], displacement)?.with_time(time)

@@ -7,7 +7,6 @@ use crate::{
     shear_building, terfenol_actuator, terfenol_rod, two_wire_actuator,
 };
 
-/// Number of specimens of the paper's examples.
 const OF_THE_PAPER: usize = 12;
 
 /// All specimens: those of the paper's examples, in their order, then the structures with inertia.

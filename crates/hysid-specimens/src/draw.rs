@@ -5,7 +5,6 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::noise::normal;
 
-/// Random numbers of a record.
 pub(super) struct Draw(Xoshiro256PlusPlus);
 
 impl Draw {

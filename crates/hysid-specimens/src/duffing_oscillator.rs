@@ -73,7 +73,6 @@ impl DuffingOscillator {
     }
 }
 
-/// The specimen of the catalogue.
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "duffing-oscillator",
     example: None,
@@ -88,10 +87,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     test: |seed| Ok(vec![multisine(seed, 2)?, growing_multisine(seed, 3)?]),
 };
 
-/// Rows a second.
 const ROWS_PER_SECOND: f64 = 610.0;
 
-/// Steps of the integration a row.
 const STEPS_PER_ROW: usize = 16;
 
 /// Band of the multisines in Hz.
@@ -122,7 +119,6 @@ fn growing_multisine(seed: u64, index: usize) -> Result<Record> {
     record("growing multisine", &growing)
 }
 
-/// The record of a force in N at all half steps.
 fn record(name: &str, force: &[f64]) -> Result<Record> {
     let time_step = 1.0 / (ROWS_PER_SECOND * STEPS_PER_ROW as f64);
     let motion = DuffingOscillator::designed().motion(force, time_step).step_by(STEPS_PER_ROW);

@@ -17,7 +17,6 @@ use super::runge_kutta;
 /// Time from row to row in s.
 pub(super) const TIME_STEP: f64 = 0.01;
 
-/// Rows of an earthquake.
 const ROWS: usize = 3000;
 
 /// `ω_g` in rad/s and `ζ_g`: frequency and damping of the soil.

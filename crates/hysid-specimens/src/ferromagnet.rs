@@ -249,7 +249,6 @@ const TRAIN: [f64; 38] = [
 /// Turning points of training that follow, all over the range in A/m.
 const FURTHER: (usize, (f64, f64)) = (25, (-400.0, 400.0));
 
-/// All turning points of training.
 fn trained() -> Vec<f64> {
     let (pairs, range) = FURTHER;
     [&TRAIN[..], &path::covering(pairs, range)].concat()

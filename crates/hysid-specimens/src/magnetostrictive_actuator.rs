@@ -142,7 +142,6 @@ const BIAS: f64 = 0.1;
 /// Amplitude of the current in A.
 const AMPLITUDE: f64 = 0.8;
 
-/// Rows of a period.
 const ROWS: usize = 250;
 
 /// Longest step of the simulation in s.

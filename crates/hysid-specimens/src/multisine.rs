@@ -11,7 +11,6 @@ use std::ops::RangeInclusive;
 
 use super::draw::Draw;
 
-/// A random-phase multisine.
 #[derive(Debug, Clone)]
 pub(super) struct Multisine {
     rows: usize,

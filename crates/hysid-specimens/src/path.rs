@@ -6,7 +6,6 @@ use hysid_core::error::Result;
 /// Fewest steps of a swing, so that a small loop is a loop.
 const FEWEST_STEPS: f64 = 4.0;
 
-/// The golden ratio.
 const GOLDEN: f64 = 1.618_033_988_749_895;
 
 /// The plastic ratio, of which R2 takes multiples of the first two powers.

@@ -109,7 +109,6 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     test: |_| [50.0, 200.0].into_iter().map(sine).collect(),
 };
 
-/// Rows of a period.
 const ROWS: usize = 160;
 
 fn sine(frequency: f64) -> Result<Record> {

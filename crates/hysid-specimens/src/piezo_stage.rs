@@ -95,7 +95,6 @@ impl PiezoStage {
     }
 }
 
-/// The specimen of the catalogue.
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "piezo-stage",
     example: None,
@@ -113,10 +112,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
 /// Time from row to row in s.
 const TIME_STEP: f64 = 2e-4;
 
-/// Steps of the integration a row.
 const STEPS_PER_ROW: usize = 4;
 
-/// Rows of a multisine.
 const PERIOD: usize = 8192;
 
 /// First and last frequency in Hz and rms value in V of the two multisines.

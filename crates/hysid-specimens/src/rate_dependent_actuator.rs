@@ -115,7 +115,6 @@ const MIXTURES: [[(f64, f64); 3]; 8] = [
 /// The golden ratio, whose multiples are phases that do not repeat.
 const GOLDEN: f64 = 1.618_033_988_749_895;
 
-/// A sum of tones of training.
 fn mixture((index, tones): (usize, &[(f64, f64); 3])) -> Result<Record> {
     let tone = |(place, &(frequency, amplitude)): (usize, &(f64, f64))| Tone {
         amplitude,
@@ -132,7 +131,6 @@ const FREQUENCIES: [f64; 10] = [1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 80
 /// Rows of a period of a sine.
 const ROWS_PER_PERIOD: usize = 200;
 
-/// Periods of a record.
 const PERIODS: usize = 3;
 
 /// Steps of the simulation from row to row.

@@ -284,10 +284,8 @@ pub(super) static CYCLES: Specimen = Specimen {
 /// Amplitudes of the drift in percent.
 const DRIFT: [f64; 9] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0];
 
-/// Cycles at each amplitude.
 const CYCLES_EACH: usize = 3;
 
-/// Cycles in all.
 const CYCLES_IN_ALL: usize = DRIFT.len() * CYCLES_EACH;
 
 /// Storey height in mm for one percent of drift.
@@ -299,7 +297,6 @@ const TRAINED: f64 = 0.7;
 /// Largest step of the displacement between two rows, in mm.
 const STEP: f64 = 1.6;
 
-/// The whole test.
 fn whole() -> Result<Record> {
     let displacement = path::through(&turning_points(), STEP);
     let force = ReinforcedConcreteJoint::new(BoucWenBaberNoori::joint()).run(&displacement);

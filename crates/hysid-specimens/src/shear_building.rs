@@ -161,7 +161,6 @@ impl ShearBuilding {
     }
 }
 
-/// The specimen of the catalogue.
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "shear-building",
     example: None,
@@ -180,7 +179,6 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     test: |seed| (3..).zip([2.5, 4.0]).map(|(index, peak)| record(seed, index, peak)).collect(),
 };
 
-/// Steps of the integration a row.
 const STEPS_PER_ROW: usize = 10;
 
 /// An earthquake of a seed, with this number and this peak in m/s².

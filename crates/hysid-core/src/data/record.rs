@@ -556,7 +556,6 @@ impl Dataset {
 /// Largest ratio of the ranges of output and input, either way, so that slopes and their squares stay small.
 const LARGEST_RATIO: f64 = 1e50;
 
-/// Smallest and largest of the values that are not NaN.
 fn range<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
     values
         .filter(|v| !v.is_nan())

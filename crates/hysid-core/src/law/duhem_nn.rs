@@ -80,7 +80,6 @@ impl DuhemNn {
     }
 }
 
-/// One sample of a cell.
 struct Step<'a> {
     cell: &'a Cell,
     memory: &'a mut Memory,

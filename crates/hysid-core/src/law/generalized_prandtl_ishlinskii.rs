@@ -109,7 +109,6 @@ pub struct GeneralizedPrandtlIshlinskii {
 impl GeneralizedPrandtlIshlinskii {}
 
 impl Law for GeneralizedPrandtlIshlinskii {
-    /// The plays `S_j`.
     type State = Vec<f64>;
 
     const FACTS: Facts = Facts::searched(

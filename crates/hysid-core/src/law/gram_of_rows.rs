@@ -10,11 +10,8 @@ const ROWS: usize = 8;
 
 /// Uses of the rows of a simulation. It is no generic type, so that a simulation is compiled once for all of them.
 pub(super) enum RowUse<'a> {
-    /// Half the sum of squares of the last column.
     HalfSquare(f64),
-    /// A Gram matrix of all columns.
     Gram(GramOfRows<'a>),
-    /// The rows themselves.
     Rows(Vec<Vec<f64>>),
 }
 

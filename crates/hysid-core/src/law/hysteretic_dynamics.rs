@@ -142,7 +142,6 @@ pub struct Dynamics {
     pub elements: Vec<Element>,
 }
 
-/// One sample of a model.
 struct Row<'a> {
     dynamics: &'a Dynamics,
     motion: &'a mut Motion,
@@ -174,7 +173,6 @@ impl Dynamics {
         self.output_offset + self.output_scale * y
     }
 
-    /// The input in scaled units.
     #[inline(always)]
     fn scaled(&self, x: f64) -> f64 {
         (x / self.input_scale).clamp(-LARGEST_INPUT, LARGEST_INPUT)

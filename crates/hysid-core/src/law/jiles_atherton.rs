@@ -148,7 +148,6 @@ impl JilesAtherton {
     }
 }
 
-/// `coth x - 1/x` and its derivative.
 fn langevin(x: f64) -> (f64, f64) {
     let square = x * x;
     if square < 0.0025 {

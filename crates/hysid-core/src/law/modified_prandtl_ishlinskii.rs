@@ -176,7 +176,6 @@ impl ModifiedPrandtlIshlinskii {
 }
 
 impl Law for ModifiedPrandtlIshlinskii {
-    /// The plays.
     type State = Vec<f64>;
 
     const FACTS: Facts = Facts::linear(

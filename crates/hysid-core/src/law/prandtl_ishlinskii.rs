@@ -99,7 +99,6 @@ impl PrandtlIshlinskii {
 }
 
 impl Law for PrandtlIshlinskii {
-    /// The plays.
     type State = Vec<f64>;
 
     const FACTS: Facts = Facts::linear(

@@ -105,7 +105,6 @@ impl RateDependentPrandtlIshlinskii {
 }
 
 impl Law for RateDependentPrandtlIshlinskii {
-    /// The plays.
     type State = Vec<f64>;
 
     const FACTS: Facts = Facts {

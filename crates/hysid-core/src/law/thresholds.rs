@@ -23,7 +23,6 @@ pub fn check_thresholds(thresholds: &[f64]) -> Result<()> {
     }
 }
 
-/// Rejects more thresholds than [`MOST_THRESHOLDS`].
 pub(crate) fn check_count(thresholds: &[f64]) -> Result<()> {
     match thresholds.len() {
         0..=MOST_THRESHOLDS => Ok(()),

@@ -35,13 +35,11 @@ enum Form {
 struct Matrix {
     /// By rows.
     entries: Vec<f64>,
-    /// Magnitude of the largest entry.
     largest: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Product {
-    /// The diagonal matrix `D`.
     scales: Vec<f64>,
     /// Unit vectors of the dilatations, one after another, and the factor `γ` of each.
     along: Vec<f64>,

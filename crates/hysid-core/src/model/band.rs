@@ -91,7 +91,6 @@ const SPREAD_OF_WIDTHS: f64 = 0.62;
 const NORMAL_QUANTILES: [f64; 5] = [0.0, 0.253_347, 0.524_401, 0.841_621, 1.281_552];
 
 impl BandLevel {
-    /// Rejects a probability outside those of the calibration, and a number of data sets without a factor.
     pub(crate) fn check(self) -> Result<()> {
         let Self { probability, of_ten } = self;
         if !BAND_PROBABILITIES.contains(&probability) {
@@ -236,7 +235,6 @@ impl Band {
         Ok((level.widening() * inside, level.widening() * outside, self.floor))
     }
 
-    /// Rejects invalid factors of a file.
     pub(crate) fn validated(self) -> Result<Self> {
         let is_sound = |factors: &[f64]| {
             factors.len() == LEVELS.len() && factors.iter().all(|factor| *factor >= 0.0 && factor.is_finite())

@@ -146,7 +146,6 @@ impl Predictions {
         self.0.iter_mut().zip(weights).for_each(|(vote, weight)| vote.1 = weight);
     }
 
-    /// Weight of all together.
     fn weight(&self) -> f64 {
         self.0.iter().map(|(_, weight)| weight).sum()
     }

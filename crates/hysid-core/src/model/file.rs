@@ -77,7 +77,6 @@ struct MemberParts {
     training: Provenance,
 }
 
-/// A network and its scaling.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct NetworkParts {
@@ -106,7 +105,6 @@ impl Units {
     }
 }
 
-/// The memory layer, in scaled units.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Memory {
@@ -174,7 +172,6 @@ impl NetworkParts {
         }
     }
 
-    /// The network, if its parts agree with each other.
     fn network(&self) -> Result<Network> {
         self.architecture.check()?;
         let (channels, run) = (self.architecture.channels(), 1 + self.architecture.memory_neurons());
@@ -367,7 +364,6 @@ fn assemble(file: File) -> Result<Model> {
 /// Most elementary operations of a row in which the input travels through the trained range: about 0.1 s.
 const LARGEST_WORK: f64 = 1e8;
 
-/// Rejects parts that are inconsistent.
 fn checked(model: Model, name: ModelName) -> Result<Model> {
     model.preprocessing.check()?;
     model.trained.check()?;

@@ -160,7 +160,6 @@ impl<'d> Transformed<'d> {
     }
 }
 
-/// What has been so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Past {
     largest: f64,
@@ -304,7 +303,6 @@ impl InputTransform {
         Ok((Cow::Owned(Dataset::new(names, records)?), rate.map(|_| RateMethod::Given)))
     }
 
-    /// Rejects invalid scales of a file.
     pub(crate) fn check(&self) -> Result<()> {
         let scales =
             [self.companding, self.rate_companding, self.history.map(|h| h.0), self.history.map(|h| h.1)];
@@ -322,7 +320,6 @@ pub(crate) fn limited(value: f64) -> f64 {
     value.clamp(-LARGEST_VALUE, LARGEST_VALUE)
 }
 
-/// Transformed columns.
 pub(crate) struct SeenColumns {
     inputs: Vec<Vec<f64>>,
     rate: Option<Vec<f64>>,

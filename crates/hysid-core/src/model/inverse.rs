@@ -105,7 +105,6 @@ pub struct Inverse<'m> {
     inputs: Vec<f64>,
 }
 
-/// Inputs that a sample may have.
 #[derive(Debug, Clone, Copy)]
 struct Windows {
     /// Those that are reached at trained rates.
@@ -414,7 +413,6 @@ impl<'m> Inverse<'m> {
         }
     }
 
-    /// Inputs that the model may have after this time since the last sample.
     fn windows(&self, elapsed: Option<f64>) -> Windows {
         let within = |rate: Option<f64>, (low, high): (f64, f64)| match (rate, self.last, elapsed) {
             (Some(rate), Some((Point { argument, .. }, _)), Some(elapsed)) => {

@@ -10,7 +10,6 @@ pub(super) struct Ranges {
     rate: Option<Reach>,
 }
 
-/// How far the values of one column go.
 #[derive(Debug, Clone)]
 struct Reach {
     name: String,

@@ -27,7 +27,6 @@ pub(super) struct Spread {
     pub outside: f64,
 }
 
-/// A model on its way over a record.
 #[derive(Debug, Clone)]
 pub(super) struct Runner<'m> {
     body: Parts<'m>,

@@ -29,7 +29,6 @@ pub struct Stepper<'m> {
     lead_in: Vec<f64>,
 }
 
-/// What is known of the past.
 #[derive(Debug, Clone)]
 struct State {
     memory: Memory,
@@ -187,7 +186,6 @@ impl State {
         }
     }
 
-    /// Rejects an invalid sample before the state changes.
     fn check(&self, model: &Model, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<()> {
         let expected = model.inputs();
         if inputs.len() != expected {
@@ -216,7 +214,6 @@ impl State {
         Ok(())
     }
 
-    /// Time since the last sample; 0 at the first.
     fn elapsed(&self, time: f64) -> f64 {
         self.last.map_or(0.0, |(before, _)| time - before)
     }
@@ -254,7 +251,6 @@ impl State {
         }
     }
 
-    /// Takes a sample that was checked.
     fn advance(&mut self, model: &Model, inputs: &[f64], time: f64, rate: Option<f64>) -> f64 {
         let elapsed = self.elapsed(time);
         let rate = self.rate(model, inputs, elapsed, rate);

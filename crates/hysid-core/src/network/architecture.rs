@@ -130,10 +130,8 @@ pub struct Architecture {
     pub constant: bool,
 }
 
-/// Largest number of neurons of one kind.
 const MOST_NEURONS: usize = 1000;
 
-/// Largest number of input channels.
 const MOST_INPUTS: usize = 100;
 
 impl Architecture {

@@ -36,7 +36,6 @@ const LN_2: [f64; 2] = [0.6931471801362932, 4.236521365809284e-10];
 /// From this many relaxation times on, `E` is 0.
 const LONGEST: f64 = 700.0;
 
-/// The factors of one time step of `phi` relaxation times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Decay {
     /// `E`, the factor of the stress before the step.

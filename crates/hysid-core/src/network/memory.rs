@@ -78,7 +78,6 @@ type Tile = [[Lanes; 1]; BLOCK];
 /// taken as this, so that no sum of products overflows whatever the parameters.
 pub(crate) const LARGEST_SCALED: f64 = 1e50;
 
-/// The memory layer's parameters, arranged for the kernel.
 #[derive(Debug, Clone)]
 pub(crate) struct MemoryLayer {
     channels: usize,

@@ -19,7 +19,6 @@ use crate::simd::multiply_add;
 /// Vectors that a kernel keeps in registers for each neuron.
 const VECTORS: usize = 4;
 
-/// The tanh layer's parameters.
 #[derive(Debug, Clone)]
 pub(crate) struct Readout {
     hidden: usize,

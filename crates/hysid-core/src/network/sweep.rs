@@ -55,7 +55,6 @@ pub(crate) struct Walk<'a> {
     pub stop: StopCheck<'a>,
 }
 
-/// A block of rows with a target.
 pub(crate) struct Block {
     /// Scaled inputs by channel; of rows with slopes only.
     pub u: Vec<Row>,
@@ -123,7 +122,6 @@ impl Block {
     }
 }
 
-/// Buffers of a walk.
 struct Workspace<'a> {
     pace: Pace<'a>,
     /// Operations for a block, roughly.
@@ -203,7 +201,6 @@ impl<'a> Workspace<'a> {
         }
     }
 
-    /// Hands on the pending rows.
     #[inline(always)]
     fn flush<S: Simd>(&mut self, simd: S, to: &mut impl TakeBlock) {
         let rows = std::mem::take(&mut self.filled);

@@ -73,7 +73,6 @@ impl NamedOptions {
         Ok(options)
     }
 
-    /// Rejects values beyond the limits of the named model.
     fn check(&self) -> Result<()> {
         let model = self.model();
         let limits = match model {

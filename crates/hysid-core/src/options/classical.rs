@@ -9,7 +9,6 @@ use crate::law::facts::{Defaults, ErrorsInside, Facts, Identification, Rate};
 use crate::options::input_options::InputOptions;
 use crate::options::network::SEED;
 
-/// Facts about random stops.
 const RANDOM_STOPS: Facts = Facts {
     rate: Rate::Optional,
     ..Facts::linear(

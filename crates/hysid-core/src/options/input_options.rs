@@ -47,7 +47,6 @@ impl InputOptions {
         *self == Self::default()
     }
 
-    /// Rejects invalid shares.
     pub(crate) fn check(&self) -> Result<()> {
         let shares = [("companding", self.companding), ("rate_companding", self.rate_companding)];
         check(shares.into_iter().filter_map(|(name, share)| Some((name, json!(share?)))))

@@ -100,7 +100,6 @@ pub(super) fn count_of(model: ModelName, option: &str, of_networks: usize) -> Pr
     if plain == degrading { Preset::Count(plain) } else { Preset::WithDegradation(plain, degrading) }
 }
 
-/// The default counts of a law, without and with degradation.
 fn counts(law: ClassicalModel, option: &str) -> [usize; 2] {
     let facts = law.facts();
     [facts.defaults, facts.defaults_with_degradation]

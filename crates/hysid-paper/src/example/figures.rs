@@ -26,7 +26,6 @@ pub struct Line<'a> {
     pub simulated: &'a [Vec<f64>],
 }
 
-/// Colour of a model, counted from 0.
 fn colour(index: usize) -> Colour {
     if index == 0 { Colour::Simulated } else { Colour::Error }
 }
@@ -74,7 +73,6 @@ impl Scored {
         scored
     }
 
-    /// Stretches without a gap.
     fn stretches(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
         let ends = self.begins.iter().copied().skip(1).chain([self.output.len()]);
         self.begins.iter().copied().zip(ends).map(|(begin, end)| begin..end)

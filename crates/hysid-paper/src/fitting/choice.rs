@@ -12,7 +12,6 @@ use super::{Effort, effort, network, networks, seeds, training_error};
 use crate::conditions::{Observer, Settings};
 use crate::spread::median;
 
-/// Number of folds.
 const FOLDS: usize = 5;
 
 /// Mean error, relative to that without, below which direction is an input or capacities are left out. Designed.
@@ -40,7 +39,6 @@ pub struct Choice {
     pub iterations: usize,
 }
 
-/// A way of training that was tried.
 #[derive(Debug, Clone)]
 struct Trial {
     choice: Choice,
@@ -116,7 +114,6 @@ pub fn choose(
     Ok(Chosen { choice: best, trials: bench.trials, why_rate })
 }
 
-/// What candidates are tried on.
 struct Bench<'a> {
     what: &'a str,
     folds: Vec<Fold>,

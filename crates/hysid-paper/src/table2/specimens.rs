@@ -18,7 +18,6 @@ pub struct Property {
     output: fn(&Motion) -> Vec<f64>,
 }
 
-/// Input and its rate.
 struct Motion {
     x: Vec<f64>,
     rate: Vec<f64>,
@@ -113,7 +112,6 @@ pub fn outputs(property: &Property, time: &[f64], x: &[f64]) -> Vec<f64> {
     (property.output)(&Motion { x: x.to_vec(), rate: (0..x.len()).map(rate).collect() })
 }
 
-/// Rows of a record.
 const ROWS: usize = 600;
 
 /// Periods of the slower tone in a record.
@@ -146,7 +144,6 @@ pub fn unseen(property: &Property) -> hysid::Result<Dataset> {
     dataset(property, [(1.5, 1.0), (3.5, 3.0), (5.0, 5.0)])
 }
 
-/// Rows of a swing of [`two_histories`].
 const SWING: usize = 50;
 
 /// The minor loop's ends.

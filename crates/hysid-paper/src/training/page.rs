@@ -121,7 +121,6 @@ fn table(
         .with_rows(TRAINERS.map(row))
 }
 
-/// Lowest, median and highest.
 fn range(values: &[f64]) -> (f64, f64, f64) {
     let Spread { low, median, high } = Spread::of(values.iter().copied()).unwrap_or(Spread {
         low: f64::NAN,

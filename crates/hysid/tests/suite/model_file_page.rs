@@ -193,7 +193,6 @@ fn the_page_has_every_field_and_no_other() {
     );
 }
 
-/// The model files on the page.
 fn examples(page: &str) -> Vec<Model> {
     let blocks = page.split("```json\n").skip(1).map(|rest| rest.split_once("```").unwrap().0);
     blocks.map(|text| Model::from_json(text).unwrap()).collect()

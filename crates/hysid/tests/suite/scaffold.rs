@@ -41,7 +41,6 @@ pub fn on(_: &Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// The default options of a law.
 pub fn of(model: ClassicalModel) -> ClassicalOptions {
     ClassicalOptions::of(model)
 }

@@ -426,7 +426,6 @@ fn concrete_is_continuous_and_does_not_depend_on_the_steps() {
 
 // ---------------------------------------------------------------- the catalogue
 
-/// All numbers of a data set, blanks too.
 fn bits(data: &Dataset) -> Vec<u64> {
     let columns = data.records().iter().flat_map(|record| {
         record.time().into_iter().chain(record.inputs().iter().map(|input| &**input)).chain([record.output()])

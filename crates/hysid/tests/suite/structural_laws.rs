@@ -27,7 +27,6 @@ fn fitted(law: &Classical, x: &[f64], options: &[&str]) -> Model {
     fit.run(&Dataset::from_slices(x, &y).unwrap()).unwrap()
 }
 
-/// Error on another path, in percent of the standard deviation.
 fn error(model: &Model, law: &Classical, x: &[f64]) -> f64 {
     let data = Dataset::from_slices(x, &law.run(&samples_of(x))).unwrap();
     model.evaluate(&data).unwrap().nrmse_std_percent.unwrap()

@@ -107,7 +107,6 @@ pub fn likeness(short: &Record, long: &Record) -> Option<Likeness> {
     Sought::new(short).likeness_to(long)
 }
 
-/// A record that is looked for in others.
 struct Sought<'r> {
     record: &'r Record,
     scored: Vec<usize>,
@@ -153,7 +152,6 @@ impl<'r> Sought<'r> {
     }
 }
 
-/// Two records, row by row.
 struct Compared<'r> {
     sought: &'r Sought<'r>,
     short: &'r Record,

@@ -104,10 +104,8 @@ enum Agreement {
     Part,
 }
 
-/// The path of a record's inputs.
 struct Path<'r> {
     record: &'r Record,
-    /// Range of each input.
     ranges: Vec<f64>,
     /// The row of the largest value of the first input.
     largest: usize,

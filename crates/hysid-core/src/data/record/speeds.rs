@@ -83,7 +83,6 @@ fn half_cycles(record: &Record, range: f64) -> Vec<f64> {
     turning.windows(2).map(|pair| time[pair[1]] - time[pair[0]]).collect()
 }
 
-/// Cells of equal width.
 struct Grid {
     low: f64,
     width: f64,

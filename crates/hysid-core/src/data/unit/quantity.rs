@@ -29,7 +29,6 @@ const FLUX: Dimension = [2, 1, -2, -1, 0, 0];
 pub(super) const FLUX_DENSITY: Dimension = [0, 1, -2, -1, 0, 0];
 pub(super) const FIELD: Dimension = [-1, 0, 0, 1, 0, 0];
 
-/// A unit as a multiple of SI base units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Quantity {
     /// Value in SI base units; an angle in radians.

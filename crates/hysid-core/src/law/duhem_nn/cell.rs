@@ -163,7 +163,6 @@ impl Cell {
         }
     }
 
-    /// Advances the memory to the next sample.
     #[inline(always)]
     pub(super) fn advance<S: Simd>(&self, memory: &mut Memory, input: Input) {
         let shape = self.shape();
@@ -224,7 +223,6 @@ impl Cell {
         }
     }
 
-    /// The output of the last sample.
     #[inline(always)]
     pub(super) fn output<S: Simd>(&self, memory: &Memory) -> f64 {
         product::<S>(&self.output, &memory.terms)

@@ -113,9 +113,7 @@ impl PropagationSlopes {
 /// The weights of the forces at both ends of a step, from which all factors follow.
 #[derive(Clone, Copy)]
 struct Weights {
-    /// `α_0, α_1`
     alpha: [Dual; 2],
-    /// `β_0, β_1`
     beta: [Dual; 2],
 }
 

@@ -200,7 +200,6 @@ struct Sensitivities<'l> {
     of_output: Vec<f64>,
 }
 
-/// Derivatives of an element.
 struct OfElement {
     /// At its point of the path: `∂δ`, `∂ν`, `∂z` of each stop, `∂s` of each state.
     point: Vec<f64>,

@@ -71,7 +71,6 @@ pub(super) struct RowSteps {
 }
 
 impl Motion {
-    /// At rest without input, before the first sample.
     pub(super) fn virgin(dynamics: &Dynamics) -> Self {
         let (modes, elements) = (dynamics.modes.len(), &dynamics.elements);
         let points: Vec<PathPoint> = elements.iter().map(PathPoint::virgin).collect();
@@ -165,7 +164,6 @@ impl Motion {
         RowSteps { count, length: row / count as f64 }
     }
 
-    /// The scaled input at the end of a step of a row.
     #[inline(always)]
     pub(super) fn input_at(&self, dynamics: &Dynamics, step: usize, steps: RowSteps) -> f64 {
         let hold = if steps.length == f64::INFINITY { Hold::Linear } else { dynamics.hold };
@@ -182,13 +180,11 @@ impl Motion {
         }
     }
 
-    /// The newest sample of the scaled input.
     #[inline(always)]
     pub(super) fn newest_input(&self) -> f64 {
         self.recent.values[0]
     }
 
-    /// The scaled output where the motion is.
     #[inline(always)]
     pub(super) fn output<S: Simd>(&self, dynamics: &Dynamics) -> f64 {
         let mut y = dynamics.direct * self.newest_input();

@@ -88,7 +88,6 @@ impl Inversion {
 }
 
 impl Reference<'_> {
-    /// Its first rows.
     fn beginning<'a>(&'a self, rows: usize, others: &'a mut Vec<&'a [f64]>) -> Reference<'a> {
         others.extend(self.others.iter().map(|column| &column[..rows.min(column.len())]));
         Reference {
@@ -229,7 +228,6 @@ impl Inverse<'_> {
         Ok(best)
     }
 
-    /// Rejects a record without time stamps where they are needed.
     fn check_time(&self, reference: &Reference<'_>) -> Result<()> {
         match reference.time {
             None if self.needs_time() => Err(InverseError::NoTime.into()),

@@ -8,7 +8,6 @@ use hysid::law::bouc_wen::BoucWen;
 use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid::specimens::{Ferromagnet, Specimen, shape_memory_actuator};
 
-/// Turning points of the protocol.
 const TURNING: [f64; 30] = [
     0.0, 1.0, -1.0, 1.0, -1.0, 1.0, -0.3, 0.3, -0.3, 1.0, -1.0, 0.3, -0.3, 0.3, -1.0, 1.0, 0.6, -0.6, 0.6,
     -0.6, 0.3, -0.3, 0.3, 1.0, -0.5, 0.0, -0.5, 1.0, -1.0, 1.0,
@@ -27,7 +26,6 @@ pub struct Subject {
     pub testable: &'static [Property],
 }
 
-/// The input of the protocol.
 pub fn protocol() -> Vec<f64> {
     let mut path = vec![TURNING[0]];
     for ends in TURNING.windows(2) {
@@ -71,7 +69,6 @@ pub fn shape_memory(x: &[f64]) -> Dataset {
     record(voltage, y)
 }
 
-/// Bouc-Wen with n = 1.5.
 pub fn bouc_wen(x: &[f64]) -> Dataset {
     let law = BoucWen { n: 1.5, ..BoucWen::new(0.5, 10.0, 0.3).unwrap() };
     record(x.to_vec(), run(&law, x))
@@ -199,7 +196,6 @@ pub fn at_three_speeds(law: impl Fn(&[f64]) -> Vec<f64>, sampling: f64, delay: f
 
 const TIMED: &[Property] = &[Property::RateDependence, Property::StaticHysteresis, Property::Orientation];
 
-/// Laws at several speeds.
 pub fn timed() -> Vec<Subject> {
     let steel = |x: &[f64]| m330(x).records()[0].output().to_vec();
     vec![

@@ -21,7 +21,6 @@ pub fn record(rows: usize, name: &str) -> Record {
     Record::new(name, vec![x], y).unwrap().with_time(time).unwrap()
 }
 
-/// Small, so that all of them are quick.
 pub fn small(model: ModelName, rate: Option<RateMethod>) -> FitSpec {
     match FitSpec::of(model, rate, 3) {
         FitSpec::Network(options) => FitSpec::Network(FitOptions {

@@ -13,7 +13,6 @@ pub(super) struct OfStops {
     /// `∂ε` and `∂Λ` where a step begins. Slips count only for stops that deteriorate.
     elongations: Vec<f64>,
     slips: Vec<f64>,
-    /// The same at its end, without those of `δ` and `ν` there.
     elongations_ahead: Vec<f64>,
     slips_ahead: Vec<f64>,
     /// By `δ` and `ν` at the end: of `ε`, of `Λ` and of the output `z`.
