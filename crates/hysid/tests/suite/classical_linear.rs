@@ -35,8 +35,6 @@ fn nrmse(y: &[f64], model: &[f64]) -> f64 {
     100.0 * (errors / squares(&mut y.iter().map(|y| y - mean))).sqrt()
 }
 
-// ---------------------------------------------------------------- models with known parameters
-
 /// Published demonstration parameters (theory.md (7.4); program of an IEEE Control Systems Magazine lecture, example 1).
 fn lecture_model() -> PrandtlIshlinskii {
     let thresholds = vec![0.45, 0.9, 1.35, 1.8, 2.25, 2.7];
@@ -84,8 +82,6 @@ fn masing() -> Masing {
     let thresholds = vec![0.3, 0.8, 1.5, 2.2];
     Masing::new(MasingParts { constant: 0.5, thresholds, slopes: vec![3.0, 2.0, 2.5, 0.5, 0.1] }).unwrap()
 }
-
-// ---------------------------------------------------------------- memory
 
 /// Dominant extrema of a path from rest at 0, found by looking at the whole path: theory.md (7.2).
 fn dominant_extrema(path: &[f64]) -> Vec<f64> {
@@ -181,8 +177,6 @@ proptest! {
     }
 }
 
-// ---------------------------------------------------------------- published values
-
 /// The published inverse of the published parameters, as a model of the same kind, undoes them.
 #[test]
 fn the_published_inverse_undoes_the_published_model() {
@@ -235,8 +229,6 @@ fn between_its_lines_a_plane_is_near_the_everett_function() {
     let (coarse, fine) = (error(50), error(100));
     assert!(fine < 0.5 && fine < 0.4 * coarse, "{coarse} % and {fine} %");
 }
-
-// ---------------------------------------------------------------- fits
 
 #[test]
 fn a_fit_finds_the_weights_of_plays() {
@@ -346,8 +338,6 @@ fn random_stops_are_a_network() {
     let none = RandomStopsOptions { stops: 0, ..options };
     assert!(matches!(fit_random_stops(&data, &none), Err(Error::Parts(_))));
 }
-
-// ---------------------------------------------------------------- what is refused, and what is finite
 
 #[test]
 fn unusable_parameters_are_refused() {

@@ -12,8 +12,6 @@ use hysid::law::neuro_madelung::NeuroMadelung;
 use hysid::law::rate_dependent_prandtl_ishlinskii::{RateDependentPrandtlIshlinskii, Thresholds};
 use hysid::law::series::run;
 
-// ------------------------------------------------------------------------------- paths and laws
-
 fn shape_memory_actuator() -> GeneralizedPrandtlIshlinskii {
     GeneralizedPrandtlIshlinskii {
         offset: 17.72,
@@ -93,8 +91,6 @@ fn neuro_madelung(rate_scale: Option<f64>) -> NeuroMadelung {
     }
 }
 
-// ------------------------------------------------------------------------------ regression values
-
 fn sine(frequency: f64, amplitude: f64, samples: usize, periods: usize) -> Vec<Sample> {
     let sample = |k: usize| {
         let angle = TAU * k as f64 / samples as f64;
@@ -145,8 +141,6 @@ fn jiles_atherton_has_its_regression_values() {
         assert_abs_diff_eq!(found, coercivity, epsilon = 0.15);
     }
 }
-
-// ------------------------------------------------------------------------------------- Bouc-Wen
 
 /// theory.md (8.7) against the integration just beside n = 1, and the yield force.
 #[test]
@@ -270,8 +264,6 @@ fn damping_is_the_only_share_of_the_rate() {
     }
 }
 
-// ---------------------------------------------------------------------- table 10.1: properties
-
 #[test]
 fn the_output_of_neuro_madelung_is_continuous_at_reversals() {
     let law = neuro_madelung(None);
@@ -280,8 +272,6 @@ fn the_output_of_neuro_madelung_is_continuous_at_reversals() {
     let largest = y.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
     assert!(largest < 2e-3, "{largest}");
 }
-
-// --------------------------------------------------------------------- whatever the parameters
 
 #[test]
 fn free_runs_stay_finite_whatever_the_parameters_and_the_input() {
@@ -378,8 +368,6 @@ fn parameters_out_of_bounds_are_refused() {
     assert!(NeuroMadelung { hidden: vec![1.0; 7], ..neuro_madelung(None) }.validated().is_err());
     assert!(neuro_madelung(None).validated().is_ok());
 }
-
-// ---------------------------------------------------------------------------------- recovery
 
 fn record(name: &str, samples: &[Sample], y: Vec<f64>) -> Record {
     let x = samples.iter().map(|sample| sample.x).collect();
@@ -574,8 +562,6 @@ fn neuro_madelung_learns_its_own_kind_and_plays() {
     assert!(found.train_nrmse_percent < 2.0, "{}", found.train_nrmse_percent);
     assert!(error_of(&found.law, &data(&terfenol_actuator(), &unseen), None) < 15.0);
 }
-
-// ---------------------------------------------------------------------------- ways of a search
 
 #[test]
 fn a_search_can_be_broken_off_and_gives_the_best_so_far() {

@@ -68,8 +68,6 @@ fn shapes() -> Vec<Shape> {
     ]
 }
 
-// -------------------------------------------------------------------------------------- the cell
-
 /// With `W = 0` a state follows `ds/dt = (c |v| + 1/τ)(q v - s)`, which a constant rate solves in closed form
 /// for any steps.
 #[test]
@@ -155,8 +153,6 @@ fn parts_that_do_not_go_together_are_refused() {
     assert!(refused(&|law| law.output_mean = f64::INFINITY).contains("too large"));
 }
 
-// ------------------------------------------------------------------------------------ derivatives
-
 fn drive(shape: Shape, rows: usize, generator: &mut Generator) -> Vec<Input> {
     let mut x = 0.1;
     (0..rows)
@@ -238,8 +234,6 @@ fn the_gram_matrix_is_that_of_the_rows() {
         assert!(stopped.gram().is_none());
     }
 }
-
-// --------------------------------------------------------------------------------- identification
 
 fn timed(name: &str, rows: usize, pace: f64) -> Record {
     let time: Vec<f64> = (0..rows).map(|k| 0.02 * k as f64).collect();

@@ -65,8 +65,6 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-// --------------------------------------------------------------------------------------- Jacobian
-
 #[test]
 fn the_jacobian_is_that_of_the_whole_simulation() {
     let mut generator = Generator::seed_from_u64(1);
@@ -142,8 +140,6 @@ fn at_a_kink_the_derivative_is_one_of_the_two() {
     }
     assert!(kinks >= 18, "{kinks} paths have a kink");
 }
-
-// -------------------------------------------------------------------------------------- objective
 
 /// Two records with blanks, sampled from something that no network here reproduces.
 fn measured(time: bool) -> Dataset {

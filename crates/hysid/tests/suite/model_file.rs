@@ -246,8 +246,6 @@ fn line_ends_do_not_matter() {
     assert_eq!(Model::from_json(&compact).unwrap(), *FULL);
 }
 
-// -------------------------------------------------------------------------------- sample by sample
-
 #[test]
 fn a_stepper_finds_backward_rates_itself() {
     let record = record(1, 200);

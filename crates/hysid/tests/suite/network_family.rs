@@ -76,8 +76,6 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
 }
 
-// ------------------------------------------------------------------------------ scalar reference
-
 /// theory.md (2.2) to (2.6), one sample and one neuron at a time.
 fn reference(network: &Network, drive: &Drive) -> Vec<f64> {
     let a = network.architecture();
@@ -141,8 +139,6 @@ fn every_family_agrees_with_the_scalar_reference() {
     }
 }
 
-// --------------------------------------------------------------------------- runs, steps and state
-
 #[test]
 fn steps_and_runs_however_split_agree_to_the_last_bit() {
     let mut generator = Generator::seed_from_u64(2);
@@ -196,8 +192,6 @@ fn steps_and_runs_however_split_agree_to_the_last_bit() {
     }
     assert!(remembering > 3 * tried / 4, "{remembering} of {tried}");
 }
-
-// ------------------------------------------------------------------------------------- parameters
 
 #[test]
 fn a_network_gives_its_parameters_back_and_refuses_others() {
@@ -279,5 +273,3 @@ fn a_free_run_is_finite_whatever_parameters_and_input() {
     }
     assert!(overflows > runs / 2, "{overflows} of {runs} inputs were wild");
 }
-
-// ------------------------------------------------------------------------------------------- laws

@@ -19,8 +19,6 @@ fn few_repeatable_cases() -> ProptestConfig {
     }
 }
 
-// ---------------------------------------------------------------- paths, operators, comparison
-
 /// Turning points, in units of which thresholds are a fraction.
 fn path() -> impl Strategy<Value = Vec<f64>> {
     vec(-3.0..3.0, 2..30)
@@ -93,8 +91,6 @@ fn sine(amplitude: f64, samples: usize, cycles: usize) -> Vec<f64> {
 fn loop_area(x: &[f64], y: &[f64], samples: usize) -> f64 {
     (x.len() - samples..x.len()).map(|k| (y[k] + y[k - 1]) / 2.0 * (x[k] - x[k - 1])).sum()
 }
-
-// ---------------------------------------------------------------- definitions and identities
 
 proptest! {
     #![proptest_config(few_repeatable_cases())]
@@ -212,8 +208,6 @@ fn jump_to_the_first_sample_costs_no_strength() {
     assert_eq!((worn.step(-3.0), worn.slip()), (-1.0, 0.0));
 }
 
-// ------------------------------------------- memory: semigroup, wiping-out, congruency, (1.13)
-
 proptest! {
     #![proptest_config(few_repeatable_cases())]
 
@@ -244,8 +238,6 @@ proptest! {
         prop_assert!(largest_difference(&pick(&worn.run(&warped), &kept_in_warped), &y) < 1e-13);
     }
 }
-
-// ------------------------------------------------------------ sliding: area, slip, life
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, ..few_repeatable_cases() })]
@@ -338,8 +330,6 @@ fn exact_death_under_a_triangular_wave() {
     assert!(element.slip() > 16.0, "it goes on sliding");
     assert_eq!(death(&mut deteriorating(1.0, 16.25), &x), Some(133));
 }
-
-// ------------------------------------------------------------------- relaxation in time
 
 /// Non-uniform time steps, some of them 0.
 fn time_steps() -> impl Strategy<Value = Vec<f64>> {
@@ -464,8 +454,6 @@ fn first_sample_of_a_relaxation_is_an_instantaneous_load() {
     element.reset();
     assert_eq!(element, Relaxation::new(0.1).unwrap());
 }
-
-// ------------------------------------------------------------------------- refusals
 
 #[test]
 fn times_that_are_none_are_refused_with_their_row() {

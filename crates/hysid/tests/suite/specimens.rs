@@ -19,8 +19,6 @@ fn enclosed(x: &[f64], y: &[f64]) -> f64 {
     0.5 * (0..x.len()).map(|k| x[k] * y[next(k)] - x[next(k)] * y[k]).sum::<f64>()
 }
 
-// ---------------------------------------------------------------- the reinforced-concrete joint
-
 /// Bouc-Wen with n = 1, without degradation and pinching.
 fn plain_bouc_wen() -> BoucWenBaberNoori {
     BoucWenBaberNoori { energy_scale: 0.0, n: 1.0, ..BoucWenBaberNoori::demonstration() }
@@ -141,8 +139,6 @@ fn a_displacement_that_is_none_leaves_the_joint_as_it_was() {
     }
 }
 
-// ---------------------------------------------------------------- generalized plays
-
 /// Example 4 of Al Janaideh's lecture (IEEE Control Systems Magazine, 2022): both envelopes 6 tanh(0.4 v),
 /// thresholds 0.45 (j - 1), weights 0.65 exp(-7.75e-4 r). Its output is ±20.157.
 #[test]
@@ -228,8 +224,6 @@ fn every_third_cycle_of_the_joint_is_unseen() {
     assert!(!unseen[unseen.len() - 1].is_nan());
 }
 
-// ---------------------------------------------------------------- the rate-dependent actuator
-
 /// The record's own sampling is fine enough for the law: it has the areas of the fine simulation.
 #[test]
 fn rate_dependent_records_have_the_areas_of_their_law() {
@@ -241,8 +235,6 @@ fn rate_dependent_records_have_the_areas_of_their_law() {
         assert_relative_eq!(found, area, max_relative = 1e-3);
     }
 }
-
-// ---------------------------------------------------------------- the piezo actuator
 
 /// The scored part of a record.
 fn scored(record: &Record) -> (Vec<f64>, Vec<f64>) {
@@ -272,8 +264,6 @@ fn piezo_loops_are_ellipses_of_the_area_of_their_law() {
         }
     }
 }
-
-// ---------------------------------------------------------------- the magnetostrictive actuator
 
 /// Generalized plays that are the identity: one without threshold on ground that is straight to 1e-12.
 fn no_hysteresis() -> GeneralizedPlays {
@@ -340,8 +330,6 @@ fn at_low_speed_only_the_hysteresis_is_left() {
         assert_abs_diff_eq!(actuator.step(current, 10.0), quasi_static, epsilon = 1e-3);
     }
 }
-
-// ---------------------------------------------------------------- concrete
 
 #[test]
 fn the_permanent_strain_is_that_of_karsan_and_jirsa() {
@@ -424,8 +412,6 @@ fn concrete_is_continuous_and_does_not_depend_on_the_steps() {
     }
 }
 
-// ---------------------------------------------------------------- the catalogue
-
 fn bits(data: &Dataset) -> Vec<u64> {
     let columns = data.records().iter().flat_map(|record| {
         record.time().into_iter().chain(record.inputs().iter().map(|input| &**input)).chain([record.output()])
@@ -490,8 +476,6 @@ fn continuations_carry_the_training_part_with_them() {
         assert!(tail.output()[end..].iter().all(|y| y.is_finite()));
     }
 }
-
-// ---------------------------------------------------------------- noise
 
 #[test]
 fn noise_has_the_deviation_asked_for_and_leaves_blanks_blank() {

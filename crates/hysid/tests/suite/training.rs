@@ -57,8 +57,6 @@ fn bits(fit: &Fitted) -> Vec<u64> {
     network.parameters().iter().chain(network.output()).map(|value| value.to_bits()).collect()
 }
 
-// ------------------------------------------------------------------------------------ what it finds
-
 #[test]
 fn a_bank_of_stops_is_found() {
     let data = bank_data(600);
@@ -124,8 +122,6 @@ fn the_rate_tells_two_speeds_apart() {
     let (without, with) = (error(&FitOptions { rate: None, ..with.clone() }), error(&with));
     assert!(with < 5.0 && without > 20.0, "{with} %, {without} %");
 }
-
-// ---------------------------------------------------------------------------------------- observer
 
 /// What the observer is told.
 struct Told {
@@ -197,8 +193,6 @@ fn a_fit_that_is_stopped_is_usable() {
     }
 }
 
-// ------------------------------------------------------------------------------------- the history
-
 #[test]
 fn training_never_worsens_and_begins_no_worse_than_the_mean() {
     let data = bank_data(300);
@@ -233,8 +227,6 @@ fn many_rows_are_thinned_with_little_loss() {
     let limit = quietly(&data, &FitOptions { thin: 3000, ..options.clone() });
     assert_eq!(bits(&limit), bits(&quietly(&data, &options)));
 }
-
-// -------------------------------------------------------------------------- validation and refusals
 
 #[test]
 fn data_are_held_out_unless_they_are_too_few() {
