@@ -23,9 +23,6 @@ use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
-/// Largest magnitude of what an envelope is made of: sums of weighted plays stay finite.
-const LARGEST: f64 = 1e100;
-
 /// An envelope `γ(x) = a0 tanh(a1 x + a2) + a3`, a pure number (theory.md (8.13)).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -53,7 +50,7 @@ impl Envelope {
     }
 
     fn parameters(&self, side: char) -> [Parameter; 4] {
-        let (any, positive) = ((-LARGEST, LARGEST), (0.0, LARGEST));
+        let (any, positive) = ((-LARGEST_VALUE, LARGEST_VALUE), (0.0, LARGEST_VALUE));
         let steepness = Dimension { input: -1, output: 0, time: 0 };
         let symbol = |name: &str| format!("{name}{side}");
         [
@@ -106,8 +103,6 @@ pub struct GeneralizedPrandtlIshlinskii {
     pub weights: PlayWeights,
 }
 
-impl GeneralizedPrandtlIshlinskii {}
-
 impl Law for GeneralizedPrandtlIshlinskii {
     type State = Vec<f64>;
 
@@ -146,14 +141,14 @@ impl Law for GeneralizedPrandtlIshlinskii {
             "S_-1",
             "plays before the first sample",
             self.initial,
-            (-LARGEST, LARGEST),
+            (-LARGEST_VALUE, LARGEST_VALUE),
             Dimension::NONE,
         ));
         all.push(Parameter::new(
             "α",
             "spacing of the thresholds",
             self.spacing,
-            (0.0, LARGEST),
+            (0.0, LARGEST_VALUE),
             Dimension::NONE,
         ));
         all.extend(self.weights.parameters("p", 0, Dimension::OUTPUT, Dimension::NONE));

@@ -92,13 +92,8 @@ impl Sums {
 
     /// Adds the rows of `other` for the factor 1, and takes them away for -1.
     pub fn add(&mut self, other: &Sums, factor: f64) {
-        let rows = if factor > 0.0 { self.rows + other.rows } else { self.rows - other.rows };
-        self.add_multiple(other, factor, rows);
-    }
-
-    fn add_multiple(&mut self, other: &Sums, factor: f64, rows: usize) {
         self.gram.add_multiple(&other.gram, factor);
-        self.rows = rows;
+        self.rows = if factor > 0.0 { self.rows + other.rows } else { self.rows - other.rows };
     }
 }
 
@@ -122,11 +117,22 @@ impl FoldSums {
     pub fn into_total(self) -> Sums {
         let mut folds = self.folds.into_iter();
         let mut total = folds.next().expect("there is at least one fold");
-        for fold in folds {
-            let rows = total.rows + fold.rows;
-            total.add_multiple(&fold, 1.0, rows);
-        }
+        folds.for_each(|fold| total.add(&fold, 1.0));
         total
+    }
+
+    /// The weights with the penalty and the sign of a choice.
+    pub fn weights(
+        self,
+        penalty: &Penalty,
+        choice: Choice,
+        reversible: Range<usize>,
+        stop: StopCheck<'_>,
+    ) -> Result<Vec<f64>> {
+        let bounds = Bounds::new(choice.sign, reversible, self.folds[0].features);
+        let mut penalised = self.into_total().quadratic();
+        penalised.penalise(penalty, choice.factor);
+        penalised.last_minimum(&bounds, stop)
     }
 
     /// For every candidate, the mean over the folds of the logarithm of the mean square error on a fold
@@ -148,7 +154,7 @@ impl FoldSums {
                 return None;
             }
             let mut rest = total.clone();
-            rest.add_multiple(fold, -1.0, total.rows - fold.rows);
+            rest.add(fold, -1.0);
             let candidates = solve(&rest.quadratic())?;
             Some(candidates.iter().map(|weights| fold.mean_square_error(weights).ln()).collect())
         };

@@ -10,7 +10,7 @@ use crate::fit::law::{Identify, grids};
 use crate::law::masing::{Masing, MasingParts};
 use crate::law::series::Series;
 use crate::operator::{play, stop};
-use crate::optimise::non_negative::{Bounds, Penalty};
+use crate::optimise::non_negative::Penalty;
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
@@ -83,13 +83,9 @@ fn slopes_on_grid(
     for i in 2..features {
         penalty.add_square(&[(i, 1.0), (i - 1, -1.0)], 1.0);
     }
-    let reversible = 1..1;
     let factors = logarithmic(1e-9, 1e-1, 17);
-    let choice = sums.choose(&penalty, &factors, sign, &reversible, stop);
-    let mut penalised = sums.into_total().quadratic();
-    penalised.penalise(&penalty, choice.factor);
-    let bounds = Bounds::new(choice.sign, reversible, features);
-    Ok((choice.score, penalised.last_minimum(&bounds, stop)?))
+    let choice = sums.choose(&penalty, &factors, sign, &(1..1), stop);
+    Ok((choice.score, sums.weights(&penalty, choice, 1..1, stop)?))
 }
 
 /// Sums of constant and slopes: the feature of a slope is a stop less the one before.

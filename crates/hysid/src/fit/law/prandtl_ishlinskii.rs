@@ -10,7 +10,7 @@ use crate::fit::law::{Identify, grids};
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::series::Series;
 use crate::operator::play;
-use crate::optimise::non_negative::{Bounds, Penalty};
+use crate::optimise::non_negative::Penalty;
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
@@ -68,20 +68,16 @@ fn weights_on_grid(
     stop: StopCheck<'_>,
 ) -> Result<(f64, Vec<f64>)> {
     let sums = play_sums(rows, thresholds, stop)?;
-    let features = 2 + thresholds.len();
     // The constant is free, the input nearly.
     let of = |i: usize| match i {
         0 => 0.0,
         1 => 1e-3,
         _ => 1.0,
     };
-    let penalty = Penalty::ridge((0..features).map(of));
+    let penalty = Penalty::ridge((0..2 + thresholds.len()).map(of));
     let penalties = logarithmic(1e-9, 1e-1, 17);
     let choice = sums.choose(&penalty, &penalties, sign, &PLAYS_BEGIN, stop);
-    let mut penalised = sums.into_total().quadratic();
-    penalised.penalise(&penalty, choice.factor);
-    let bounds = Bounds::new(choice.sign, PLAYS_BEGIN, features);
-    Ok((choice.score, penalised.last_minimum(&bounds, stop)?))
+    Ok((choice.score, sums.weights(&penalty, choice, PLAYS_BEGIN, stop)?))
 }
 
 /// Constant and input come first and are free.

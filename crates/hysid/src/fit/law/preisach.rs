@@ -19,7 +19,7 @@ use crate::law::preisach::{MOST_INTERVALS, Preisach, PreisachWeights};
 use crate::law::series::Series;
 use crate::law::turning_point_stack::{Change, TurningPointStack};
 use crate::network::scaling::Scaling;
-use crate::optimise::non_negative::{Bounds, Penalty};
+use crate::optimise::non_negative::Penalty;
 use crate::options::classical::ClassicalOptions;
 use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
@@ -215,10 +215,7 @@ impl Problem {
         scaling: &Scaling,
         stop: StopCheck<'_>,
     ) -> Result<Preisach> {
-        let mut penalised = sums.into_total().quadratic();
-        penalised.penalise(&self.penalty, choice.factor);
-        let bounds = Bounds::new(choice.sign, self.reversible(), self.features());
-        let weights = penalised.last_minimum(&bounds, stop)?;
+        let weights = sums.weights(&self.penalty, choice, self.reversible(), stop)?;
         Preisach::new(self.in_users_units(&weights, scaling))
     }
 
