@@ -195,7 +195,6 @@ impl Bench<'_> {
         Ok(Trained { one, several: None })
     }
 
-    /// Fits models, the best first, and says so.
     fn timed(&self, name: &str, seed: u64, fit: impl FnOnce() -> Result<Vec<Model>>) -> Result<Vec<Model>> {
         let began = self.observer.clock();
         let models = fit()?;

@@ -145,7 +145,6 @@ impl BoucWenBaberNoori {
         Inner { z: h / eta * (a - softening), e: (1.0 - self.alpha) * self.energy_scale * z }
     }
 
-    /// One step of the classical Runge-Kutta method.
     fn step(&self, start: Inner, by: f64, direction: f64) -> Inner {
         let k1 = self.slope(start, direction);
         let k2 = self.slope(start.along(0.5 * by, k1), direction);
@@ -316,7 +315,6 @@ fn turning_points() -> Vec<f64> {
     turning
 }
 
-/// The test cut in two: see [`Record::split_at_fraction`].
 fn halves() -> Result<(Record, Record)> {
     Ok(whole()?.split_at_fraction(TRAINED).expect("the test has more than two rows"))
 }

@@ -371,7 +371,6 @@ mod tests {
     use super::*;
     use crate::law::test_paths::{self, assert_finite, run};
 
-    /// A steel with all terms.
     fn steel() -> MenegottoPinto {
         MenegottoPinto {
             offset: 3.0,

@@ -140,7 +140,6 @@ pub struct PeakOrientedState {
     deterioration: f64,
 }
 
-/// A branch from zero force to its target, and the envelope beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Loading {
     /// `d_0`.
@@ -417,7 +416,6 @@ mod tests {
     use super::*;
     use crate::law::test_paths::{self, assert_finite, run};
 
-    /// A member with all terms and different sides.
     fn member() -> PeakOriented {
         PeakOriented {
             offset: 0.7,

@@ -208,7 +208,6 @@ impl<'m> Inverse<'m> {
         self.sees_time() || self.slew.is_some() || self.preview > 0.0
     }
 
-    /// True if the model has a rate, or a memory that depends on time.
     fn sees_time(&self) -> bool {
         self.model().needs_time() || self.model().rate().is_some()
     }

@@ -50,7 +50,6 @@ impl Model {
         ))
     }
 
-    /// A note on initial states that were found, in which new data then begin.
     fn initial_state_note(&self) -> Option<String> {
         let provenance = self.provenance();
         let found = provenance.selection.as_ref().and_then(|selection| selection.found_states);
@@ -96,7 +95,6 @@ impl Model {
         ))
     }
 
-    /// A note on a validation error that promises too much.
     fn easy_rows_note(&self) -> Option<String> {
         let provenance = self.provenance();
         let train = provenance.train_after_warm_up.as_ref().unwrap_or(&provenance.train);

@@ -264,7 +264,6 @@ impl<'m> Parts<'m> {
 }
 
 impl Chunk<'_> {
-    /// The rates by this method, which is one of the model's.
     fn rate(&self, method: RateMethod) -> &[f64] {
         let known = self.rates.iter().find(|(known, _)| *known == method);
         known.map_or(&[], |(_, rates)| rates)
@@ -272,7 +271,6 @@ impl Chunk<'_> {
 }
 
 impl<'m> Single<'m> {
-    /// A part without members.
     fn of(body: &'m Predictor, preprocessing: Option<&'m InputTransform>, rate: Option<RateMethod>) -> Self {
         let mechanism = match body {
             Predictor::Network { network, scaling } => {

@@ -124,7 +124,6 @@ impl Selection {
     }
 }
 
-/// So many models of a kind.
 fn counted(count: usize, kind: &str) -> String {
     let one = match kind {
         "networks" => "network",

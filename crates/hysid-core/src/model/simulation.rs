@@ -32,7 +32,6 @@ struct Window {
     lead_in: Option<Vec<f64>>,
     /// Rows of the record before the window.
     before: usize,
-    /// Rows of the window that are simulated.
     simulated: usize,
 }
 

@@ -139,7 +139,6 @@ trait TakeRows {
     fn take<'r, S: Simd>(&mut self, simd: S, rows: usize, columns: impl Iterator<Item = &'r Row>);
 }
 
-/// Gathers rows into a Gram matrix.
 struct Gathered<'a> {
     gram: Gram,
     batch: Batch,

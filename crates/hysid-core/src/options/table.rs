@@ -87,10 +87,8 @@ use Group::{Classical, Model, Training};
 /// Valid numbers of neurons or operators.
 const NEURONS: Values = Values::Count(1, 1000);
 
-/// A penalty on weights.
 const PENALTY: Values = Values::Number(*PENALTIES.start(), *PENALTIES.end());
 
-/// The scale of a spreading.
 const SHARE: Values = Values::ZeroOr(*SHARES.start(), *SHARES.end());
 
 /// Every option, in the order in which it is listed.

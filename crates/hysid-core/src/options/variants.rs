@@ -35,7 +35,6 @@ pub fn variants(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
     by_rate.iter().flat_map(terms).collect()
 }
 
-/// A law with and without each term, or form, that it can have.
 fn terms(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
     let with = |options: &ClassicalOptions, variant, is_there| {
         let mut options = options.clone();

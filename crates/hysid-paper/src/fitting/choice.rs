@@ -130,7 +130,6 @@ impl Bench<'_> {
         Ok(if mean(&self.percents(alternative)?) < limit { alternative } else { default })
     }
 
-    /// The candidate with the lowest mean error on the folds; the first of those that there are without folds.
     fn best(&mut self, candidates: Vec<Choice>) -> Result<Choice> {
         if self.folds.is_empty() || candidates.len() == 1 {
             return Ok(candidates[0]);
@@ -163,7 +162,6 @@ impl Bench<'_> {
         Ok(percents)
     }
 
-    /// Errors on the training data and on what is held out.
     fn errors(&self, fold: &Fold, choice: Choice) -> Result<(f64, f64)> {
         let Effort { seeds_on_folds, .. } = effort(self.settings);
         let seeds: Vec<u64> = seeds(self.settings).take(seeds_on_folds).collect();

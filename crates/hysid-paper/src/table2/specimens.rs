@@ -146,7 +146,6 @@ pub fn unseen(property: &Property) -> hysid::Result<Dataset> {
 
 const SWING: usize = 50;
 
-/// The minor loop's ends.
 const ENDS: (f64, f64) = (-0.1, 0.3);
 
 /// A path that runs the same minor loop twice, after it came from below and after it came from above.

@@ -162,7 +162,6 @@ fn without_folds(
     Ok(Fitted::of(model, work.done()))
 }
 
-/// What was tried, from which the model is made.
 struct Chosen<'w, 'o, 'a> {
     data: &'w Dataset,
     options: &'w AutoOptions,
@@ -265,7 +264,6 @@ impl Chosen<'_, '_, '_> {
         all.smallest(&self.trials, folds, evidence, counted, most)
     }
 
-    /// Of the starts that have been fitted to everything.
     fn of_fitted(&self) -> Option<Combination> {
         let all = Combination::of(&self.trials, self.bench.folds, self.evidence, |_| true)?;
         all.only(|leaf| self.trials[leaf.place].members.contains_key(&leaf.start))

@@ -192,7 +192,6 @@ fn intervals(parameters: &[ParameterInUnits], linearised: &Linearised) -> Parame
     }
 }
 
-/// How much the variables of a fit scatter.
 struct Spread {
     free: Vec<usize>,
     /// Length of the column of each free variable.

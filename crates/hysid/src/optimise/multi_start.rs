@@ -20,7 +20,6 @@ pub(crate) trait Start: Send {
     fn ended(&self) -> Option<Termination>;
 }
 
-/// How long starts go on, and when they are given up.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plan {
     /// Rounds at most.

@@ -15,7 +15,6 @@ use crate::optimise::ridge::{NoFactor, factor_with_ridge};
 use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
 
-/// Which weights are bounded, and how.
 #[derive(Debug, Clone)]
 pub(crate) struct Bounds {
     bounded: Vec<bool>,

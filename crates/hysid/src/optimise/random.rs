@@ -4,7 +4,6 @@ pub(crate) use hysid_core::random::mix;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// A standard normal number, by Box and Muller.
 pub(crate) fn normal(generator: &mut impl Rng) -> f64 {
     let (u, v): (f64, f64) = (generator.random(), generator.random());
     (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
@@ -15,7 +14,6 @@ pub(crate) fn seed_of(seed: u64, draw: u64) -> u64 {
     seed ^ draw.wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
-/// The generator of a draw, counted from 0.
 pub(crate) fn generator(seed: u64, draw: usize) -> Xoshiro256PlusPlus {
     Xoshiro256PlusPlus::seed_from_u64(seed_of(seed, draw as u64 + 1))
 }

@@ -287,7 +287,6 @@ fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
-/// The vector of length 1 along `v`; 0 if `v` is.
 fn unit(v: &[f64]) -> Vec<f64> {
     let length = norm(v).max(f64::MIN_POSITIVE);
     v.iter().map(|v| v / length).collect()

@@ -43,7 +43,6 @@ pub(super) struct Drive {
     pieces: Vec<Piece>,
 }
 
-/// Legs that were added together.
 struct Piece {
     kind: Kind,
     first_row: usize,

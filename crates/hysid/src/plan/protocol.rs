@@ -329,7 +329,6 @@ fn hold(level: f64) -> Piece {
     Piece { kind: Kind::Hold, legs: vec![Level::Swing(level, 1.0), Level::Hold] }
 }
 
-/// The pieces in the units of the limits.
 fn legs(pieces: Vec<Piece>, limits: Limits) -> Vec<(Kind, Vec<Leg>)> {
     let (low, high) = limits.range;
     // A level of a range on one side goes from the start to the end.

@@ -126,7 +126,6 @@ impl Swings {
         swing.abs() / (self.range.1 - self.range.0)
     }
 
-    /// The widest interval of swings that were not run.
     fn amplitudes(&self) -> Option<Gap> {
         let mut run = [false; INTERVALS];
         for (from, to, _) in &self.swings {

@@ -59,7 +59,6 @@ pub fn derivative(records: &[Channel<'_>], order: usize, noise: f64, window: Opt
     Derivative { values: records.iter().map(values).collect(), filter, noise, smoothing }
 }
 
-/// Rows on a side that are tried, up to this number.
 fn sides(most: usize) -> Vec<usize> {
     let smallest = SMALLEST_WINDOW / 2;
     let most = most.clamp(smallest, MOST_ON_A_SIDE);

@@ -16,7 +16,6 @@ const MOST: usize = 10;
 /// Share of the range of the other records by which one may exceed it and still lie within.
 const SLACK: f64 = 0.03;
 
-/// How rows are cut into folds.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RowFolds {
     /// Fold of every row of every record that has an output, the rows of its lead-in first.
@@ -96,7 +95,6 @@ impl RowFolds {
     }
 }
 
-/// Rows that the memory is driven by.
 fn driven(record: &Record) -> usize {
     record.lead_in_rows().len() + record.len()
 }

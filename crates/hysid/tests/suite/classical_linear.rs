@@ -27,7 +27,6 @@ fn dataset(x: Vec<f64>, y: Vec<f64>) -> Dataset {
     Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap()
 }
 
-/// Root mean square error in percent of the standard deviation.
 fn nrmse(y: &[f64], model: &[f64]) -> f64 {
     let mean = y.iter().sum::<f64>() / y.len() as f64;
     let squares = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>();

@@ -90,7 +90,6 @@ fn model(beginning: &str) -> &'static Model {
     &MODELS.iter().find(|(name, _)| name.starts_with(beginning)).unwrap().1
 }
 
-/// A strictly increasing model has one input for each output, so the inverse must find the drive itself.
 #[test]
 fn the_drive_itself_is_found_where_the_model_increases_strictly() {
     for name in ["prandtl-ishlinskii", "modified-prandtl-ishlinskii", "menegotto-pinto"] {

@@ -64,7 +64,6 @@ fn collect(value: &Value, path: &str, fields: &mut Fields) {
     }
 }
 
-/// Three records whose input is shifted by `offset`.
 fn data(offset: f64) -> Dataset {
     let shifted = |name| {
         let record = small_models::record(120, name);

@@ -70,7 +70,6 @@ fn drive(a: &Architecture, rows: usize, generator: &mut Generator) -> Drive {
     Drive { channels, steps: if a.relaxation > 0 { steps.collect() } else { Vec::new() } }
 }
 
-/// Largest difference in units of the larger signal's largest value.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     let largest = a.iter().chain(b).fold(1e-300, |most: f64, y| most.max(y.abs()));
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest

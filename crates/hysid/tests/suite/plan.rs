@@ -9,7 +9,6 @@ use hysid::specimens::Ferromagnet;
 use hysid::{Fit, diagnose};
 use proptest::prelude::*;
 
-/// Cycles of a spring and a lag, `rows` rows, `step` between them.
 fn cycles(amplitude: f64, mean: f64, rows: usize, step: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let at = |row: usize, lag: f64| mean + amplitude * (0.12 * row as f64 - lag).sin();
     let t: Vec<f64> = (0..rows).map(|row| row as f64 * step).collect();

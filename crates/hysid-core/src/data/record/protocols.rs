@@ -107,7 +107,6 @@ enum Agreement {
 struct Path<'r> {
     record: &'r Record,
     ranges: Vec<f64>,
-    /// The row of the largest value of the first input.
     largest: usize,
     /// The rows at which the first input reverses, for each smallest reversal.
     turning: Vec<Vec<usize>>,

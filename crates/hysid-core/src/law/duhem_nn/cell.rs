@@ -90,11 +90,8 @@ pub struct Input {
 pub struct Memory {
     /// What the output weights multiply: `1, x, v, e, s, h`.
     pub(super) terms: Vec<f64>,
-    /// Plays of the stops.
     pub(super) plays: Vec<f64>,
-    /// The plays before the last sample.
     pub(super) plays_before: Vec<f64>,
-    /// The states before the last sample.
     pub(super) states_before: Vec<f64>,
     /// `a_i` of the last sample.
     pub(super) leaks: Vec<f64>,

@@ -125,7 +125,6 @@ struct Sensitivities {
     /// `∂p` and `∂e` of each stop by its own weights, in their order.
     plays: Vec<f64>,
     elongations: Vec<f64>,
-    /// Inputs of the tanh layer.
     inputs: Vec<f64>,
     /// `g_j`, and `a_i W_ij g_j` or `w_j g_j`.
     slopes: Vec<f64>,

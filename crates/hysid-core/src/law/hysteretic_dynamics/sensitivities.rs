@@ -346,7 +346,6 @@ impl<'l> Sensitivities<'l> {
         }
     }
 
-    /// Keeps where a step begins.
     #[inline(always)]
     fn remember(&mut self, motion: &Motion) {
         for (element, point) in self.elements.iter_mut().zip(&motion.points) {

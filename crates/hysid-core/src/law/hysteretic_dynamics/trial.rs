@@ -37,9 +37,7 @@ pub struct Motion {
     /// What the modes do in a step without the forces at its end.
     displacements_alone: Vec<f64>,
     velocities_alone: Vec<f64>,
-    /// Where each element is on its path.
     pub(super) points: Vec<PathPoint>,
-    /// The last step of each element.
     pub(super) path_steps: Vec<PathStep>,
     /// Forces of the elements at the beginning and at the end of the last step, as they act on the modes.
     pub(super) forces_before: Vec<f64>,
@@ -170,7 +168,6 @@ impl Motion {
         hold.at(step as f64 / steps.count as f64, &self.recent)
     }
 
-    /// Goes to the next sample of the input.
     #[inline(always)]
     pub(super) fn row<S: Simd>(&mut self, dynamics: &Dynamics, x: f64, row: f64) {
         let steps = self.begin_row::<S>(dynamics, x, row);
@@ -207,7 +204,6 @@ impl Motion {
         force
     }
 
-    /// One step of a row, to the scaled input at its end.
     #[inline(always)]
     pub(super) fn advance<S: Simd>(&mut self, dynamics: &Dynamics, input: f64, step: f64) {
         if step != self.step {

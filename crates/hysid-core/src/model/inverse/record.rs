@@ -97,7 +97,6 @@ impl Reference<'_> {
         }
     }
 
-    /// Rejects columns of other lengths, and wanted outputs that are not finite.
     fn check(&self) -> Result<()> {
         let rows = self.wanted.len();
         let lengths = self.others.iter().map(|column| column.len()).chain(self.time.map(<[f64]>::len));

@@ -148,7 +148,6 @@ impl OtherStates {
     }
 }
 
-/// What other states are tried on.
 struct Ways<'a, 'o, 'w> {
     quick: &'a Candidate,
     data: &'a Dataset,

@@ -58,7 +58,6 @@ impl Kind {
     }
 }
 
-/// A model that may serve, with its options.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Candidate {
     pub kind: Kind,
@@ -243,7 +242,6 @@ impl Candidate {
     }
 }
 
-/// A candidate that takes a moment to fit: few random stops.
 pub(super) fn quick(options: &AutoOptions) -> Candidate {
     let request = FitSpec::Classical(ClassicalOptions {
         rate: options.rate,
@@ -287,7 +285,6 @@ fn companded(share: f64) -> InputOptions {
     InputOptions { companding: Some(share), ..InputOptions::default() }
 }
 
-/// Networks, with the ways of seeing the input that may serve them.
 fn networks(options: &AutoOptions) -> Vec<FitOptions> {
     use Family::{PreisachNn, Xpnn, XpnnPlus};
     let as_it_is = InputOptions::default();

@@ -31,7 +31,6 @@ pub(super) struct Leaf {
     pub start: usize,
 }
 
-/// Starts of candidates with their weights: a tree whose members are leaves.
 #[derive(Debug, Clone)]
 pub(super) struct Combination {
     group: Group,
@@ -136,7 +135,6 @@ impl Combination {
         predictions(&self.group, of_leaf, folds)
     }
 
-    /// What a leaf predicts of the rows of a fold.
     fn predicted<'t>(&self, trials: &'t [Trial], leaf: usize, fold: usize) -> &'t [f64] {
         let Leaf { place, start } = self.leaves[leaf];
         &trials[place].starts[start][fold].predicted

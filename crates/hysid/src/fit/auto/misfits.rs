@@ -17,7 +17,6 @@ const SLACK_OF_ONE_LOOP: f64 = 0.5;
 /// Designed.
 const CLEARLY_BETTER: f64 = 0.9;
 
-/// A step in which misfits are dropped.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
     /// Held-out errors of candidates that stay beside the preferred one, relative to its own. Designed.
@@ -26,7 +25,6 @@ pub(super) struct Step {
     keeps_better_predictors: bool,
 }
 
-/// The steps, until the ensemble is no misfit.
 pub(super) const STEPS: [Step; 2] = [
     Step { about_as_good: 1.2, keeps_better_predictors: true },
     Step { about_as_good: 1.0, keeps_better_predictors: false },

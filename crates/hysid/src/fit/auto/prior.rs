@@ -43,7 +43,6 @@ const PARTS: usize = 10;
 /// A part of a branch is steeper than another if its slope is so many times as large. Designed.
 const STEEPER: f64 = 2.0;
 
-/// Whether the data tell candidates apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Evidence {
     /// The data hold loops of several sizes, or one at several speeds.

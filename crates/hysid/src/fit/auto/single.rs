@@ -52,7 +52,6 @@ struct Plain {
     error: f64,
 }
 
-/// Records, and what the ensemble predicts of them.
 struct Taught {
     records: Vec<Record>,
     predicted: Vec<Vec<f64>>,
@@ -273,7 +272,6 @@ fn distilled(
     Ok(nearest.map(|(_, model)| model))
 }
 
-/// The rows held out of each fold with the errors of a single model.
 pub(super) fn rows_held_out(predicted: &[Vec<f64>], folds: &[HeldOut]) -> Vec<Vec<HeldOutRow>> {
     let of_fold = |(predicted, fold): (&Vec<f64>, &HeldOut)| -> Vec<HeldOutRow> {
         let Rows { measured, outside, .. } = &fold.rows;

@@ -56,7 +56,6 @@ pub(super) struct Stages<'w, 'o, 'a> {
     pub dropped: Vec<Candidate>,
 }
 
-/// A law that was fitted in haste, as it is to be tried on the folds.
 struct Hasty {
     law: Candidate,
     model: Option<Model>,

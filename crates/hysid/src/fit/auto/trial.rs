@@ -172,7 +172,6 @@ enum Tried {
     OnEverything(Model),
 }
 
-/// The data and their folds, on which candidates are tried.
 #[derive(Clone, Copy)]
 pub(super) struct Bench<'w, 'o, 'a> {
     pub data: &'w Dataset,

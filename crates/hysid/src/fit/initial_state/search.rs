@@ -85,7 +85,6 @@ struct Before {
     most_frequent: usize,
 }
 
-/// What the output is made of.
 struct Features {
     rate: Option<RateMethod>,
     scaling: Scaling,
@@ -105,7 +104,6 @@ impl Features {
         Ok(Self { rate, scaling: Scaling::of(&seen.data, seen.rate)?, drawn, relays, penalty })
     }
 
-    /// The sums of each record with each of the lead-ins.
     fn sums(&self, data: &Dataset, tried: &[Vec<f64>], stop: StopCheck<'_>) -> Result<Vec<Vec<Sums>>> {
         let with = |lead_in: &Vec<f64>| -> Result<Vec<Sums>> {
             let begun = data.clone().with_lead_ins(|_, _| lead_in.clone())?;
@@ -167,7 +165,6 @@ impl Search<'_> {
         Some(if lowest < (1.0 - WORTH) * from_virgin { chosen } else { virgin })
     }
 
-    /// Lowers `J` record by record.
     fn descended(&self, mut chosen: Vec<usize>) -> Option<(f64, Vec<usize>)> {
         let worth = 1.0 - WORTH / self.sums.len() as f64;
         let mut objective = f64::INFINITY;

@@ -5,7 +5,6 @@ use crate::linear_algebra::Symmetric;
 
 const SWEEPS: usize = 60;
 
-/// Eigenvalues with their eigenvectors, of length 1.
 #[derive(Debug, Clone)]
 pub(super) struct Eigenvectors {
     pub values: Vec<f64>,

@@ -163,7 +163,6 @@ pub(crate) fn shape_of(options: &ClassicalOptions, has_time: bool) -> Shape {
     }
 }
 
-/// Rejects numbers that no network can have.
 fn check_shape(shape: Shape) -> Result<()> {
     check_counts(DuhemNn::FACTS.limits, |option| match option {
         "hidden" => shape.neurons,
@@ -212,7 +211,6 @@ struct Task<'a> {
     drives: Vec<Vec<Input>>,
     targets: Vec<Vec<f64>>,
     rows: usize,
-    /// Breaks evaluations off.
     stop: StopCheck<'a>,
 }
 
@@ -269,7 +267,6 @@ impl<'a> Task<'a> {
         DuhemNn { cell, ..self.frame.law.clone() }.validated()
     }
 
-    /// The same as the result of a search.
     fn identified(
         &self,
         parameters: &[f64],

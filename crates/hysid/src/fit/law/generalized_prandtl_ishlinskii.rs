@@ -90,7 +90,6 @@ impl Plays {
         Envelope { a0, a1, a2, a3: from - a0 * shape(self.low) }
     }
 
-    /// The law of unit weight, its level not yet known.
     fn law(&self, parameters: &[f64]) -> GeneralizedPrandtlIshlinskii {
         let mut left = self.envelope(parameters[0], parameters[1], 0.0, 1.0);
         let mut right = self.envelope(parameters[2], parameters[3], parameters[4], parameters[5]);

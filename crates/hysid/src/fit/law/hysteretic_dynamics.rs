@@ -258,9 +258,7 @@ fn with_elements(
     Dynamics { elements: (0..elements).map(&mut element).collect(), ..linear.clone() }
 }
 
-/// What the stages are trained on.
 struct Tasks<'a> {
-    /// The beginnings of the records, with long steps.
     early: Task<'a>,
     /// The records, with long steps.
     coarse: Task<'a>,
@@ -277,7 +275,6 @@ struct Walk {
     /// True in the last stage, which alone may end the search.
     is_in_last: bool,
     ended: Option<Termination>,
-    /// Evaluations of earlier stages.
     earlier: usize,
 }
 

@@ -208,13 +208,11 @@ impl FoldSums {
     }
 }
 
-/// Place of the lowest score.
 pub(crate) fn lowest(scores: &[f64]) -> usize {
     let order = (0..scores.len()).min_by(|&a, &b| scores[a].total_cmp(&scores[b]));
     order.expect("at least one candidate")
 }
 
-/// Gathers rows of features, fold by fold.
 pub(crate) struct Gatherer<'a> {
     pace: Pace<'a>,
     folds: Vec<Sums>,

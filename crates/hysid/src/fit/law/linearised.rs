@@ -29,7 +29,6 @@ const MOST_ROWS: usize = 40_000;
 /// Rows of such a stretch.
 const STRETCH: usize = 4000;
 
-/// A variable of the fit.
 #[derive(Debug, Clone)]
 pub(crate) struct FitVariable {
     /// Derivative of the free run, row by row.
@@ -52,7 +51,6 @@ impl FitVariable {
 /// A law about the result of its fit, from which the [intervals](crate::fit::intervals) of its parameters follow.
 #[derive(Debug, Clone)]
 pub struct Linearised {
-    /// Number of scored rows of each record.
     pub(crate) records: Vec<usize>,
     /// Simulated less measured output at the scored rows, record by record.
     pub(crate) residual: Vec<f64>,

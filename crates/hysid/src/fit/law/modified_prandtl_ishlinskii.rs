@@ -40,7 +40,6 @@ const ITERATIONS: usize = 40;
 /// Iterations of a refinement that is only judged.
 const ITERATIONS_IN_VALIDATION: usize = 10;
 
-/// A convex start, then Levenberg-Marquardt.
 impl Identify for ModifiedPrandtlIshlinskii {
     fn identify(
         data: &Dataset,
@@ -229,7 +228,6 @@ impl Problem {
         Ok(sum / self.folds.judged.len() as f64)
     }
 
-    /// Score of the convex problem on held-out rows.
     fn convex_score(&self, sign: Sign, stop: StopCheck<'_>) -> Result<f64> {
         let (sums, penalty, _) = self.convex_problem(stop)?;
         let plays = 2..self.drives[0].len();
@@ -240,7 +238,6 @@ impl Problem {
         Ok(scores[lowest(&scores)])
     }
 
-    /// Sums and penalty of the convex problem, and the knots of the inverse polygon.
     fn convex_problem(&self, stop: StopCheck<'_>) -> Result<(FoldSums, Penalty, Vec<f64>)> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
@@ -423,7 +420,6 @@ impl Point {
         self.thresholds.partition_point(|&r| r < 0.0)
     }
 
-    /// The point of a law, in the user's units.
     fn of_law(law: &ModifiedPrandtlIshlinskii) -> Self {
         let (plays, zones) = (law.hysteresis(), law.superposition());
         Self {
@@ -455,7 +451,6 @@ impl Point {
         all
     }
 
-    /// The sum of plays of a row.
     fn before(&self, drive: &[f64]) -> f64 {
         self.hysteresis.iter().zip(drive).map(|(w, d)| w * d).sum()
     }

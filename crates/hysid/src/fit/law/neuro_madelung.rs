@@ -194,7 +194,6 @@ struct Task<'a> {
     frame: &'a NeuroMadelung,
     series: Vec<Series>,
     hidden: usize,
-    /// Breaks sweeps off.
     stop: StopCheck<'a>,
 }
 
@@ -254,7 +253,6 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// The law for an observer.
     fn so_far(&self, parameters: &[f64]) -> Option<Classical> {
         self.law(parameters).validated().ok().map(Into::into)
     }

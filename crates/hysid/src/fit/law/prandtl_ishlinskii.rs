@@ -14,7 +14,6 @@ use crate::optimise::non_negative::Penalty;
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
-/// Linear least squares with a ridge penalty chosen by cross-validation.
 impl Identify for PrandtlIshlinskii {
     fn identify(
         data: &Dataset,

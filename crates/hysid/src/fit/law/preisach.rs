@@ -30,7 +30,6 @@ const INTERVALS_FOR_CHOICE: usize = 20;
 /// Share of the lines that are spread evenly; the others go where the output changes. Designed.
 const EVEN_SHARE: f64 = 0.5;
 
-/// Linear least squares with a smoothness penalty chosen by cross-validation.
 impl Identify for Preisach {
     fn identify(
         data: &Dataset,
@@ -207,7 +206,6 @@ impl Problem {
         gatherer.finish()
     }
 
-    /// The model with the weights of the chosen penalty.
     fn weighted(
         &self,
         sums: FoldSums,

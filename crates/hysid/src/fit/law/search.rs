@@ -52,7 +52,6 @@ const APART: f64 = 0.12;
 /// After so many rounds half of the starts are given up, and again after as many more.
 const ROUNDS_TO_PROVE_ITSELF: usize = 6;
 
-/// Starts that are never given up.
 const FINALISTS: usize = 2;
 
 /// Bounds of a searched parameter and the scale it is searched on.
@@ -171,14 +170,12 @@ impl<L> Identified<L> {
         Self { law, train_nrmse_percent: f64::NAN, evaluations: 1, termination, searched }
     }
 
-    /// The same result with a law made of this one.
     pub(crate) fn try_map<M>(self, make: impl FnOnce(L) -> Result<M>) -> Result<Identified<M>> {
         let Self { law, train_nrmse_percent, evaluations, termination, searched } = self;
         Ok(Identified { law: make(law)?, train_nrmse_percent, evaluations, termination, searched })
     }
 }
 
-/// Rejects numbers of starts and epochs that no search can have.
 pub(crate) fn check_effort(options: &ClassicalOptions) -> Result<()> {
     check([("starts", json!(options.starts())), ("epochs", json!(options.epochs()))])
 }
@@ -188,7 +185,6 @@ pub(super) struct Objective<'a> {
     family: &'a dyn Family,
     series: &'a [Series],
     target: Vec<f64>,
-    /// Sum of the squared deviations of the output from its mean.
     variation: f64,
     stop: StopCheck<'a>,
 }

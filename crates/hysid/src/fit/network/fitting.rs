@@ -68,9 +68,7 @@ pub(crate) struct State {
     all_rows: Vec<TrainingRun>,
 }
 
-/// A fit on its way.
 pub(crate) struct Fitting<'a> {
-    /// The data as measured, and what was asked for.
     measured: &'a Dataset,
     asked: FitOptions,
     /// The data as the network sees them.
@@ -97,7 +95,6 @@ struct Beginning {
     from: From,
 }
 
-/// Runs that advance together.
 struct Stage<'o> {
     phase: Phase,
     runs: Runs,
@@ -107,7 +104,6 @@ struct Stage<'o> {
     epochs_before: usize,
 }
 
-/// What the folds tell.
 #[derive(Default)]
 struct Validation {
     errors: Option<Errors>,
@@ -327,7 +323,6 @@ impl<'a> Fitting<'a> {
         split.map(fold).into_iter().collect()
     }
 
-    /// Drives a stage on the training parts of all folds.
     fn drive_on_folds(
         &mut self,
         stage: &FoldStage,
@@ -373,7 +368,6 @@ impl<'a> Fitting<'a> {
         pooled.errors(&self.measured.names().output)
     }
 
-    /// What one run on each fold gives for the rows held out.
     fn validation(&self, runs: &[&OnFold], folds: &[Fold], is_exact: bool) -> Result<Validation> {
         let predicted = folds.iter().zip(runs.iter().map(|run| run.predicted.as_slice()));
         let held_out = HeldOutRows::of(self.measured.names(), predicted)?;
@@ -582,7 +576,6 @@ fn mean_error(folds: &[&OnFold]) -> f64 {
     (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp()
 }
 
-/// On from where a run has come to.
 fn onward(objective: usize, run: &TrainingRun) -> Beginning {
     Beginning { objective, start: run.start(), from: From::Parameters(run.best().parameters.clone()) }
 }

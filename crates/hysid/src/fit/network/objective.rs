@@ -105,7 +105,6 @@ impl<'a> Objective<'a> {
         if is_long { Self { stop, is_long, ..self } } else { self }
     }
 
-    /// True if evaluations may be broken off.
     pub(crate) fn is_long(&self) -> bool {
         self.is_long
     }
@@ -144,7 +143,6 @@ impl<'a> Objective<'a> {
         self.time_scales
     }
 
-    /// Half of the range of the first input, in scaled units.
     pub(crate) fn half_range_of_input(&self) -> f64 {
         let inputs = self.drives.iter().flat_map(|drive| &drive.channels[0]);
         let (low, high) =

@@ -116,7 +116,6 @@ pub(crate) fn fit_random_stops_until(
     Ok(best.expect("at least one candidate"))
 }
 
-/// Random stops whose output weights are not known yet.
 pub(crate) struct Drawn {
     architecture: Architecture,
     parameters: Vec<f64>,
@@ -183,7 +182,6 @@ fn drawn(architecture: &Architecture, seed: u64) -> Vec<f64> {
     values
 }
 
-/// Draws the stops, and finds the output weights.
 fn fit_readout(
     data: &Dataset,
     options: &RandomStopsOptions,

@@ -43,7 +43,6 @@ pub(crate) struct TrainingRun {
     termination: Option<Termination>,
 }
 
-/// A point of the search space and what it reaches.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Point {
     pub parameters: Vec<f64>,
@@ -53,7 +52,6 @@ pub(crate) struct Point {
     pub mean_square: f64,
 }
 
-/// The state of the present method.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 enum Search {
     LevenbergMarquardt(LevenbergMarquardt<Value>),

@@ -13,7 +13,6 @@ pub(crate) struct SharedObserver<'o, 'a> {
     is_over: AtomicBool,
 }
 
-/// An observer with the progress that it was told last.
 struct Told<'o, 'a> {
     observer: &'o mut Observer<'a>,
     last: Option<Progress<'static>>,

@@ -5,7 +5,6 @@ use crate::error::{Error, Result};
 use crate::network::{Architecture, Layout};
 use crate::options::network::FitOptions;
 
-/// What a state must fit to.
 pub(super) struct Frame<'a> {
     pub options: &'a FitOptions,
     pub architecture: &'a Architecture,

@@ -22,7 +22,6 @@ pub(crate) struct Capacities {
     pub spread: f64,
 }
 
-/// Capacities that a search starts from.
 const CAPACITIES: Capacities = Capacities { typical: 1000.0, spread: 1.0 };
 
 pub(crate) fn random(objective: &Objective, seed: u64, start: usize) -> Vec<f64> {

@@ -56,7 +56,6 @@ const LEAST_KICK: f64 = 1e-4;
 /// A small penalty that keeps coefficients without influence at 0.
 const RIDGE: f64 = 1e-10;
 
-/// The linear systems that starts begin with, and how each record begins.
 pub(super) struct LinearStarts {
     all_modes: Dynamics,
     /// One mode that moves, and the others, which do not.

@@ -29,7 +29,6 @@ const EVEN: f64 = 1e-7;
 /// The second period may differ from the mean of the later ones by this multiple of what they differ among each other.
 const LARGEST_TRANSIENT: f64 = 1.3;
 
-/// Records in scaled units.
 pub(super) struct Records {
     pub drives: Vec<Drive>,
     pub input_scale: f64,

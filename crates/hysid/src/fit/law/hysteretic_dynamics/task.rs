@@ -44,7 +44,6 @@ pub(super) struct Begun {
 /// How the modes move at the first row of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Beginning {
-    /// Not at all.
     AtRest,
     /// At rest, but an unknown input between the first rows adds displacements and velocities of these expected sizes.
     NearRest(Vec<f64>),
@@ -141,7 +140,6 @@ impl<'a> Task<'a> {
         self.records.iter().map(run).collect()
     }
 
-    /// Number of parameters: those of the model and of how records begin.
     fn count(&self) -> usize {
         let modes = self.layout.modes.len();
         self.layout.count() + self.records.iter().map(|record| record.beginning.count(modes)).sum::<usize>()

@@ -19,7 +19,6 @@ const STEPS_OF_INPUT: [f64; 2] = [1e-3, 1e-2];
 /// The same for the rate.
 const STEPS_OF_RATE: [f64; 2] = [1e-2, 5e-2];
 
-/// What the memory of a law depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Memory {
     /// Only the turning points of the input: rows between them may be left out.
@@ -115,7 +114,6 @@ fn beginning(series: &Series, share: f64) -> Series {
     Series { samples: series.samples[..rows].to_vec(), output: series.output[..rows].to_vec() }
 }
 
-/// The measured outputs of all series, one after another.
 pub(crate) fn measured(series: &[Series]) -> Vec<f64> {
     series.iter().flat_map(|series| series.output.iter().copied().filter(|y| !y.is_nan())).collect()
 }
