@@ -154,7 +154,24 @@ impl Parameter {
         Self { symbol: symbol.into(), meaning, value, bounds, unit }
     }
 
-    pub(crate) fn check(&self, law: &'static str) -> Result<()> {
+    /// One parameter for each value, its number in the symbol.
+    pub(crate) fn numbered(
+        symbol: &str,
+        first: usize,
+        values: &[f64],
+        meaning: &'static str,
+        bounds: (f64, f64),
+        unit: Dimension,
+    ) -> impl Iterator<Item = Self> {
+        let numbers = (first..).zip(values);
+        numbers.map(move |(i, &value)| Self::new(format!("{symbol}_{i}"), meaning, value, bounds, unit))
+    }
+
+    pub(crate) fn check_all(parameters: &[Self], law: &'static str) -> Result<()> {
+        parameters.iter().try_for_each(|parameter| parameter.check(law))
+    }
+
+    fn check(&self, law: &'static str) -> Result<()> {
         let (low, high) = self.bounds;
         if self.value >= low && self.value <= high {
             return Ok(());

@@ -320,9 +320,7 @@ impl Law for BoucWen {
     }
 
     fn validated(self) -> Result<Self> {
-        for parameter in self.parameters() {
-            parameter.check("Bouc-Wen")?;
-        }
+        Parameter::check_all(&self.parameters(), "Bouc-Wen")?;
         if self.yield_displacement <= 0.0 {
             return Err(Error::Parts("Bouc-Wen: the yield displacement must be positive".into()));
         }

@@ -160,20 +160,14 @@ impl Law for DuhemNn {
             let (state, neuron) = (index / shape.neurons + 1, index % shape.neurons + 1);
             parameters.push(number(format!("W_{state},{neuron}"), "weight of a target", value));
         }
-        for (state, &value) in (1..).zip(&self.cell.rate_gains) {
-            parameters.push(number(format!("q_{state}"), "rate gain of a target", value));
-        }
-        for (state, &value) in (1..).zip(&self.cell.initial) {
-            parameters.push(number(format!("s_{state}"), "initial value of a state", value));
-        }
-        for (state, &value) in (1..).zip(&self.cell.path_leaks) {
-            let symbol = format!("c_{state}");
-            parameters.push(Parameter::new(symbol, "leak along the path", value, positive, Dimension::NONE));
-        }
         let time = Dimension { input: 0, output: 0, time: 1 };
-        for (state, &value) in (1..).zip(&self.cell.relaxation_times) {
-            let symbol = format!("τ_{state}");
-            parameters.push(Parameter::new(symbol, "relaxation time", value, positive, time));
+        for (symbol, values, meaning, bounds, unit) in [
+            ("q", &self.cell.rate_gains, "rate gain of a target", any, Dimension::NONE),
+            ("s", &self.cell.initial, "initial value of a state", any, Dimension::NONE),
+            ("c", &self.cell.path_leaks, "leak along the path", positive, Dimension::NONE),
+            ("τ", &self.cell.relaxation_times, "relaxation time", positive, time),
+        ] {
+            parameters.extend(Parameter::numbered(symbol, 1, values, meaning, bounds, unit));
         }
         inputs[0] = "0".into();
         inputs.extend((1..=shape.neurons).map(|neuron| format!("h{neuron}")));
@@ -202,9 +196,7 @@ impl Law for DuhemNn {
         {
             return refuse("the parts of its network have lengths that do not go together");
         }
-        for parameter in self.parameters() {
-            parameter.check("Duhem neural network")?;
-        }
+        Parameter::check_all(&self.parameters(), "Duhem neural network")?;
         Ok(self)
     }
 

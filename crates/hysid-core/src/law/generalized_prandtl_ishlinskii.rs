@@ -157,9 +157,7 @@ impl Law for GeneralizedPrandtlIshlinskii {
 
     fn validated(self) -> Result<Self> {
         const NAME: &str = "generalized Prandtl-Ishlinskii";
-        for parameter in self.parameters() {
-            parameter.check(NAME)?;
-        }
+        Parameter::check_all(&self.parameters(), NAME)?;
         self.weights.check(NAME, self.spacing, 0)?;
         Ok(self)
     }

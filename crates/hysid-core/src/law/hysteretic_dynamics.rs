@@ -297,7 +297,7 @@ impl Dynamics {
                 "the tanh neurons beside stops that deteriorate have a constant, whose weights must be 0",
             );
         }
-        self.parameters(Form::StateSpace).iter().try_for_each(|parameter| parameter.check(law))
+        Parameter::check_all(&self.parameters(Form::StateSpace), law)
     }
 }
 

@@ -212,9 +212,7 @@ impl Law for JilesAtherton {
         if !(self.a > 0.0 && self.k > 0.0 && self.saturation > 0.0) {
             return Err(Error::Parts("Jiles-Atherton: M_s, a and k must be positive".into()));
         }
-        for parameter in self.parameters() {
-            parameter.check("Jiles-Atherton")?;
-        }
+        Parameter::check_all(&self.parameters(), "Jiles-Atherton")?;
         Ok(self)
     }
 

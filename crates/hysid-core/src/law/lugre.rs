@@ -164,7 +164,7 @@ impl Law for Lugre {
     }
 
     fn validated(self) -> Result<Self> {
-        self.parameters().iter().try_for_each(|parameter| parameter.check("LuGre"))?;
+        Parameter::check_all(&self.parameters(), "LuGre")?;
         if self.sliding * (1.0 + self.stribeck) > LARGEST_VALUE {
             return Err(Error::Parts("LuGre: the static friction is too large".into()));
         }

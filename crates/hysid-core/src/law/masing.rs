@@ -138,29 +138,12 @@ impl Law for Masing {
 
     fn parameters(&self) -> Vec<Parameter> {
         let any = (f64::NEG_INFINITY, f64::INFINITY);
-        let parameter =
-            |symbol: String, meaning, value, bounds, unit| Parameter { symbol, meaning, value, bounds, unit };
-        let mut all =
-            vec![parameter("c".into(), "output constant", self.parts.constant, any, Dimension::OUTPUT)];
-        for (j, &r) in self.parts.thresholds.iter().enumerate() {
-            let positive = (0.0, f64::INFINITY);
-            all.push(parameter(
-                format!("r_{}", j + 1),
-                "bend of the virgin curve",
-                r,
-                positive,
-                Dimension::INPUT,
-            ));
-        }
-        for (j, &m) in self.parts.slopes.iter().enumerate() {
-            all.push(parameter(
-                format!("m_{}", j + 1),
-                "slope of the virgin curve",
-                m,
-                any,
-                Dimension::SLOPE,
-            ));
-        }
+        let positive = (0.0, f64::INFINITY);
+        let MasingParts { constant, thresholds, slopes } = &self.parts;
+        let (bend, slope) = ("bend of the virgin curve", "slope of the virgin curve");
+        let mut all = vec![Parameter::new("c", "output constant", *constant, any, Dimension::OUTPUT)];
+        all.extend(Parameter::numbered("r", 1, thresholds, bend, positive, Dimension::INPUT));
+        all.extend(Parameter::numbered("m", 1, slopes, slope, any, Dimension::SLOPE));
         all
     }
 

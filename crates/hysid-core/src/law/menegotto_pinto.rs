@@ -357,7 +357,7 @@ impl Law for MenegottoPinto {
     }
 
     fn validated(self) -> Result<Self> {
-        self.parameters().iter().try_for_each(|parameter| parameter.check("Menegotto-Pinto"))?;
+        Parameter::check_all(&self.parameters(), "Menegotto-Pinto")?;
         Ok(self)
     }
 

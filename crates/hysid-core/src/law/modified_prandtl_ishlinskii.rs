@@ -202,7 +202,7 @@ impl Law for ModifiedPrandtlIshlinskii {
     fn parameters(&self) -> Vec<Parameter> {
         let any = (f64::NEG_INFINITY, f64::INFINITY);
         let parameter =
-            |symbol: String, meaning, value, unit| Parameter { symbol, meaning, value, bounds: any, unit };
+            |symbol: String, meaning, value, unit| Parameter::new(symbol, meaning, value, any, unit);
         let parts = &self.superposition.parts;
         let mut all = self.hysteresis.parameters();
         all.push(parameter("c_S".into(), "output constant", parts.constant, Dimension::OUTPUT));

@@ -204,9 +204,7 @@ impl Law for NeuroMadelung {
         if neurons == 0 || self.hidden.len() != neurons * (1 + self.inputs()) {
             return refuse("the network has another shape than its inputs and neurons ask for");
         }
-        for parameter in self.parameters() {
-            parameter.check("neuro-Madelung")?;
-        }
+        Parameter::check_all(&self.parameters(), "neuro-Madelung")?;
         Ok(self)
     }
 

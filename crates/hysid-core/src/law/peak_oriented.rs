@@ -395,7 +395,7 @@ impl Law for PeakOriented {
     }
 
     fn validated(self) -> Result<Self> {
-        self.parameters().iter().try_for_each(|parameter| parameter.check("peak-oriented"))?;
+        Parameter::check_all(&self.parameters(), "peak-oriented")?;
         let [up, down] = [0, 1].map(|side| self.side(side).yield_displacement);
         if !(1e-6..=1e6).contains(&(up / down)) {
             return Err(Error::Parts(

@@ -98,16 +98,7 @@ impl PlayWeights {
                 ]
             }
             Self::Free(weights) => {
-                let parameter = |(index, &value): (usize, &f64)| {
-                    Parameter::new(
-                        format!("{symbol}_{}", first + index),
-                        "weight of a play",
-                        value,
-                        any,
-                        weight,
-                    )
-                };
-                weights.iter().enumerate().map(parameter).collect()
+                Parameter::numbered(symbol, first, weights, "weight of a play", any, weight).collect()
             }
         }
     }

@@ -145,18 +145,15 @@ impl Law for PrandtlIshlinskii {
     }
 
     fn parameters(&self) -> Vec<Parameter> {
-        let parameter =
-            |symbol: String, meaning, value, bounds, unit| Parameter { symbol, meaning, value, bounds, unit };
-        let any = (f64::NEG_INFINITY, f64::INFINITY);
+        let (any, positive) = ((f64::NEG_INFINITY, f64::INFINITY), (0.0, f64::INFINITY));
+        let (threshold, weight) = ("threshold of a play", "weight of a play");
         let mut all = vec![
-            parameter("c".into(), "output constant", self.constant, any, Dimension::OUTPUT),
-            parameter("w_0".into(), "weight of the input", self.linear, any, Dimension::SLOPE),
+            Parameter::new("c", "output constant", self.constant, any, Dimension::OUTPUT),
+            Parameter::new("w_0", "weight of the input", self.linear, any, Dimension::SLOPE),
         ];
-        for (i, (&r, &w)) in self.thresholds.iter().zip(&self.weights).enumerate() {
-            let positive = (0.0, f64::INFINITY);
-            all.push(parameter(format!("r_{}", i + 1), "threshold of a play", r, positive, Dimension::INPUT));
-            all.push(parameter(format!("w_{}", i + 1), "weight of a play", w, any, Dimension::SLOPE));
-        }
+        let r = Parameter::numbered("r", 1, &self.thresholds, threshold, positive, Dimension::INPUT);
+        let w = Parameter::numbered("w", 1, &self.weights, weight, any, Dimension::SLOPE);
+        all.extend(r.zip(w).flat_map(|(r, w)| [r, w]));
         all
     }
 

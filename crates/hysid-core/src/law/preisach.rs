@@ -198,21 +198,17 @@ impl Law for Preisach {
 
     fn parameters(&self) -> Vec<Parameter> {
         let any = (f64::NEG_INFINITY, f64::INFINITY);
-        let parameter =
-            |symbol: String, meaning, value, unit| Parameter { symbol, meaning, value, bounds: any, unit };
-        let weights = &self.weights;
+        let PreisachWeights { constant, slope, lines, reversible, cells } = &self.weights;
+        let (line, interval) = ("line of the Preisach plane", "reversible weight of an interval");
         let mut all = vec![
-            parameter("c".into(), "output constant", weights.constant, Dimension::OUTPUT),
-            parameter("k".into(), "reversible slope", weights.slope, Dimension::SLOPE),
+            Parameter::new("c", "output constant", *constant, any, Dimension::OUTPUT),
+            Parameter::new("k", "reversible slope", *slope, any, Dimension::SLOPE),
         ];
-        for (i, &line) in weights.lines.iter().enumerate() {
-            all.push(parameter(format!("x_{i}"), "line of the Preisach plane", line, Dimension::INPUT));
-        }
-        for (j, &v) in weights.reversible.iter().enumerate() {
-            all.push(parameter(format!("v_{j}"), "reversible weight of an interval", v, Dimension::OUTPUT));
-        }
-        for ((i, j), &w) in Plane::new(weights.lines.clone()).indices().zip(&weights.cells) {
-            all.push(parameter(format!("w_{i},{j}"), "weight of a cell's relays", w, Dimension::OUTPUT));
+        all.extend(Parameter::numbered("x", 0, lines, line, any, Dimension::INPUT));
+        all.extend(Parameter::numbered("v", 0, reversible, interval, any, Dimension::OUTPUT));
+        for ((i, j), &w) in Plane::new(lines.clone()).indices().zip(cells) {
+            let symbol = format!("w_{i},{j}");
+            all.push(Parameter::new(symbol, "weight of a cell's relays", w, any, Dimension::OUTPUT));
         }
         all
     }

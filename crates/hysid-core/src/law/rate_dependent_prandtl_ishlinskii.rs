@@ -151,9 +151,7 @@ impl Law for RateDependentPrandtlIshlinskii {
 
     fn validated(self) -> Result<Self> {
         const NAME: &str = "rate-dependent Prandtl-Ishlinskii";
-        for parameter in self.parameters() {
-            parameter.check(NAME)?;
-        }
+        Parameter::check_all(&self.parameters(), NAME)?;
         self.weights.check(NAME, self.spacing, 1)?;
         Ok(self)
     }
