@@ -30,7 +30,7 @@ fn options(rate: Option<RateMethod>) -> AutoOptions {
 }
 
 fn fitted(data: &Dataset, options: AutoOptions) -> Model {
-    identify(data, &FitSpec::Auto(options), &mut on).unwrap().model
+    model_of(data, &FitSpec::Auto(options))
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn the_band_lies_about_the_output_and_widens_with_its_probability() {
     for wrong in [0.0, 0.3, 1.0, f64::NAN] {
         assert!(model.predict(&excitation, wrong).unwrap_err().to_string().contains("from 0.5 to 0.99"));
     }
-    let alone = identify(&data, &small(ModelName::Network(Family::Xpnn), None), &mut on).unwrap().model;
+    let alone = model_of(&data, &small(ModelName::Network(Family::Xpnn), None));
     assert!(alone.predict(&excitation, 0.9).unwrap_err().to_string().contains("no prediction band"));
 }
 
@@ -257,7 +257,7 @@ fn data_too_few_to_hold_any_out_still_give_a_model() {
 #[test]
 fn an_ensemble_that_makes_no_sense_is_refused() {
     let data = data();
-    let member = identify(&data, &small(ModelName::Network(Family::Pnn), None), &mut on).unwrap().model;
+    let member = model_of(&data, &small(ModelName::Network(Family::Pnn), None));
     let node = |member| Node { weights: Weights::equal(), kind: NodeKind::Member(member) };
     let group = |nodes| Group { name: "g".into(), nodes };
     let new = |members: &[&Model], nodes, range| {
@@ -284,7 +284,7 @@ fn rows_of_a_wrong_beginning_are_not_trained_on() {
         let sound = record(rows, name);
         let wrong = |(row, y): (usize, &f64)| y + 3.0 * (-(row as f64) / 4.0).exp();
         let output = sound.output().iter().enumerate().map(wrong).collect();
-        Record::new(name, sound.inputs().iter().map(|input| input.to_vec()).collect(), output).unwrap()
+        Record::new(name, vec![sound.inputs()[0].to_vec()], output).unwrap()
     };
     let untimed = ColumnNames { time: None, ..names() };
     let data = Dataset::new(untimed.clone(), vec![strange(150, "a"), strange(140, "b")]).unwrap();

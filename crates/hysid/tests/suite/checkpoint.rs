@@ -11,8 +11,7 @@ fn data() -> Dataset {
     let mut stop = Stop::new(0.2).unwrap();
     let y = x.iter().map(|x| 3.0 * stop.step(*x) + x.powi(3)).collect();
     let time = (0..160).map(|k| 0.1 * k as f64).collect();
-    let record = Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
-    Dataset::new(ColumnNames::plain(1), vec![record]).unwrap()
+    timed(time, x, y)
 }
 
 fn options(training: Trainer, starts: usize) -> FitOptions {
@@ -216,13 +215,11 @@ fn damaged_checkpoints_and_other_data_are_refused() {
     }
     assert!(refusal(b"").contains("empty") && refusal(b"x,y\n1,2\n").contains("not a Hysid checkpoint"));
     assert!(refusal(b"hysid checkpoint 9\n....").contains("another version"));
-    let mut record = data().records()[0].clone();
+    let whole = data();
+    let record = &whole.records()[0];
     let mut y = record.output().to_vec();
     y[9] += 1e-9;
-    record = Record::new("r", record.inputs().iter().map(|input| input.to_vec()).collect(), y)
-        .unwrap()
-        .with_time(record.time().unwrap().to_vec())
-        .unwrap();
+    let record = record.clone().with_output(y).unwrap();
     let other = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
     let error = resume(&other, checkpoint, &mut |_| ControlFlow::Continue(())).unwrap_err();
     assert!(error.to_string().contains("other data"), "{error}");

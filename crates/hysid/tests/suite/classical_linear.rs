@@ -23,10 +23,6 @@ fn repeatable() -> ProptestConfig {
     }
 }
 
-fn dataset(x: Vec<f64>, y: Vec<f64>) -> Dataset {
-    Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap()
-}
-
 fn nrmse(y: &[f64], model: &[f64]) -> f64 {
     let mean = y.iter().sum::<f64>() / y.len() as f64;
     let squares = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>();
@@ -233,7 +229,7 @@ fn between_its_lines_a_plane_is_near_the_everett_function() {
 fn a_fit_finds_the_weights_of_plays() {
     let model = lecture_model();
     let x = through(&[0.0, 4.0, -3.5, 3.0, -2.5, 2.0, -1.5, 1.0, -0.5, 4.0, -4.0], 40);
-    let data = dataset(x.clone(), outputs(&model, &x));
+    let data = Dataset::from_slices(&x, &outputs(&model, &x)).unwrap();
     let options = ClassicalOptions {
         thresholds: Some(model.thresholds().to_vec()),
         ..of(ClassicalModel::PrandtlIshlinskii)
@@ -262,7 +258,7 @@ fn a_fit_finds_the_weights_of_plays() {
 fn a_fit_finds_a_virgin_curve() {
     let model = masing();
     let x = through(&[0.0, 2.5, -2.0, 1.5, -1.0, 0.6, 2.5, -2.5, 2.8, -2.8], 40);
-    let data = dataset(x.clone(), outputs(&model, &x));
+    let data = Dataset::from_slices(&x, &outputs(&model, &x)).unwrap();
     let thresholds = Some(model.parts().thresholds.clone());
     let fitted =
         Masing::fit(&data, &ClassicalOptions { thresholds, ..of(ClassicalModel::Masing) }, &mut go_on)
@@ -286,7 +282,7 @@ fn a_fit_finds_a_sheet_of_steel() {
         50.0, -90.0, 300.0, -40.0, 40.0, -80.0, 80.0, -20.0, 20.0,
     ]);
     b[70..90].fill(f64::NAN);
-    let data = dataset(h, b);
+    let data = Dataset::from_slices(&h, &b).unwrap();
     let options = ClassicalOptions { operators: Some(24), ..of(ClassicalModel::Preisach) };
     let fitted = Preisach::fit(&data, &options, &mut go_on).unwrap().law;
     let (h, b) = sheet(&[0.0, 90.0, -90.0, 250.0, 60.0, 140.0, -30.0, 30.0, -250.0, -20.0, -100.0, 20.0]);
@@ -301,7 +297,7 @@ fn a_fit_finds_a_sheet_of_steel() {
 fn a_fit_finds_plays_behind_dead_zones() {
     let model = saturating();
     let x = through(&[0.0, 3.0, -2.5, 2.0, -1.5, 1.0, -0.5, 3.0, -3.0, 0.5, -0.5, 2.5], 40);
-    let data = dataset(x.clone(), outputs(&model, &x));
+    let data = Dataset::from_slices(&x, &outputs(&model, &x)).unwrap();
     let other = through(&[0.0, 2.2, -0.7, 2.9, -2.8, 1.2, 0.2, 0.9], 23);
     let expected = outputs(&model, &other);
     let bent =
@@ -322,7 +318,7 @@ fn random_stops_are_a_network() {
     let wearing = |r: f64| DeterioratingStop::new(r, 30.0).unwrap().run(&x);
     let y: Vec<f64> =
         wearing(0.4).iter().zip(wearing(1.1)).zip(&x).map(|((a, b), x)| 3.0 * a + b + 0.2 * x).collect();
-    let data = dataset(x.clone(), y.clone());
+    let data = Dataset::from_slices(&x, &y).unwrap();
     let options = RandomStopsOptions { stops: 80, hidden: Some(10), ..Default::default() };
     let fitted = fit_random_stops(&data, &options).unwrap();
     let drive = fitted.scaling.drive(&data.records()[0], fitted.network.architecture(), None).unwrap();
@@ -374,7 +370,7 @@ fn unusable_parameters_are_refused() {
 fn a_line_is_fitted() {
     let x = through(&[0.0, 1.0, -1.0, 0.5], 20);
     let options = ClassicalOptions { operators: Some(5), ..of(ClassicalModel::Preisach) };
-    let line = Preisach::fit(&dataset(x.clone(), x), &options, &mut go_on).unwrap().law;
+    let line = Preisach::fit(&Dataset::from_slices(&x, &x).unwrap(), &options, &mut go_on).unwrap().law;
     assert!((last(&line, &[0.3]) - 0.3).abs() < 1e-3);
 }
 

@@ -189,7 +189,7 @@ fn numbers_of_a_loop_are_those_of_a_stop() {
     let (r, amplitude) = (0.5, 2.0);
     let x: Vec<f64> = (0..4001).map(|k| amplitude * (TAU * k as f64 / 1000.0).sin()).collect();
     let y = hysid::operator::Stop::new(r).unwrap().run(&x);
-    let data = Dataset::new(ColumnNames::plain(1), vec![Record::new("stop", vec![x], y).unwrap()]).unwrap();
+    let data = Dataset::from_slices(&x, &y).unwrap();
     let diagnosis = Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap();
     let cycle = diagnosis.cycles.cycles.last().unwrap();
     assert!((cycle.energy.unwrap() - 4.0 * r * (amplitude - r)).abs() < 0.01, "{cycle:?}");
@@ -208,7 +208,7 @@ fn jitter_of_the_input_makes_no_cycles() {
     let y = hysid::operator::Stop::new(0.3).unwrap().run(&clean);
     // Uniform within 3 % of the range, so that single rows go back by as much.
     let x: Vec<f64> = clean.iter().map(|x| x + 0.06 * (generator.random::<f64>() - 0.5)).collect();
-    let data = Dataset::new(ColumnNames::plain(1), vec![Record::new("jitter", vec![x], y).unwrap()]).unwrap();
+    let data = Dataset::from_slices(&x, &y).unwrap();
     let diagnosis = Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap();
     assert_eq!(diagnosis.turning_points, 8);
     assert_eq!(diagnosis.cycles.complete().count(), 4);
@@ -218,9 +218,8 @@ fn jitter_of_the_input_makes_no_cycles() {
 #[test]
 fn a_function_without_memory_has_no_hysteresis() {
     let x: Vec<f64> = (0..4000).map(|k| (TAU * k as f64 / 800.0).sin()).collect();
-    let y = x.iter().map(|x| (3.0 * x).tanh()).collect();
-    let data =
-        Dataset::new(ColumnNames::plain(1), vec![Record::new("function", vec![x], y).unwrap()]).unwrap();
+    let y: Vec<f64> = x.iter().map(|x| (3.0 * x).tanh()).collect();
+    let data = Dataset::from_slices(&x, &y).unwrap();
     for percent in [0.0, 0.5] {
         let diagnosis = Diagnosis::of(&noisy(&data, percent, 1), &DiagnosisOptions::default()).unwrap();
         assert_eq!(diagnosis.verdict(Property::StaticHysteresis), Verdict::No);
@@ -230,9 +229,7 @@ fn a_function_without_memory_has_no_hysteresis() {
 
 #[test]
 fn poor_records_are_errors_or_not_testable() {
-    let data = |x: Vec<f64>, y: Vec<f64>| {
-        Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap()
-    };
+    let data = |x: Vec<f64>, y: Vec<f64>| Dataset::from_slices(&x, &y).unwrap();
     let of = |data: Dataset| Diagnosis::of(&data, &DiagnosisOptions::default());
     assert!(of(data(vec![1.0], vec![1.0])).is_err());
     assert!(of(data(vec![1.0; 50], (0..50).map(f64::from).collect())).is_err());

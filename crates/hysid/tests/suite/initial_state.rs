@@ -7,21 +7,12 @@ use hysid::data::initial_state::lead_in_of_period;
 use hysid::law::preisach::{Preisach, PreisachWeights};
 use hysid::law::series::run;
 
-fn fitted(data: &Dataset, request: &FitSpec) -> Model {
-    identify(data, request, &mut |_| ControlFlow::Continue(())).unwrap().model
-}
-
 fn untimed(records: Vec<Record>) -> Dataset {
     Dataset::new(ColumnNames { time: None, ..ColumnNames::plain(1) }, records).unwrap()
 }
 
 fn without_time(record: &Record) -> Record {
-    Record::new(
-        record.name(),
-        record.inputs().iter().map(|input| input.to_vec()).collect(),
-        record.output().to_vec(),
-    )
-    .unwrap()
+    Record::new(record.name(), vec![record.inputs()[0].to_vec()], record.output().to_vec()).unwrap()
 }
 
 fn path(rows: usize, size: f64, pace: f64) -> Vec<f64> {
@@ -103,7 +94,7 @@ fn a_lead_in_drives_the_memory_as_rows_before_the_record_do() {
                 continue;
             }
             let what = format!("{} {name}", model.name());
-            let (of_rows, of_told) = (fitted(&as_rows, &request), fitted(&told, &request));
+            let (of_rows, of_told) = (model_of(&as_rows, &request), model_of(&told, &request));
             assert_eq!((of_rows.lead_in(), of_told.lead_in()), (&[][..], &lead_in[..]), "{what}");
             assert_eq!(of_told.network(), of_rows.network(), "{what}");
             assert_eq!(of_told.law(), of_rows.law(), "{what}");
@@ -138,9 +129,9 @@ fn whole_blocks_and_steps_begin_alike_and_a_record_can_begin_otherwise() {
     (shaped.history, shaped.companding, shaped.rate_companding) = (Some(true), Some(0.2), Some(0.3));
     requests.push(shaped.request(rate, false));
     for request in requests {
-        let virgin = fitted(&data, &request);
+        let virgin = model_of(&data, &request);
         let request = request.with_initial_state(Some(InitialState::SaturatedDown));
-        let model = fitted(&data, &request);
+        let model = model_of(&data, &request);
         let what = format!("{} {:?}", model.name().name(), model.input_transform());
         assert_eq!(model.lead_in(), [data.input_range(0).0], "{what}");
         let whole = model.simulate(&unseen).unwrap();
@@ -232,9 +223,9 @@ fn gradients_are_right_behind_a_lead_in() {
 fn states_of_a_magnet_at_remanence_are_found() {
     let (train, test) = remanent();
     for model in ["preisach", "random-stops"] {
-        let virgin = fitted(&train, &request(serde_json::json!({ "model": model })));
+        let virgin = model_of(&train, &request(serde_json::json!({ "model": model })));
         let found =
-            fitted(&train, &request(serde_json::json!({ "model": model, "initial_state": "unknown" })));
+            model_of(&train, &request(serde_json::json!({ "model": model, "initial_state": "unknown" })));
         let (low, high) = train.input_range(0);
         assert_eq!(found.lead_in(), [high], "{model}");
         for (name, end) in [("a", high), ("b", low), ("c", high), ("d", high), ("e", low), ("f", high)] {
@@ -266,7 +257,7 @@ fn a_validation_does_not_look_at_what_is_held_out() {
     let request = request(serde_json::json!({ "model": "preisach", "initial_state": "unknown" }));
     let validation = cross_validate(&data, &request, 3, &mut |_| ControlFlow::Continue(())).unwrap();
     let (kept, held) = data.partition(|record| record < 2);
-    let model = fitted(&kept, &request);
+    let model = model_of(&kept, &request);
     assert_eq!(model.lead_in(), [kept.input_range(0).1]);
     let wrong = model.evaluate(&held).unwrap();
     assert_eq!(validation.folds[2].unseen, wrong);
@@ -306,7 +297,7 @@ fn few_candidates() -> FitSpec {
 fn auto_finds_states_where_they_matter_and_says_so() {
     let (train, test) = remanent();
     let auto = few_candidates();
-    let model = fitted(&train, &auto);
+    let model = model_of(&train, &auto);
     let selection = model.provenance().selection.as_ref().unwrap();
     let found = selection.found_states.expect("states that were found");
     assert!(found.found_percent < 0.8 * found.virgin_percent);
@@ -314,7 +305,7 @@ fn auto_finds_states_where_they_matter_and_says_so() {
     assert_eq!(model.lead_in(), [train.input_range(0).1]);
     assert!(model.ensemble().unwrap().members().iter().all(|member| member.lead_in().is_empty()));
     assert!(model.notes().iter().any(|note| note.contains("initial state")), "{:?}", model.notes());
-    let virgin = fitted(&train, &auto.with_initial_state(Some(InitialState::Virgin)));
+    let virgin = model_of(&train, &auto.with_initial_state(Some(InitialState::Virgin)));
     let error = |model: &Model| model.evaluate(&test).unwrap().rmse;
     assert!(error(&model) < 0.5 * error(&virgin), "{} of {}", error(&model), error(&virgin));
     assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
@@ -333,20 +324,20 @@ fn steady_loops_begin_after_a_period_of_themselves() {
     let data = untimed([0.3, 0.5, 0.7, 1.0].map(steady).into());
     let unseen = untimed(vec![steady(0.6)]);
     let auto = few_candidates();
-    let model = fitted(&data, &auto);
+    let model = model_of(&data, &auto);
     assert!(model.is_periodic() && model.lead_in().is_empty());
     assert!(
         model.notes().iter().any(|note| note.contains("after one period of itself")),
         "{:?}",
         model.notes()
     );
-    let virgin = fitted(&data, &auto.with_initial_state(Some(InitialState::Virgin)));
+    let virgin = model_of(&data, &auto.with_initial_state(Some(InitialState::Virgin)));
     let error = |model: &Model| model.evaluate(&unseen).unwrap().rmse;
     assert!(error(&model) < 0.3 * error(&virgin), "{} of {}", error(&model), error(&virgin));
 
     let named = request(serde_json::json!({ "model": "preisach", "initial_state": "periodic" }));
     let record = &unseen.records()[0];
-    for model in [model, fitted(&data, &named)] {
+    for model in [model, model_of(&data, &named)] {
         assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
         assert_eq!(model.evaluate(&data).unwrap(), model.provenance().train);
         assert_eq!(model.as_trained(&data).unwrap().records()[1].lead_in().unwrap(), [0.5, -0.5]);
@@ -370,11 +361,11 @@ fn steady_loops_begin_after_a_period_of_themselves() {
 fn data_that_begin_virgin_keep_their_model() {
     let data = untimed(["a", "b", "c"].map(|name| without_time(&record(150, name))).into());
     let auto = few_candidates();
-    let model = fitted(&data, &auto);
+    let model = model_of(&data, &auto);
     assert!(model.lead_in().is_empty());
     assert_eq!(model.provenance().selection.as_ref().unwrap().found_states, None);
     // With the state decided, the same but for the option itself.
-    let decided = fitted(&data, &auto.with_initial_state(Some(InitialState::Virgin)));
+    let decided = model_of(&data, &auto.with_initial_state(Some(InitialState::Virgin)));
     let (plain, decided) = (model.to_json(), decided.to_json());
     let option = "      \"initial_state\": \"virgin\",\n";
     let content = |text: &str| text[..text.rfind("\"checksum\"").unwrap()].to_string();
@@ -385,7 +376,7 @@ fn data_that_begin_virgin_keep_their_model() {
 #[test]
 fn bad_values_are_one_clear_error() {
     let data = untimed(vec![without_time(&record(150, "a"))]);
-    let model = fitted(&data, &small(ModelName::Classical(ClassicalModel::Preisach), None));
+    let model = model_of(&data, &small(ModelName::Classical(ClassicalModel::Preisach), None));
     let error = model.clone().with_initial_state(InitialState::Unknown).unwrap_err().to_string();
     assert!(error.starts_with("initial_state unknown: choose one of virgin, saturated-up,"), "{error}");
     assert!(model.stepper().reset_to(InitialState::Unknown).is_err());
@@ -397,9 +388,7 @@ fn bad_values_are_one_clear_error() {
     record.clone().with_lead_in(vec![0.5; 1_000]).unwrap();
     let error = record.clone().with_lead_in(vec![0.5; 1_001]).unwrap_err().to_string();
     assert_eq!(error, "record \"r\", input: the lead-in has 1001 turning points: at most 1000 are possible");
-    let named = serde_json::json!({ "initial_state": "saturated" });
-    let serde_json::Value::Object(named) = named else { panic!("a map") };
-    let error = NamedOptions::of(named).unwrap_err().to_string();
+    let error = named(serde_json::json!({ "initial_state": "saturated" })).unwrap_err().to_string();
     assert!(error.contains("initial_state \"saturated\": choose one of virgin, saturated-up"), "{error}");
     let up = model.with_initial_state(InitialState::SaturatedUp).unwrap().to_json();
     let broken = up.replacen("\"lead_in\": [", "\"lead_in\": [1e200, ", 1);

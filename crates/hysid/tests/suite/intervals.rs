@@ -63,7 +63,7 @@ impl<L: Law> Case<L> {
             clean.iter().zip(noise(seed, a)).map(|(y, e)| y + self.share * deviation * e).collect();
         let data = Dataset::from_slices(&x, &y).unwrap();
         let spec = FitSpec::Classical(self.options.clone());
-        let model = identify(&data, &spec, &mut |_| ControlFlow::Continue(())).unwrap().model;
+        let model = model_of(&data, &spec);
         (self.law.parameters(), ParameterIntervals::of(&model, &data).unwrap().unwrap())
     }
 
@@ -164,22 +164,10 @@ fn prandtl_ishlinskii() -> Case<PrandtlIshlinskii> {
 }
 
 #[test]
-fn intervals_of_bouc_wen_contain_the_parameters_as_often_as_stated() {
+fn intervals_contain_the_parameters_as_often_as_stated() {
     check("bouc-wen", &bouc_wen(), [0.9, 0.85]);
-}
-
-#[test]
-fn intervals_of_jiles_atherton_contain_the_parameters_as_often_as_stated() {
     check("jiles-atherton", &jiles_atherton(), [0.9, 0.85]);
-}
-
-#[test]
-fn intervals_of_menegotto_pinto_contain_the_parameters_as_often_as_stated() {
     check("menegotto-pinto", &menegotto_pinto(), [0.9, 0.83]);
-}
-
-#[test]
-fn intervals_of_prandtl_ishlinskii_contain_the_parameters_as_often_as_stated() {
     check("prandtl-ishlinskii", &prandtl_ishlinskii(), [0.9, 0.85]);
 }
 
@@ -229,7 +217,7 @@ fn intervals_need_the_training_data_and_nothing_else() {
     };
     let (data, other) = (noisy(1), noisy(2));
     let spec = FitSpec::Classical(case.options.clone());
-    let model = identify(&data, &spec, &mut |_| ControlFlow::Continue(())).unwrap().model;
+    let model = model_of(&data, &spec);
     let found = ParameterIntervals::of(&model, &data).unwrap();
     let read = hysid::Model::from_json(&model.to_json()).unwrap();
     assert_eq!(ParameterIntervals::of(&read, &data).unwrap(), found);
@@ -246,8 +234,7 @@ fn every_law_is_linearised_about_its_own_fit() {
     let time: Vec<f64> = (0..ROWS).map(|k| 0.01 * k as f64).collect();
     let y: Vec<f64> =
         run(&bouc_wen().law, &samples_of(&x)).iter().zip(noise(4, 0.0)).map(|(y, e)| y + 0.05 * e).collect();
-    let record = hysid::Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
-    let data = Dataset::new(hysid::ColumnNames::plain(1), vec![record]).unwrap();
+    let data = timed(time, x, y);
     let names = "masing prandtl-ishlinskii modified-prandtl-ishlinskii generalized-prandtl-ishlinskii \
                  rate-dependent-prandtl-ishlinskii bouc-wen peak-oriented menegotto-pinto jiles-atherton lugre";
     for name in names.split(' ') {

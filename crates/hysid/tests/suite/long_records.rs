@@ -13,8 +13,7 @@ fn cycles(rows: usize, period: usize) -> Dataset {
         y.iter_mut().zip(stop).for_each(|(y, z)| *y -= weight * z);
     }
     let time = (0..rows).map(|row| 0.01 * row as f64).collect();
-    let record = Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
-    Dataset::new(ColumnNames::plain(1), vec![record]).unwrap()
+    timed(time, x, y)
 }
 
 fn fitted(data: &Dataset, model: ClassicalModel) -> Model {
@@ -26,11 +25,7 @@ fn fitted(data: &Dataset, model: ClassicalModel) -> Model {
         rate: model.needs_rate().then_some(RateMethod::Central),
         ..of(model)
     };
-    identify(data, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(())).unwrap().model
-}
-
-fn error(model: &Model, data: &Dataset) -> f64 {
-    model.evaluate(data).unwrap().nrmse_std_percent.unwrap()
+    model_of(data, &FitSpec::Classical(options))
 }
 
 /// A fixed distance between the rows that are looked at met the same two phases of every cycle of 20 or 40 rows.
@@ -38,11 +33,11 @@ fn error(model: &Model, data: &Dataset) -> f64 {
 fn rows_of_a_cycle_do_not_matter() {
     for (period, every) in [(7, 7), (20, 20)] {
         let data = cycles(5000 * every, period);
-        let found = error(&fitted(&data, ClassicalModel::GeneralizedPrandtlIshlinskii), &data);
+        let found = error_percent(&fitted(&data, ClassicalModel::GeneralizedPrandtlIshlinskii), &data);
         assert!(found < 8.0, "{period} rows a cycle: {found} %");
     }
     let data = cycles(100_000, 20);
-    let found = error(&fitted(&data, ClassicalModel::BoucWen), &data);
+    let found = error_percent(&fitted(&data, ClassicalModel::BoucWen), &data);
     assert!(found < 12.0, "Bouc-Wen: {found} %");
 }
 
@@ -51,7 +46,7 @@ fn rows_of_a_cycle_do_not_matter() {
 fn rows_of_a_cycle_do_not_matter_to_laws_with_a_rate() {
     for period in [19, 20] {
         let data = cycles(20_000, period);
-        let found = error(&fitted(&data, ClassicalModel::RateDependentPrandtlIshlinskii), &data);
+        let found = error_percent(&fitted(&data, ClassicalModel::RateDependentPrandtlIshlinskii), &data);
         assert!(found < 4.0, "{period} rows a cycle: {found} %");
     }
 }

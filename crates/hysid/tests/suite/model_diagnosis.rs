@@ -13,7 +13,7 @@ fn fitted(name: ModelName) -> Model {
 }
 
 fn fitted_to(data: &Dataset, name: ModelName, rate: Option<RateMethod>) -> Model {
-    identify(data, &small(name, rate), &mut |_| ControlFlow::Continue(())).unwrap().model
+    model_of(data, &small(name, rate))
 }
 
 use Property::*;
@@ -99,12 +99,7 @@ fn everything_that_a_model_asks_for_is_provided() {
         assert_eq!(diagnosis.probing.held, [middle], "{}", name.name());
     }
     let rate = RateMethod::Central.rate(&one).unwrap();
-    let given = Record::new(
-        "given rate",
-        one.inputs().iter().map(|input| input.to_vec()).collect(),
-        one.output().to_vec(),
-    )
-    .unwrap();
+    let given = Record::new("given rate", vec![one.inputs()[0].to_vec()], one.output().to_vec()).unwrap();
     let names = ColumnNames { time: None, rate: Some("v".into()), ..ColumnNames::plain(1) };
     let given = Dataset::new(names, vec![given.with_given_rate(rate).unwrap()]).unwrap();
     let name = ModelName::Network(Family::Xpnn);

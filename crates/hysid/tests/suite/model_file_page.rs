@@ -78,7 +78,7 @@ fn data(offset: f64) -> Dataset {
 }
 
 fn fitted(spec: &FitSpec, offset: f64) -> Model {
-    identify(&data(offset), spec, &mut |_| ControlFlow::Continue(())).unwrap().model
+    model_of(&data(offset), spec)
 }
 
 /// The same request with the parts of a model that its default leaves out.

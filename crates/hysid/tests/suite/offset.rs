@@ -15,11 +15,7 @@ fn shifted(by: f64) -> Dataset {
 
 fn fitted(data: &Dataset, model: ModelName) -> Model {
     let rate = model.uses_rate().then_some(RateMethod::Central);
-    identify(data, &small(model, rate), &mut |_| ControlFlow::Continue(())).unwrap().model
-}
-
-fn error(model: &Model, data: &Dataset) -> f64 {
-    model.evaluate(data).unwrap().nrmse_std_percent.unwrap()
+    model_of(data, &small(model, rate))
 }
 
 #[test]
@@ -29,13 +25,13 @@ fn errors_are_the_same_wherever_the_input_is() {
     let all = ModelName::all().chain([ModelName::AUTO]);
     for model in all.filter(|model| *model != ModelName::Classical(ClassicalModel::JilesAtherton)) {
         let there = shifted(0.0);
-        let expected = error(&fitted(&there, model), &there);
+        let expected = error_percent(&fitted(&there, model), &there);
         // The automatic model takes the others' time together.
         let offsets: &[f64] = if model == ModelName::AUTO { &[1e3] } else { &[-30.0, 1e6] };
         for offset in offsets {
             let data = shifted(offset * half);
             let model = fitted(&data, model);
-            let found = error(&model, &data);
+            let found = error_percent(&model, &data);
             let name = model.name().name();
             assert!(
                 (found - expected).abs() < 0.03 * expected + 1e-3,
@@ -84,8 +80,8 @@ fn further_inputs_are_shifted_too() {
     let errors = [0.0, 300.0, 1e6].map(|by| {
         let data = with_temperature(by);
         let request = small("xpnn+".parse().unwrap(), None);
-        let model = identify(&data, &request, &mut |_| ControlFlow::Continue(())).unwrap().model;
-        error(&model, &data)
+        let model = model_of(&data, &request);
+        error_percent(&model, &data)
     });
     for error in errors {
         assert!((error / errors[0] - 1.0).abs() < 0.01, "{errors:?}");

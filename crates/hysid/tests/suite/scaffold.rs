@@ -45,10 +45,26 @@ pub fn of(model: ClassicalModel) -> ClassicalOptions {
     ClassicalOptions::of(model)
 }
 
+pub fn named(options: serde_json::Value) -> hysid::Result<NamedOptions> {
+    NamedOptions::of(serde_json::from_value(options).unwrap())
+}
+
 /// A fit without rate by the names of its options.
 pub fn request(options: serde_json::Value) -> FitSpec {
-    let serde_json::Value::Object(options) = options else { panic!("a map") };
-    NamedOptions::of(options).unwrap().request(None, false)
+    named(options).unwrap().request(None, false)
+}
+
+pub fn model_of(data: &Dataset, request: &FitSpec) -> Model {
+    identify(data, request, &mut on).unwrap().model
+}
+
+pub fn error_percent(model: &Model, data: &Dataset) -> f64 {
+    model.evaluate(data).unwrap().nrmse_std_percent.unwrap()
+}
+
+/// Data of one record with time stamps.
+pub fn timed(time: Vec<f64>, x: Vec<f64>, y: Vec<f64>) -> Dataset {
+    Dataset::from_columns(Some(("t", &time)), &[("x", &x)], ("y", &y)).unwrap()
 }
 
 pub fn bits(values: &[f64]) -> Vec<u64> {

@@ -28,7 +28,7 @@ fn fitted(records: Vec<Record>, request: &FitSpec) -> Model {
     let names =
         ColumnNames { rate: records[0].given_rate().map(|_| "v".into()), ..ColumnNames::plain(inputs) };
     let data = Dataset::new(names, records).unwrap();
-    identify(&data, request, &mut |_| ControlFlow::Continue(())).unwrap().model
+    model_of(&data, request)
 }
 
 /// Rows of a record as an excitation of their own.
@@ -184,8 +184,7 @@ fn a_step_is_finite_for_any_input_and_rate_that_it_takes() {
 #[test]
 fn a_sample_that_is_refused_changes_nothing() {
     let options = serde_json::json!({ "model": "xpnn+", "members": 3, "stops": 3, "hidden": 2, "epochs": 2, "history": true });
-    let serde_json::Value::Object(options) = options else { panic!("a map") };
-    let request = NamedOptions::of(options).unwrap().request(Some(RateMethod::Backward), false);
+    let request = named(options).unwrap().request(Some(RateMethod::Backward), false);
     let model = fitted(vec![record(150, "r")], &request);
     let mut stepper = model.stepper();
     stepper.step(&[0.1], 0.0, None).unwrap();

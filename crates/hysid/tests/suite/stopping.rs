@@ -34,8 +34,7 @@ fn noisy(rows: usize, records: usize) -> Dataset {
 }
 
 fn request(options: serde_json::Value) -> FitSpec {
-    let serde_json::Value::Object(options) = options else { panic!("a map") };
-    NamedOptions::of(options).unwrap().request(Some(RateMethod::Central), false)
+    named(options).unwrap().request(Some(RateMethod::Central), false)
 }
 
 fn assert_stops_soon(data: &Dataset, request: &FitSpec) {

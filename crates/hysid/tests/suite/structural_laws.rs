@@ -29,7 +29,7 @@ fn fitted(law: &Classical, x: &[f64], options: &[&str]) -> Model {
 
 fn error(model: &Model, law: &Classical, x: &[f64]) -> f64 {
     let data = Dataset::from_slices(x, &law.run(&samples_of(x))).unwrap();
-    model.evaluate(&data).unwrap().nrmse_std_percent.unwrap()
+    error_percent(model, &data)
 }
 
 /// Every parameter within a share of its value.

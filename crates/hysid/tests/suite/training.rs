@@ -48,7 +48,7 @@ fn quietly(data: &Dataset, options: &FitOptions) -> Fitted {
 }
 
 fn nrmse(fit: &Fitted, data: &Dataset) -> f64 {
-    fit.model.evaluate(data).unwrap().nrmse_std_percent.unwrap()
+    error_percent(&fit.model, data)
 }
 
 /// Parameters and output weights, to the last bit.
