@@ -369,7 +369,7 @@ impl Law for MenegottoPinto {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::test_paths::{self, assert_finite, run};
+    use crate::law::test_paths::{assert_finite, numbers, refined, run};
 
     fn steel() -> MenegottoPinto {
         MenegottoPinto {
@@ -379,22 +379,6 @@ mod tests {
             roundness: 15.0,
             ..MenegottoPinto::steel(200.0, 400.0, 0.015).unwrap()
         }
-    }
-
-    /// Numbers between -1 and 1, the same every time.
-    fn numbers(count: usize) -> Vec<f64> {
-        test_paths::numbers(54_321, count)
-    }
-
-    /// `turning` with so many equal steps on the way to each of its points.
-    fn refined(turning: &[f64], parts: u32) -> Vec<f64> {
-        let mut from = 0.0;
-        let mut path = Vec::new();
-        for &to in turning {
-            path.extend((1..=parts).map(|part| from + (to - from) * f64::from(part) / f64::from(parts)));
-            from = to;
-        }
-        path
     }
 
     /// Steel02 as its reference describes it, without a memory of earlier branches.
@@ -464,7 +448,7 @@ mod tests {
     #[test]
     fn outputs_stay_within_their_bound_however_wild() {
         let extremes = [1e-300, 1e-100, 1e-3, 1.0, 1e6, 1e99];
-        for (index, u) in numbers(300).into_iter().enumerate() {
+        for (index, u) in numbers(54_321, 300).into_iter().enumerate() {
             let pick = |by: usize| extremes[(index / by) % extremes.len()];
             let law = MenegottoPinto {
                 strength: u.signum() * pick(1),
@@ -474,7 +458,7 @@ mod tests {
                 isotropic: 0.8 * u,
                 ..steel()
             };
-            let path: Vec<f64> = numbers(60).iter().map(|v| v * pick(3)).collect();
+            let path: Vec<f64> = numbers(54_321, 60).iter().map(|v| v * pick(3)).collect();
             assert_finite(&law, &path);
         }
     }
@@ -483,7 +467,7 @@ mod tests {
     fn the_branch_that_is_followed_is_the_least_of_all() {
         let law = steel();
         let mut state = law.virgin();
-        for to in refined(&numbers(300).iter().map(|u| 10.0 * u).collect::<Vec<f64>>(), 11) {
+        for to in refined(&numbers(54_321, 300).iter().map(|u| 10.0 * u).collect::<Vec<f64>>(), 11) {
             let before = state.clone();
             let q = law.advance(&mut state, to);
             let direction = state.direction.unwrap();

@@ -414,7 +414,7 @@ impl Law for PeakOriented {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::test_paths::{self, assert_finite, run};
+    use crate::law::test_paths::{assert_finite, numbers, refined, run};
 
     fn member() -> PeakOriented {
         PeakOriented {
@@ -440,11 +440,6 @@ mod tests {
                 pinching_growth: 0.5,
             }),
         }
-    }
-
-    /// Numbers between -1 and 1, the same every time.
-    fn numbers(count: usize) -> Vec<f64> {
-        test_paths::numbers(12_345, count)
     }
 
     #[test]
@@ -555,17 +550,10 @@ mod tests {
     fn rows_between_turning_points_change_nothing() {
         let law = member();
         let turning: Vec<f64> =
-            numbers(200).iter().enumerate().map(|(k, u)| u * 0.2 * (k as f64 + 5.0)).collect();
-        let coarse = run(&law, &turning);
-        let mut fine = Vec::new();
-        let mut from = 0.0;
-        for &to in &turning {
-            fine.extend((1..=9).map(|part| from + (to - from) * f64::from(part) / 9.0));
-            from = to;
-        }
-        let refined = run(&law, &fine);
+            numbers(12_345, 200).iter().enumerate().map(|(k, u)| u * 0.2 * (k as f64 + 5.0)).collect();
+        let (coarse, fine) = (run(&law, &turning), run(&law, &refined(&turning, 9)));
         for (index, force) in coarse.iter().enumerate() {
-            assert!((force - refined[9 * index + 8]).abs() < 1e-9, "turning point {index}");
+            assert!((force - fine[9 * index + 8]).abs() < 1e-9, "turning point {index}");
         }
     }
 
@@ -580,7 +568,7 @@ mod tests {
     #[test]
     fn outputs_stay_within_their_bound_however_wild() {
         let extremes = [1e-300, 1e-100, 1e-3, 1.0, 1e6, 1e99];
-        for (index, u) in numbers(300).into_iter().enumerate() {
+        for (index, u) in numbers(12_345, 300).into_iter().enumerate() {
             let pick = |by: usize| extremes[(index / by) % extremes.len()];
             let law = PeakOriented {
                 up: Side { strength: -pick(1), yield_displacement: pick(6) },
@@ -590,7 +578,7 @@ mod tests {
                 pinch_weight: if u > 0.3 { 30.0 } else { 0.1 },
                 ..member()
             };
-            let path: Vec<f64> = numbers(60).iter().map(|v| v * pick(3)).collect();
+            let path: Vec<f64> = numbers(12_345, 60).iter().map(|v| v * pick(3)).collect();
             assert_finite(&law, &path);
         }
     }

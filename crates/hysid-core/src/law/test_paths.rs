@@ -15,6 +15,17 @@ pub(super) fn numbers(seed: u64, count: usize) -> Vec<f64> {
     (0..count).map(|_| next()).collect()
 }
 
+/// A path from 0 through turning points, with so many equal steps to each of them.
+pub(super) fn refined(turning: &[f64], parts: u32) -> Vec<f64> {
+    let mut from = 0.0;
+    let mut path = Vec::new();
+    for &to in turning {
+        path.extend((1..=parts).map(|part| from + (to - from) * f64::from(part) / f64::from(parts)));
+        from = to;
+    }
+    path
+}
+
 /// The outputs along a path without rate and time, from the virgin state.
 pub(super) fn run<L: Law>(law: &L, path: &[f64]) -> Vec<f64> {
     series::run(law, &samples_of(path))
