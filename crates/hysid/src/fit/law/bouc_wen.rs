@@ -5,7 +5,7 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
+use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
 use crate::law::Sample;
 use crate::law::bouc_wen::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
 use crate::law::series::Series;
@@ -29,8 +29,7 @@ impl SearchedLaw for BoucWen {
 
 pub(crate) struct Elements {
     degradation: bool,
-    variables: Vec<Variable>,
-    non_negative: Vec<bool>,
+    unknowns: Unknowns,
 }
 
 impl Elements {
@@ -54,7 +53,8 @@ impl Elements {
             ]);
         }
         let columns = if options.rate.is_some() { 4 } else { 3 };
-        Self { degradation: options.degradation, variables, non_negative: vec![false; columns] }
+        let unknowns = Unknowns { variables, non_negative: vec![false; columns] };
+        Self { degradation: options.degradation, unknowns }
     }
 
     /// The law of unit stiffness.
@@ -95,12 +95,8 @@ impl LawFamily for Elements {
 }
 
 impl Family for Elements {
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn non_negative(&self) -> &[bool] {
-        &self.non_negative
+    fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
     }
 
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {

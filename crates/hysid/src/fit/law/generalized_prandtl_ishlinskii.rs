@@ -9,7 +9,7 @@ use crate::data::record::Dataset;
 use crate::error::{OptionError, Result};
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
+use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
 use crate::law::generalized_prandtl_ishlinskii::{
     Envelope, GeneralizedPrandtlIshlinskii, PlayWeights, follow,
 };
@@ -45,8 +45,7 @@ pub(crate) struct Plays {
     sign: f64,
     operators: usize,
     free_weights: bool,
-    variables: Vec<Variable>,
-    non_negative: Vec<bool>,
+    unknowns: Unknowns,
 }
 
 impl Plays {
@@ -78,7 +77,8 @@ impl Plays {
             variables.push(Variable::linear(-2.0, 12.0));
             non_negative.push(true);
         }
-        Self { low, high, sign, operators, free_weights, variables, non_negative }
+        let unknowns = Unknowns { variables, non_negative };
+        Self { low, high, sign, operators, free_weights, unknowns }
     }
 
     /// The envelope with the value `from` at the lower end of the range, rising by `rise` to the upper end.
@@ -145,19 +145,15 @@ impl LawFamily for Plays {
 }
 
 impl Family for Plays {
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn non_negative(&self) -> &[bool] {
-        &self.non_negative
+    fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
     }
 
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
         let law = self.law(parameters);
         let weights = law.weights.values(law.spacing, 0);
         let mut plays = vec![law.initial; self.operators];
-        let mut row = vec![1.0; self.non_negative.len()];
+        let mut row = vec![1.0; self.unknowns.non_negative.len()];
         for (sample, y) in series.samples.iter().zip(&series.output) {
             if columns.is_over(8 * plays.len()) {
                 return;

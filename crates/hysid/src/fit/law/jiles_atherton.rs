@@ -8,7 +8,7 @@ use crate::error::{Channel, DataProblem, Error, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
-    Columns, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+    Columns, Family, Identified, Memory, SearchObserver, Unknowns, Variable, search, thinned,
 };
 use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
 use crate::law::series::Series;
@@ -62,19 +62,19 @@ fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Materials, Vec<S
 
 struct Materials {
     form: JilesAthertonForm,
-    variables: [Variable; 4],
+    unknowns: Unknowns,
 }
 
 impl Materials {
     fn new(largest: f64, form: JilesAthertonForm) -> Self {
-        let variables = [
+        let variables = vec![
             Variable::logarithmic(0.02 * largest, 3.0 * largest),
             Variable::logarithmic(0.02 * largest, 3.0 * largest),
             // α M_s as a share of 3a.
             Variable::linear(0.0, 0.98),
             Variable::linear(C_BOUNDS.0, C_BOUNDS.1),
         ];
-        Self { form, variables }
+        Self { form, unknowns: Unknowns { variables, non_negative: vec![false, false, true] } }
     }
 
     /// The law of unit saturation.
@@ -100,12 +100,8 @@ impl LawFamily for Materials {
 }
 
 impl Family for Materials {
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn non_negative(&self) -> &[bool] {
-        &[false, false, true]
+    fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
     }
 
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {

@@ -8,7 +8,7 @@
 //! follow by least squares. `ŷ_t` is the free run at the scored rows of the fit and `p_i` are the parameters of the law.
 
 use crate::data::record::Thinning;
-use crate::fit::law::search::{Columns, Family, measured};
+use crate::fit::law::search::{Columns, Family, Unknowns, measured};
 use crate::law::Law;
 use crate::law::series::Series;
 use crate::optimise::parallel;
@@ -71,20 +71,19 @@ pub(crate) trait LawFamily: Family {
 
 /// A law that was found by a search over a family, about the result.
 pub(crate) fn of_search<F: LawFamily>(family: &F, series: &[Series], law: &F::Law) -> Linearised {
-    let variables = family.variables();
+    let Unknowns { variables, non_negative } = family.unknowns();
     let u: Vec<f64> =
         variables.iter().zip(family.searched(law)).map(|(variable, value)| variable.place(value)).collect();
     let value = |u: &[f64]| -> Vec<f64> { variables.iter().zip(u).map(|(v, &u)| v.value(u)).collect() };
     let target = measured(series);
-    let count = family.non_negative().len();
     let columns = |u: &[f64]| {
         let searched = value(u);
-        let mut columns = Columns::new(count, target.len(), StopCheck::never());
+        let mut columns = Columns::new(non_negative.len(), target.len(), StopCheck::never());
         series.iter().for_each(|series| family.features(&searched, series, &mut columns));
         columns
     };
     let mut here = columns(&u);
-    let projection = here.project(&target, family.non_negative());
+    let projection = here.project(&target, non_negative);
     let weights = projection.weights;
     let run = |u: &[f64]| columns(u).sum(&weights);
     let at_rest = here.sum(&weights);
@@ -104,7 +103,7 @@ pub(crate) fn of_search<F: LawFamily>(family: &F, series: &[Series], law: &F::La
         }
     };
     let mut found: Vec<FitVariable> = parallel::numbered(u.len(), of_search);
-    let of_weights = here.into_columns().into_iter().zip(&weights).zip(family.non_negative());
+    let of_weights = here.into_columns().into_iter().zip(&weights).zip(non_negative);
     found.extend(
         of_weights.map(|((column, &weight), &bounded)| FitVariable::weight(column, bounded && weight == 0.0)),
     );

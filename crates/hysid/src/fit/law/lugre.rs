@@ -5,7 +5,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
+use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
 use crate::law::Law;
 use crate::law::lugre::{Lugre, STRIBECK_BOUNDS};
 use crate::law::series::Series;
@@ -26,19 +26,19 @@ impl SearchedLaw for Lugre {
 }
 
 pub(crate) struct Contacts {
-    variables: [Variable; 3],
+    unknowns: Unknowns,
 }
 
 impl Contacts {
     fn new(range: f64, series: &[Series]) -> Self {
         let rates = series.iter().flat_map(|series| &series.samples).map(|sample| sample.rate.abs());
         let fastest = rates.fold(f64::MIN_POSITIVE, f64::max);
-        let variables = [
+        let variables = vec![
             Variable::logarithmic(1e-4 * range, range),
             Variable::linear(STRIBECK_BOUNDS.0, 3.0),
             Variable::logarithmic(1e-3 * fastest, 2.0 * fastest),
         ];
-        Self { variables }
+        Self { unknowns: Unknowns { variables, non_negative: vec![false; 5] } }
     }
 
     /// The law of unit friction.
@@ -66,12 +66,8 @@ impl LawFamily for Contacts {
 }
 
 impl Family for Contacts {
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn non_negative(&self) -> &[bool] {
-        &[false; 5]
+    fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
     }
 
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {

@@ -5,7 +5,7 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
+use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
 use crate::law::Law;
 use crate::law::menegotto_pinto::{Downwards, LOSS_BOUNDS, MenegottoPinto};
 use crate::law::series::Series;
@@ -29,7 +29,7 @@ impl SearchedLaw for MenegottoPinto {
 pub(crate) struct Steels {
     range: f64,
     asymmetric: bool,
-    variables: Vec<Variable>,
+    unknowns: Unknowns,
 }
 
 impl Steels {
@@ -45,7 +45,7 @@ impl Steels {
         if asymmetric {
             variables.extend([Variable::logarithmic(0.5, 2.0), isotropic]);
         }
-        Self { range, asymmetric, variables }
+        Self { range, asymmetric, unknowns: Unknowns { variables, non_negative: vec![false; 3] } }
     }
 
     /// The law of unit strength.
@@ -82,12 +82,8 @@ impl LawFamily for Steels {
 }
 
 impl Family for Steels {
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn non_negative(&self) -> &[bool] {
-        &[false; 3]
+    fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
     }
 
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {

@@ -5,7 +5,7 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
+use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
 use crate::law::Law;
 use crate::law::peak_oriented::{Degradation, PINCH_BOUNDS, PeakOriented, Side};
 use crate::law::series::{Series, work};
@@ -30,8 +30,7 @@ pub(crate) struct Members {
     range: f64,
     asymmetric: bool,
     degradation: bool,
-    variables: Vec<Variable>,
-    non_negative: Vec<bool>,
+    unknowns: Unknowns,
 }
 
 /// Searched parameters of the shape: `x+`, `n`, `h`, `u`, `c`, `τ_b`, `φ_b`, `w` and `k x+/F+`.
@@ -76,7 +75,8 @@ impl Members {
             ]);
         }
         let features = if asymmetric { 3 } else { 2 };
-        Self { range, asymmetric, degradation, variables, non_negative: vec![false; features] }
+        let unknowns = Unknowns { variables, non_negative: vec![false; features] };
+        Self { range, asymmetric, degradation, unknowns }
     }
 
     /// The law of unit strength.
@@ -132,12 +132,8 @@ impl LawFamily for Members {
 }
 
 impl Family for Members {
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn non_negative(&self) -> &[bool] {
-        &self.non_negative
+    fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
     }
 
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {

@@ -5,7 +5,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Variable, thinned};
+use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
 use crate::law::Law;
 use crate::law::play_weights::MOST_PLAYS;
 use crate::law::rate_dependent_prandtl_ishlinskii::{
@@ -38,8 +38,7 @@ pub(crate) struct Plays {
     operators: usize,
     logarithmic: bool,
     free_weights: bool,
-    variables: Vec<Variable>,
-    non_negative: Vec<bool>,
+    unknowns: Unknowns,
 }
 
 impl Plays {
@@ -72,7 +71,8 @@ impl Plays {
             variables.push(Variable::linear(-3.0, 12.0));
             non_negative.push(false);
         }
-        Self { input, rate, operators, logarithmic, free_weights, variables, non_negative }
+        let unknowns = Unknowns { variables, non_negative };
+        Self { input, rate, operators, logarithmic, free_weights, unknowns }
     }
 
     /// The law of unit weights.
@@ -130,19 +130,15 @@ impl LawFamily for Plays {
 }
 
 impl Family for Plays {
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn non_negative(&self) -> &[bool] {
-        &self.non_negative
+    fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
     }
 
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
         let law = self.law(parameters);
         let weights = law.weights.values(law.spacing, 1);
         let mut plays = vec![0.0; self.operators];
-        let mut row = vec![1.0; self.non_negative.len()];
+        let mut row = vec![1.0; self.unknowns.non_negative.len()];
         for (&sample, y) in series.samples.iter().zip(&series.output) {
             if columns.is_over(8 * plays.len()) {
                 return;

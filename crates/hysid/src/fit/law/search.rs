@@ -94,13 +94,16 @@ impl Variable {
     }
 }
 
+/// What is searched, and whether the weight of each feature must not be negative.
+pub(crate) struct Unknowns {
+    pub variables: Vec<Variable>,
+    pub non_negative: Vec<bool>,
+}
+
 /// A family of laws, in the form of the search. The search knows it by reference only, so that the compiler makes one
 /// search for all families: a call costs nothing beside the run over a record that it asks for.
 pub(crate) trait Family: Sync {
-    fn variables(&self) -> &[Variable];
-
-    /// Whether the weight of each feature must not be negative; its length is the number of features.
-    fn non_negative(&self) -> &[bool];
+    fn unknowns(&self) -> &Unknowns;
 
     /// Appends the features of every row with an output; ends early once [`Columns::is_over`].
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>);
@@ -191,7 +194,7 @@ pub(super) struct Objective<'a> {
 
 impl Objective<'_> {
     fn parameters(&self, u: &[f64]) -> Vec<f64> {
-        self.family.variables().iter().zip(u).map(|(variable, &u)| variable.value(u)).collect()
+        self.family.unknowns().variables.iter().zip(u).map(|(variable, &u)| variable.value(u)).collect()
     }
 
     fn value(&self, u: &[f64]) -> Projection {
@@ -199,11 +202,12 @@ impl Objective<'_> {
             return Projection::unfinished();
         }
         let parameters = self.parameters(u);
-        let mut columns = Columns::new(self.family.non_negative().len(), self.target.len(), self.stop);
+        let non_negative = &self.family.unknowns().non_negative;
+        let mut columns = Columns::new(non_negative.len(), self.target.len(), self.stop);
         for series in self.series {
             self.family.features(&parameters, series, &mut columns);
         }
-        columns.project(&self.target, self.family.non_negative())
+        columns.project(&self.target, non_negative)
     }
 
     fn nrmse_percent(&self, projection: &Projection) -> f64 {
@@ -282,7 +286,7 @@ fn search_parameters(
 
 /// The requested point, or the best of many that lie apart: suggested and random ones.
 fn beginnings(objective: &Objective<'_>, options: &ClassicalOptions) -> Vec<Descent> {
-    let variables = objective.family.variables();
+    let variables = &objective.family.unknowns().variables;
     let starts = options.starts();
     if options.near.len() == variables.len() {
         let places = variables.iter().zip(&options.near).map(|(variable, &value)| variable.place(value));
