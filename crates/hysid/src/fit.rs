@@ -16,7 +16,7 @@ use crate::data::record::Dataset;
 use crate::error::{Channel, DataProblem, Result};
 use crate::fit::initial_state::Wanted;
 use crate::fit::law::search::SearchProgress;
-use crate::fit::network::random_stops::{RandomStopsOptions, fit_random_stops_until};
+use crate::fit::network::random_stops::fit_random_stops;
 use crate::fit::network::{Fitted, Observer, Present, Progress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::model::history::{HistoryPoint, Phase, Run};
@@ -68,21 +68,14 @@ fn check_warm_up(data: &Dataset, request: &FitSpec) -> Result<()> {
 }
 
 fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
-    let wanted = RandomStopsOptions {
-        stops: options.operators(),
-        hidden: options.hidden,
-        rate: options.rate,
-        deterioration: options.deterioration,
-        seed: options.seed,
-    };
     let begun = begun(data, options, Origin::OfData, observer)?;
     let data = begun.as_ref();
     let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
     let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
     let stop = StopCheck::new(&is_to_stop);
-    let wanted = RandomStopsOptions { rate: seen.rate, ..wanted };
-    let found = fit_random_stops_until(&seen.data, &wanted, stop)?;
+    let wanted = ClassicalOptions { rate: seen.rate, ..options.clone() };
+    let found = fit_random_stops(&seen.data, &wanted, stop)?;
     let body = Predictor::Network { network: found.network, scaling: found.scaling };
     finished(data, options, &seen, body, 1, observer.termination(Termination::Converged), Vec::new())
 }

@@ -11,11 +11,10 @@ use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::network::random_stops::RandomStopsOptions;
 use crate::fit::network::{Observer, Progress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::model::input_transform::origin;
-use crate::options::classical::ClassicalModel;
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::stop_check::StopCheck;
 use crate::validation::Fold;
 
@@ -23,8 +22,10 @@ use crate::validation::Fold;
 const MOST_ROWS: usize = 6000;
 
 /// A network that takes a moment to fit.
-pub(crate) const QUICK: RandomStopsOptions =
-    RandomStopsOptions { stops: 60, hidden: Some(0), rate: None, deterioration: Some(true), seed: 1 };
+pub(crate) fn quick() -> ClassicalOptions {
+    let (operators, hidden, deterioration) = (Some(60), Some(0), Some(true));
+    ClassicalOptions { operators, hidden, deterioration, ..ClassicalOptions::of(ClassicalModel::RandomStops) }
+}
 
 pub(crate) const QUICK_INTERVALS: usize = search::INTERVALS;
 

@@ -2,7 +2,7 @@
 //! and against the memory laws they must obey or break.
 
 use crate::scaffold::*;
-use hysid::fit::network::random_stops::{RandomStopsOptions, fit_random_stops};
+use hysid::fit::network::random_stops::fit_random_stops;
 use hysid::law::masing::{Masing, MasingParts};
 use hysid::law::modified_prandtl_ishlinskii::{DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii};
 use hysid::law::prandtl_ishlinskii::PrandtlIshlinskii;
@@ -319,19 +319,21 @@ fn random_stops_are_a_network() {
     let y: Vec<f64> =
         wearing(0.4).iter().zip(wearing(1.1)).zip(&x).map(|((a, b), x)| 3.0 * a + b + 0.2 * x).collect();
     let data = Dataset::from_slices(&x, &y).unwrap();
-    let options = RandomStopsOptions { stops: 80, hidden: Some(10), ..Default::default() };
-    let fitted = fit_random_stops(&data, &options).unwrap();
+    let options =
+        ClassicalOptions { operators: Some(80), hidden: Some(10), ..of(ClassicalModel::RandomStops) };
+    let fit = |options: &ClassicalOptions| fit_random_stops(&data, options, StopCheck::never());
+    let fitted = fit(&options).unwrap();
     let drive = fitted.scaling.drive(&data.records()[0], fitted.network.architecture(), None).unwrap();
     let mut found = vec![0.0; x.len()];
     fitted.network.simulator().run(&[&drive.channels[0]], &[], &mut found);
     let found: Vec<f64> = found.iter().map(|y| fitted.scaling.output(*y)).collect();
     let error = nrmse(&y, &found);
     assert!(error < 5.0, "{error} %");
-    assert_eq!(fit_random_stops(&data, &options).unwrap(), fitted);
-    let other = fit_random_stops(&data, &RandomStopsOptions { seed: 2, ..options.clone() }).unwrap();
+    assert_eq!(fit(&options).unwrap(), fitted);
+    let other = fit(&ClassicalOptions { seed: 2, ..options.clone() }).unwrap();
     assert_ne!(other.network, fitted.network);
-    let none = RandomStopsOptions { stops: 0, ..options };
-    assert!(matches!(fit_random_stops(&data, &none), Err(Error::Parts(_))));
+    let none = ClassicalOptions { operators: Some(0), ..options };
+    assert!(matches!(fit(&none), Err(Error::Parts(_))));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::diagnosis::resonance::{Compared, Resonance};
-use crate::fit::initial_state::QUICK;
+use crate::fit::initial_state;
 use crate::law::duhem_nn::MOST_NEURONS;
 use crate::law::hysteretic_dynamics::MOST_NEURONS as MOST_NEURONS_OF_ELEMENT;
 use crate::network::{Family, Sizes};
@@ -243,13 +243,12 @@ impl Candidate {
 }
 
 pub(super) fn quick(options: &AutoOptions) -> Candidate {
+    let quick = initial_state::quick();
     let request = FitSpec::Classical(ClassicalOptions {
         rate: options.rate,
-        deterioration: options.deterioration.or(QUICK.deterioration),
-        operators: Some(QUICK.stops),
-        hidden: QUICK.hidden,
+        deterioration: options.deterioration.or(quick.deterioration),
         seed: options.seed,
-        ..ClassicalOptions::of(ClassicalModel::RandomStops)
+        ..quick
     });
     Candidate::alone(&request)
 }

@@ -16,16 +16,17 @@ use crate::data::initial_state::lead_ins_tried;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
-use crate::fit::initial_state::QUICK;
+use crate::fit::initial_state::quick;
 use crate::fit::law::linear::{Gatherer, Sums};
 use crate::fit::law::preisach::Problem;
-use crate::fit::network::random_stops::{Drawn, RandomStopsOptions};
+use crate::fit::network::random_stops::Drawn;
 use crate::law::facts::Origin;
 use crate::law::series::Series;
 use crate::model::input_transform::Transformed;
 use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::Penalty;
 use crate::optimise::parallel;
+use crate::options::classical::ClassicalOptions;
 use crate::options::input_options::InputOptions;
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
@@ -96,7 +97,7 @@ struct Features {
 impl Features {
     fn of(data: &Dataset, rate: Option<RateMethod>, seed: u64) -> Result<Self> {
         let seen = Transformed::of(data, &InputOptions::default(), rate, Origin::OfData)?;
-        let options = RandomStopsOptions { rate: seen.rate, seed, stops: STOPS, ..QUICK };
+        let options = ClassicalOptions { rate: seen.rate, seed, operators: Some(STOPS), ..quick() };
         let drawn = Drawn::of(&seen.data, &options)?;
         let relays = Problem::of(&Series::all(&seen.data, None)?, seen.data.input_range(0), INTERVALS);
         let features = drawn.features() + relays.features() - 1;

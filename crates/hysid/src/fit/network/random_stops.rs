@@ -14,48 +14,18 @@
 //! after Farrokh, Ghasemi, Noori, Wang and Sarhosis (2022), with a ridge instead of their support vector
 //! machine.
 
-use serde::{Deserialize, Serialize};
-
 use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
-use crate::fit::law::linear::{FoldSums, Sums, logarithmic, lowest};
+use crate::fit::law::linear::{FoldSums, Sums, logarithmic};
 use crate::fit::network::start::{self, Capacities};
 use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Columns, Drive, GramOverRecords, Layout, Network, RowsOverRecords};
-use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
-use crate::options::classical::{ClassicalModel, Sign};
+use crate::optimise::non_negative::Penalty;
+use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
-
-/// Options of random stops.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RandomStopsOptions {
-    /// Stops, 1 to 1000.
-    pub stops: usize,
-    /// Random tanh neurons beside the direct path, 0 to 1000; `None` for 0 or 100, chosen by cross-validation.
-    pub hidden: Option<usize>,
-    /// Method of the rate of the first input; `None` for no rate.
-    pub rate: Option<RateMethod>,
-    /// Whether the stops deteriorate; chosen by cross-validation if `None`.
-    pub deterioration: Option<bool>,
-    /// Seed of the random stops.
-    pub seed: u64,
-}
-
-impl Default for RandomStopsOptions {
-    fn default() -> Self {
-        Self {
-            stops: ClassicalModel::RandomStops.facts().defaults.operators,
-            hidden: None,
-            rate: None,
-            deterioration: None,
-            seed: 1,
-        }
-    }
-}
 
 /// A fitted network of random stops.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,8 +34,6 @@ pub struct RandomStops {
     pub network: Network,
     /// Scale factors between the user's units and the network's.
     pub scaling: Scaling,
-    /// The penalty `λ` that cross-validation chose.
-    pub ridge: f64,
     /// Root mean square error on held-out rows, in percent of the standard deviation: geometric mean over the folds.
     pub validation_nrmse_percent: f64,
 }
@@ -76,18 +44,14 @@ pub(crate) const HIDDEN: usize = 100;
 /// From stops that are soon dead to such as hardly wear. Designed.
 const CAPACITIES: Capacities = Capacities { typical: 300.0, spread: 2.0 };
 
-/// Fits random stops.
+/// Fits random stops. Cross-validation chooses whether they deteriorate, and no tanh neurons or 100, where the options
+/// do not say. Asked to stop, it is the best architecture so far, its penalty chosen by fewer folds.
 ///
 /// # Errors
 /// Data from which no model can be identified, invalid options, a rate that cannot be computed.
-pub fn fit_random_stops(data: &Dataset, options: &RandomStopsOptions) -> Result<RandomStops> {
-    fit_random_stops_until(data, options, StopCheck::never())
-}
-
-/// As [`fit_random_stops`]; asked to stop, the best architecture so far, its penalty chosen by fewer folds.
-pub(crate) fn fit_random_stops_until(
+pub fn fit_random_stops(
     data: &Dataset,
-    options: &RandomStopsOptions,
+    options: &ClassicalOptions,
     stop: StopCheck<'_>,
 ) -> Result<RandomStops> {
     data.check_identifiable(FEWEST_ROWS)?;
@@ -123,7 +87,7 @@ pub(crate) struct Drawn {
 
 impl Drawn {
     /// The stops for these data, with the first of the architectures that the options leave open.
-    pub fn of(data: &Dataset, options: &RandomStopsOptions) -> Result<Self> {
+    pub fn of(data: &Dataset, options: &ClassicalOptions) -> Result<Self> {
         let (deterioration, hidden) = (options.deterioration.unwrap_or(false), options.hidden.unwrap_or(0));
         let architecture = architecture(data, options, deterioration, hidden)?;
         let parameters = drawn(&architecture, options.seed);
@@ -154,14 +118,14 @@ impl Drawn {
 
 fn architecture(
     data: &Dataset,
-    options: &RandomStopsOptions,
+    options: &ClassicalOptions,
     deterioration: bool,
     hidden: usize,
 ) -> Result<Architecture> {
     let architecture = Architecture {
         inputs: data.names().inputs.len(),
         rate: options.rate.is_some(),
-        stops: options.stops,
+        stops: options.operators(),
         deterioration,
         linear: true,
         relaxation: 0,
@@ -184,7 +148,7 @@ fn drawn(architecture: &Architecture, seed: u64) -> Vec<f64> {
 
 fn fit_readout(
     data: &Dataset,
-    options: &RandomStopsOptions,
+    options: &ClassicalOptions,
     scaling: &Scaling,
     architecture: Architecture,
     stop: StopCheck<'_>,
@@ -204,27 +168,12 @@ fn fit_readout(
 
     let features = architecture.output_weights();
     let penalty = Penalty::ridge((0..features).map(|i| f64::from(u8::from(i > 0))));
-    let ridges = logarithmic(1e-9, 1e-1, 17);
-    let solve = |sums: &Quadratic, ridge: f64| {
-        let mut penalised = sums.clone();
-        penalised.penalise(&penalty, ridge);
-        penalised.minimum(stop)
-    };
-    let scores = sums.scores(|rest| ridges.iter().map(|&ridge| solve(rest, ridge)).collect(), stop);
-    // Asked to stop before any penalty was judged, one in the middle is taken.
-    let scores = scores.unwrap_or_else(|| {
-        let middle = ridges.len() / 2;
-        (0..ridges.len()).map(|place| if place == middle { 0.0 } else { f64::INFINITY }).collect()
-    });
-    let chosen = lowest(&scores);
-    let mut penalised = sums.into_total().quadratic();
-    penalised.penalise(&penalty, ridges[chosen]);
-    let output = penalised.last_minimum(&Bounds::new(Sign::Any, 0..0, features), stop)?;
+    let choice = sums.choose(&penalty, &logarithmic(1e-9, 1e-1, 17), Some(Sign::Any), &(0..0), stop);
+    let output = sums.weights(&penalty, choice, 0..0, stop)?;
     Ok(RandomStops {
         network: Network::new(architecture, parameters, output)?,
         scaling: scaling.clone(),
-        ridge: ridges[chosen],
-        validation_nrmse_percent: 100.0 * (0.5 * scores[chosen]).exp(),
+        validation_nrmse_percent: 100.0 * (0.5 * choice.score).exp(),
     })
 }
 
