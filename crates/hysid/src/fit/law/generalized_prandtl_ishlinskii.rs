@@ -6,8 +6,9 @@
 //! and 1 at the ends of the input range.
 
 use crate::data::record::Dataset;
-use crate::error::{OptionError, Result};
+use crate::error::Result;
 use crate::fit::law::SearchedLaw;
+use crate::fit::law::grids::check_count;
 use crate::fit::law::linearised::LawFamily;
 use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
 use crate::law::generalized_prandtl_ishlinskii::{
@@ -24,12 +25,7 @@ impl SearchedLaw for GeneralizedPrandtlIshlinskii {
     type Family = Plays;
 
     fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Plays, Vec<Series>)> {
-        let operators = options.operators();
-        if operators == 0 || operators > MOST_PLAYS {
-            return Err(
-                OptionError::value("operators", operators, format!("choose 1 to {MOST_PLAYS}")).into()
-            );
-        }
+        check_count("operators", options.operators(), MOST_PLAYS)?;
         let series = Series::all(data, None)?;
         let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };
         let lags = sign * work(&series) < 0.0;

@@ -6,10 +6,16 @@ use crate::law::thresholds::check_thresholds;
 
 /// Thresholds `r_i = X (i/(n+1))^e` with the largest input `X` (theory.md (7.5)); an error for none or more than 1000.
 fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
-    if !(1..=MOST_OPERATORS).contains(&count) {
-        return Err(OptionError::value("operators", count, format!("choose 1 to {MOST_OPERATORS}")).into());
-    }
+    check_count("operators", count, MOST_OPERATORS)?;
     Ok((1..=count).map(|i| largest * (i as f64 / (count + 1) as f64).powf(exponent)).collect())
+}
+
+/// Rejects no operators and more than so many; also those of another option.
+pub(crate) fn check_count(option: &'static str, count: usize, most: usize) -> Result<()> {
+    match (1..=most).contains(&count) {
+        true => Ok(()),
+        false => Err(OptionError::value(option, count, format!("choose 1 to {most}")).into()),
+    }
 }
 
 /// Exponents that thresholds are spread with: `r_i ∝ (i/n)^exponent`. Designed.

@@ -10,7 +10,7 @@
 //! trivial solution. Step 1 minimizes the error before the dead zones, step 2 that of the output.
 
 use crate::data::record::Dataset;
-use crate::error::{Error, OptionError, Result};
+use crate::error::{Error, Result};
 use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
 use crate::fit::law::linearised::{FitVariable, Linearised, WeightRows, in_stretches, unit_gradient};
 use crate::fit::law::search::{Identified, SearchObserver};
@@ -30,6 +30,7 @@ use crate::optimise::parallel;
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
+
 const MOST_DEAD_ZONES: usize = 100;
 
 /// Smallest slope of the dead zones, where that of a straight line through the data is about 1.
@@ -51,14 +52,7 @@ impl Identify for ModifiedPrandtlIshlinskii {
         let rows = TrainingRows::of(data)?;
         let scaling = &rows.scaling;
         let dead_zones = options.dead_zones();
-        if !(1..=MOST_DEAD_ZONES).contains(&dead_zones) {
-            return Err(OptionError::value(
-                "dead_zones",
-                dead_zones,
-                format!("choose 1 to {MOST_DEAD_ZONES}"),
-            )
-            .into());
-        }
+        grids::check_count("dead_zones", dead_zones, MOST_DEAD_ZONES)?;
         options.thresholds.as_deref().map_or(Ok(()), check_thresholds)?;
         let given: Option<Vec<f64>> =
             options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
@@ -184,6 +178,15 @@ impl Problem {
         Ok(Self { drives, targets, fold_of, folds: folds.clone(), dead_zones })
     }
 
+    /// Thresholds of the dead zones on both sides of 0, evenly spaced up to the ends of a range and in order.
+    fn spread(&self, low: f64, high: f64) -> Vec<f64> {
+        let count = self.dead_zones;
+        let side = |end: f64| (1..=count).map(move |j| end * j as f64 / (count + 1) as f64);
+        let mut all: Vec<f64> = side(low).chain(side(high)).collect();
+        all.sort_by(f64::total_cmp);
+        all
+    }
+
     /// Ridge on the plays among `count` parameters.
     fn penalty(&self, count: usize, curve: std::ops::Range<usize>) -> Penalty {
         let plays = 2..self.drives[0].len();
@@ -244,10 +247,8 @@ impl Problem {
         };
         let (low, high) = range(&mut self.targets.iter().copied());
         // The mean of the scaled output is 0, so that 0 lies within.
-        let side =
-            |end: f64| (1..=self.dead_zones).map(move |j| end * j as f64 / (self.dead_zones + 1) as f64);
-        let mut inner: Vec<f64> = side(low).chain(side(high)).filter(|r| *r != 0.0).collect();
-        inner.sort_by(f64::total_cmp);
+        let mut inner = self.spread(low, high);
+        inner.retain(|r| *r != 0.0);
         inner.dedup();
         let knots = [&[low], inner.as_slice(), &[high]].concat();
         let first = self.drives[0].len();
@@ -289,16 +290,9 @@ impl Problem {
             knots[k] + (at - z[k]) * (knots[k + 1] - knots[k]) / (z[k + 1] - z[k])
         };
         // Evenly spaced thresholds in place of the images of the knots.
-        let thresholds: Vec<f64> = {
-            let (low, high) = (z[0].min(-1e-3), z[z.len() - 1].max(1e-3));
-            let side =
-                |end: f64| (1..=self.dead_zones).map(move |j| end * j as f64 / (self.dead_zones + 1) as f64);
-            let mut all: Vec<f64> = side(low).chain(side(high)).collect();
-            all.sort_by(f64::total_cmp);
-            all
-        };
-        let ends = [&[z[0].min(-1e-3)], thresholds.as_slice(), &[z[z.len() - 1].max(1e-3)]].concat();
-        let mut bends: Vec<f64> = ends.clone();
+        let (low, high) = (z[0].min(-1e-3), z[z.len() - 1].max(1e-3));
+        let thresholds = self.spread(low, high);
+        let mut bends = [&[low], thresholds.as_slice(), &[high]].concat();
         // The piece around 0 lies between the innermost thresholds.
         bends.dedup();
         let slopes = bends

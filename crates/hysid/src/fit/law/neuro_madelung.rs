@@ -15,8 +15,9 @@ use std::ops::ControlFlow;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
-use crate::error::{Error, OptionError, Result};
+use crate::error::{Error, Result};
 use crate::fit::law::Identify;
+use crate::fit::law::grids::check_count;
 use crate::fit::law::search::{
     Identified, LawSoFar, Memory, SearchObserver, SearchProgress, check_effort, measured, spread, thinned,
 };
@@ -48,11 +49,7 @@ impl Identify for NeuroMadelung {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let hidden = options.hidden();
-        if hidden == 0 || hidden > MOST_HIDDEN {
-            let needed = format!("choose 1 to {MOST_HIDDEN}");
-            return Err(OptionError::value("hidden", hidden, needed).into());
-        }
+        check_count("hidden", options.hidden(), MOST_HIDDEN)?;
         check_effort(options)?;
         let frame = frame(data, options)?;
         let whole = Task::new(&frame, data, options, stop)?;

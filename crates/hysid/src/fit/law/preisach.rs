@@ -10,8 +10,9 @@
 //! chooses `λ`.
 
 use crate::data::record::Dataset;
-use crate::error::{Error, OptionError, Result};
+use crate::error::{Error, Result};
 use crate::fit::law::Identify;
+use crate::fit::law::grids::check_count;
 use crate::fit::law::linear::{Choice, FoldSums, Gatherer, TrainingRows, logarithmic};
 use crate::fit::law::search::{Identified, SearchObserver};
 use crate::law::preisach::plane::Plane;
@@ -41,11 +42,7 @@ impl Identify for Preisach {
         let rows = TrainingRows::of(data)?;
         let TrainingRows { series, folds, scaling } = &rows;
         let intervals = options.operators();
-        if !(1..=MOST_INTERVALS).contains(&intervals) {
-            return Err(
-                OptionError::value("operators", intervals, format!("choose 1 to {MOST_INTERVALS}")).into()
-            );
-        }
+        check_count("operators", intervals, MOST_INTERVALS)?;
         let density = LineDensity::new(series, data.input_range(0));
         let penalties = logarithmic(1e-9, 1e2, 12);
 

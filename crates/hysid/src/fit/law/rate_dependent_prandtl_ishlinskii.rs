@@ -2,8 +2,9 @@
 //! search, and for each of their values the weights by least squares.
 
 use crate::data::record::Dataset;
-use crate::error::{Error, OptionError, Result};
+use crate::error::{Error, Result};
 use crate::fit::law::SearchedLaw;
+use crate::fit::law::grids::check_count;
 use crate::fit::law::linearised::LawFamily;
 use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
 use crate::law::Law;
@@ -18,12 +19,7 @@ impl SearchedLaw for RateDependentPrandtlIshlinskii {
     type Family = Plays;
 
     fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Plays, Vec<Series>)> {
-        let operators = options.operators();
-        if operators == 0 || operators > MOST_PLAYS {
-            return Err(
-                OptionError::value("operators", operators, format!("choose 1 to {MOST_PLAYS}")).into()
-            );
-        }
+        check_count("operators", options.operators(), MOST_PLAYS)?;
         let rate = options.rate.ok_or(Error::RateNeeded(RateDependentPrandtlIshlinskii::FACTS.name))?;
         let series = Series::all(data, Some(rate))?;
         let family = Plays::new(&series, options);
