@@ -284,9 +284,6 @@ macro_rules! any_of {
             }
 
             /// As [`Law::validated`].
-            ///
-            /// # Errors
-            /// As [`Law::validated`].
             pub fn validated(self) -> Result<Self> {
                 Ok(match self {
                     $(Self::$law(law) => Self::$law(law.validated()?),)*

@@ -591,9 +591,6 @@ impl Model {
     }
 
     /// As [`Model::simulate`], from borrowed columns.
-    ///
-    /// # Errors
-    /// As [`Model::simulate`].
     pub fn response(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
         self.check_time(excitation)?;
         Runner::of_model(self).record(excitation)
@@ -699,9 +696,6 @@ impl Model {
 
     /// As [`Model::evaluate`], of the rows after the warm-up only; `None` for a model without a warm-up, and
     /// if no row with an output is left.
-    ///
-    /// # Errors
-    /// As [`Model::evaluate`].
     pub fn evaluate_after_warm_up(&self, data: &Dataset) -> Result<Option<Errors>> {
         behind(data, self.warm_up()).map(|behind| self.evaluate(&behind)).transpose()
     }

@@ -165,9 +165,6 @@ impl<'m> Runner<'m> {
 
     /// The outputs of the next rows: those of the excitation from `first` on. The rows around them that their rates
     /// follow from are there too, unless the record ends.
-    ///
-    /// # Errors
-    /// As [`Runner::record`].
     pub fn rows(
         &mut self,
         excitation: &Excitation<'_>,

@@ -70,7 +70,6 @@ impl DeterioratingStop {
     /// [`Stop`](super::Stop), bit for bit.
     ///
     /// # Errors
-    ///
     /// [`InvalidOperator::Threshold`] unless `r` is finite and greater than 0, [`InvalidOperator::Capacity`]
     /// unless `beta` is greater than 0.
     pub fn new(r: f64, beta: f64) -> Result<Self, InvalidOperator> {

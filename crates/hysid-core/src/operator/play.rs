@@ -53,7 +53,6 @@ impl Play {
     /// 0` it is the identity.
     ///
     /// # Errors
-    ///
     /// [`InvalidOperator::PlayThreshold`] unless `r` is finite and at least 0.
     pub fn new(r: f64) -> Result<Self, InvalidOperator> {
         if r.is_finite() && r >= 0.0 {

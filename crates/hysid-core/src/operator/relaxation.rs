@@ -70,7 +70,6 @@ impl Relaxation {
     /// it is a spring.
     ///
     /// # Errors
-    ///
     /// [`InvalidOperator::RelaxationTime`] unless `tau` is greater than 0.
     pub fn new(tau: f64) -> Result<Self, InvalidOperator> {
         // NaN is not greater than 0 either.
@@ -110,7 +109,6 @@ impl Relaxation {
     /// element is then in the state after the last sample.
     ///
     /// # Errors
-    ///
     /// [`InvalidOperator::Lengths`] if `time` and `x` differ in length; [`InvalidOperator::TimeNotFinite`]
     /// and [`InvalidOperator::TimeDecreases`] with the first row, counted from 0, where `time` is not finite
     /// or decreases. The element is then unchanged.

@@ -54,7 +54,6 @@ impl Relay {
     /// A virgin relay of half-width `r` and centre `s`, both in the unit of `x`.
     ///
     /// # Errors
-    ///
     /// [`InvalidOperator::Threshold`] unless `r` is finite and greater than 0,
     /// [`InvalidOperator::Centre`] unless `s` is finite.
     pub fn new(r: f64, s: f64) -> Result<Self, InvalidOperator> {

@@ -48,7 +48,6 @@ impl Stop {
     /// A virgin stop with threshold `r` in the unit of `x`: the largest magnitude of its output.
     ///
     /// # Errors
-    ///
     /// [`InvalidOperator::Threshold`] unless `r` is finite and greater than 0.
     pub fn new(r: f64) -> Result<Self, InvalidOperator> {
         Ok(Self { r: checked_threshold(r)?, play: 0.0 })

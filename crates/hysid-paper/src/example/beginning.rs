@@ -9,9 +9,6 @@ use hysid::diagnosis::DataIssueKind;
 /// If the diagnosis says that a single record does not begin as a virgin specimen does, it advises to blank the output
 /// of the first cycle. A virgin curve outside all later loops occurs once, and a model that is fitted to it explains it
 /// by something that returns.
-///
-/// # Errors
-/// As the diagnosis.
 pub fn trained_on(data: Dataset) -> Result<(Dataset, usize)> {
     let [record] = data.records() else { return Ok((data, 0)) };
     let is_not_virgin =

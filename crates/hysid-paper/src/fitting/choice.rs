@@ -62,9 +62,6 @@ pub struct Chosen {
 /// lowest mean error on the folds. A single record has one speed, at which the rate tells the direction and no more: it is an
 /// input only with a [clear gain](CLEAR_GAIN). Capacities are part of the paper's network, and left out only with such
 /// a gain.
-///
-/// # Errors
-/// As a fit.
 pub fn choose(
     what: &str,
     data: &Dataset,

@@ -59,9 +59,6 @@ pub trait Identify: Law {
     }
 
     /// As [`Identify::identify`], without a check within a round.
-    ///
-    /// # Errors
-    /// As [`Identify::identify`].
     fn fit(
         data: &Dataset,
         options: &ClassicalOptions,

@@ -25,9 +25,6 @@ impl Stepper<'_> {
     /// input moves: exact to rounding where the output is a straight line or a parabola, otherwise to about nine digits.
     /// At a kink it is that of the branch which continues. Where the model forms the rate from the inputs, the slope
     /// includes what changes with the rate.
-    ///
-    /// # Errors
-    /// As [`Stepper::step`].
     pub fn trial_with_tangent(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<(f64, f64)> {
         self.begin_trial();
         let before = self.committed.as_ref().and_then(Snapshot::last_input);
