@@ -142,6 +142,9 @@ pub struct Parameter {
     pub unit: Dimension,
 }
 
+/// Symbol, meaning, value, bounds and unit.
+type ParameterRow<'s> = (&'s str, &'static str, f64, (f64, f64), Dimension);
+
 impl Parameter {
     /// A parameter from its symbol, meaning, value, bounds and unit.
     pub fn new(
@@ -152,6 +155,11 @@ impl Parameter {
         unit: Dimension,
     ) -> Self {
         Self { symbol: symbol.into(), meaning, value, bounds, unit }
+    }
+
+    pub(crate) fn table<const N: usize>(rows: [ParameterRow<'_>; N]) -> Vec<Self> {
+        let of = |(symbol, meaning, value, bounds, unit)| Self::new(symbol, meaning, value, bounds, unit);
+        rows.map(of).into()
     }
 
     /// One parameter for each value, its number in the symbol.

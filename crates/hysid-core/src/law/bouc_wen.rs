@@ -300,21 +300,21 @@ impl Law for BoucWen {
         let any = (-LARGEST_VALUE, LARGEST_VALUE);
         let positive = (0.0, LARGEST_VALUE);
         let friction = Dimension { input: -1, output: 1, time: 1 };
-        let mut all = vec![
-            Parameter::new("c0", "output at rest", self.offset, any, Dimension::OUTPUT),
-            Parameter::new("αk", "stiffness after yielding", self.elastic_stiffness, any, Dimension::SLOPE),
-            Parameter::new(
+        let mut all = Parameter::table([
+            ("c0", "output at rest", self.offset, any, Dimension::OUTPUT),
+            ("αk", "stiffness after yielding", self.elastic_stiffness, any, Dimension::SLOPE),
+            (
                 "(1-α)k",
                 "first stiffness of the hysteretic element",
                 self.hysteretic_stiffness,
                 any,
                 Dimension::SLOPE,
             ),
-            Parameter::new("c", "damping", self.damping, any, friction),
-            Parameter::new("z_u", "yield displacement", self.yield_displacement, positive, Dimension::INPUT),
-            Parameter::new("β/(β+γ)", "share of softening by direction", self.b, B_BOUNDS, Dimension::NONE),
-            Parameter::new("n", "sharpness of yielding", self.n, N_BOUNDS, Dimension::NONE),
-        ];
+            ("c", "damping", self.damping, any, friction),
+            ("z_u", "yield displacement", self.yield_displacement, positive, Dimension::INPUT),
+            ("β/(β+γ)", "share of softening by direction", self.b, B_BOUNDS, Dimension::NONE),
+            ("n", "sharpness of yielding", self.n, N_BOUNDS, Dimension::NONE),
+        ]);
         all.extend(self.degradation.iter().flat_map(Degradation::parameters));
         all
     }

@@ -137,20 +137,10 @@ impl Law for GeneralizedPrandtlIshlinskii {
         let mut all = vec![Parameter::new("c", "level of the output", self.offset, any, Dimension::OUTPUT)];
         all.extend(self.left.parameters('l'));
         all.extend(self.right.parameters('r'));
-        all.push(Parameter::new(
-            "S_-1",
-            "plays before the first sample",
-            self.initial,
-            (-LARGEST_VALUE, LARGEST_VALUE),
-            Dimension::NONE,
-        ));
-        all.push(Parameter::new(
-            "α",
-            "spacing of the thresholds",
-            self.spacing,
-            (0.0, LARGEST_VALUE),
-            Dimension::NONE,
-        ));
+        all.extend(Parameter::table([
+            ("S_-1", "plays before the first sample", self.initial, any, Dimension::NONE),
+            ("α", "spacing of the thresholds", self.spacing, (0.0, LARGEST_VALUE), Dimension::NONE),
+        ]));
         all.extend(self.weights.parameters("p", 0, Dimension::OUTPUT, Dimension::NONE));
         all
     }

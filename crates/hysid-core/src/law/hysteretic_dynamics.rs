@@ -210,21 +210,11 @@ impl Dynamics {
             number("d".into(), "share of the input in the output", self.direct),
         ];
         for (i, mode) in (1..).zip(&self.modes) {
-            let frequency = Parameter::new(
-                format!("ω_{i}"),
-                "natural angular frequency of a mode",
-                mode.frequency,
-                positive,
-                per_time,
-            );
-            let damping = Parameter::new(
-                format!("ζ_{i}"),
-                "damping ratio of a mode",
-                mode.damping,
-                DAMPING_RATIOS,
-                Dimension::NONE,
-            );
-            all.extend([frequency, damping]);
+            let frequency = "natural angular frequency of a mode";
+            all.extend(Parameter::table([
+                (&format!("ω_{i}"), frequency, mode.frequency, positive, per_time),
+                (&format!("ζ_{i}"), "damping ratio of a mode", mode.damping, DAMPING_RATIOS, Dimension::NONE),
+            ]));
             all.push(number(format!("b_{i}"), "displacement of a mode under a unit input", mode.gain));
             if is_general {
                 let share = mode.velocity_in_output;

@@ -191,21 +191,21 @@ impl Law for JilesAtherton {
     fn parameters(&self) -> Vec<Parameter> {
         let any = (-LARGEST_VALUE, LARGEST_VALUE);
         let positive = (1.0 / LARGEST_VALUE, LARGEST_VALUE);
-        vec![
-            Parameter::new("c0", "level of the output", self.offset, any, Dimension::OUTPUT),
-            Parameter::new("μ", "share of the field itself", self.permeability, any, Dimension::SLOPE),
-            Parameter::new("M_s", "saturation magnetisation", self.saturation, positive, Dimension::OUTPUT),
-            Parameter::new("a", "width of the anhysteretic curve", self.a, positive, Dimension::INPUT),
-            Parameter::new("k", "pinning", self.k, positive, Dimension::INPUT),
-            Parameter::new(
+        Parameter::table([
+            ("c0", "level of the output", self.offset, any, Dimension::OUTPUT),
+            ("μ", "share of the field itself", self.permeability, any, Dimension::SLOPE),
+            ("M_s", "saturation magnetisation", self.saturation, positive, Dimension::OUTPUT),
+            ("a", "width of the anhysteretic curve", self.a, positive, Dimension::INPUT),
+            ("k", "pinning", self.k, positive, Dimension::INPUT),
+            (
                 "α",
                 "field that the magnetisation adds",
                 self.alpha,
                 (0.0, 3.0 * self.a / self.saturation),
                 Dimension::COMPLIANCE,
             ),
-            Parameter::new("c", "reversible share", self.c, C_BOUNDS, Dimension::NONE),
-        ]
+            ("c", "reversible share", self.c, C_BOUNDS, Dimension::NONE),
+        ])
     }
 
     fn validated(self) -> Result<Self> {

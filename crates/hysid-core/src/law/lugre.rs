@@ -145,22 +145,16 @@ impl Law for Lugre {
         let rate = Dimension { input: 1, output: 0, time: -1 };
         let viscosity = Dimension { input: -1, output: 1, time: 1 };
         let impulse = Dimension { input: 0, output: 1, time: 1 };
-        vec![
-            Parameter::new("c0", "output at rest", self.offset, any, Dimension::OUTPUT),
-            Parameter::new("k", "stiffness of the spring", self.spring, any, Dimension::SLOPE),
-            Parameter::new("F_C", "sliding friction", self.sliding, any, Dimension::OUTPUT),
-            Parameter::new("x_s", "presliding displacement", self.presliding, positive, Dimension::INPUT),
-            Parameter::new(
-                "F_S/F_C-1",
-                "surplus of static friction",
-                self.stribeck,
-                STRIBECK_BOUNDS,
-                Dimension::NONE,
-            ),
-            Parameter::new("v_s", "Stribeck velocity", self.stribeck_velocity, positive, rate),
-            Parameter::new("σ1x_s", "damping of the bristles", self.bristle_damping, any, impulse),
-            Parameter::new("σ2", "viscous friction", self.viscous, any, viscosity),
-        ]
+        Parameter::table([
+            ("c0", "output at rest", self.offset, any, Dimension::OUTPUT),
+            ("k", "stiffness of the spring", self.spring, any, Dimension::SLOPE),
+            ("F_C", "sliding friction", self.sliding, any, Dimension::OUTPUT),
+            ("x_s", "presliding displacement", self.presliding, positive, Dimension::INPUT),
+            ("F_S/F_C-1", "surplus of static friction", self.stribeck, STRIBECK_BOUNDS, Dimension::NONE),
+            ("v_s", "Stribeck velocity", self.stribeck_velocity, positive, rate),
+            ("σ1x_s", "damping of the bristles", self.bristle_damping, any, impulse),
+            ("σ2", "viscous friction", self.viscous, any, viscosity),
+        ])
     }
 
     fn validated(self) -> Result<Self> {

@@ -329,29 +329,22 @@ impl Law for MenegottoPinto {
     fn parameters(&self) -> Vec<Parameter> {
         let any = (-LARGEST_VALUE, LARGEST_VALUE);
         let positive = (f64::MIN_POSITIVE, LARGEST_VALUE);
-        let number =
-            |symbol, meaning, value, bounds| Parameter::new(symbol, meaning, value, bounds, Dimension::NONE);
-        let mut all = vec![
-            Parameter::new("c0", "output at rest", self.offset, any, Dimension::OUTPUT),
-            Parameter::new(
-                "k",
-                "slope of the hardening lines",
-                self.hardening_stiffness,
-                any,
-                Dimension::SLOPE,
-            ),
-            Parameter::new("F", "yield stress without hardening", self.strength, any, Dimension::OUTPUT),
-            Parameter::new("x_y", "yield displacement", self.yield_displacement, positive, Dimension::INPUT),
+        let number = |symbol, meaning, value, bounds| (symbol, meaning, value, bounds, Dimension::NONE);
+        let mut all = Parameter::table([
+            ("c0", "output at rest", self.offset, any, Dimension::OUTPUT),
+            ("k", "slope of the hardening lines", self.hardening_stiffness, any, Dimension::SLOPE),
+            ("F", "yield stress without hardening", self.strength, any, Dimension::OUTPUT),
+            ("x_y", "yield displacement", self.yield_displacement, positive, Dimension::INPUT),
             number("R_0", "sharpness of the virgin bend", self.roundness, ROUNDNESS_BOUNDS),
             number("a_1", "loss of sharpness", self.loss, LOSS_BOUNDS),
             number("a_2", "plastic excursion of half that loss", self.pace, PACE_BOUNDS),
             number("a", "isotropic hardening", self.isotropic, ISOTROPIC_BOUNDS),
-        ];
+        ]);
         all.extend(self.down.iter().flat_map(|down| {
-            [
+            Parameter::table([
                 number("ρ", "yield stress downwards by that upwards", down.ratio, RATIO_BOUNDS),
                 number("a-", "isotropic hardening downwards", down.isotropic, ISOTROPIC_BOUNDS),
-            ]
+            ])
         }));
         all
     }

@@ -354,28 +354,18 @@ impl Law for PeakOriented {
     fn parameters(&self) -> Vec<Parameter> {
         let any = (-LARGEST_VALUE, LARGEST_VALUE);
         let positive = (f64::MIN_POSITIVE, LARGEST_VALUE);
-        let mut all = vec![
-            Parameter::new("c0", "output at rest", self.offset, any, Dimension::OUTPUT),
-            Parameter::new(
-                "k",
-                "stiffness of the spring beside the member",
-                self.spring,
-                any,
-                Dimension::SLOPE,
-            ),
-        ];
+        let mut all = Parameter::table([
+            ("c0", "output at rest", self.offset, any, Dimension::OUTPUT),
+            ("k", "stiffness of the spring beside the member", self.spring, any, Dimension::SLOPE),
+        ]);
         let names = [("F+", "x+"), ("F-", "x-")];
         let sides = [Some(self.up), self.down];
         for ((strength, displacement), side) in names.into_iter().zip(sides) {
             let Some(side) = side else { continue };
-            all.push(Parameter::new(strength, "yield force", side.strength, any, Dimension::OUTPUT));
-            all.push(Parameter::new(
-                displacement,
-                "yield displacement",
-                side.yield_displacement,
-                positive,
-                Dimension::INPUT,
-            ));
+            all.extend(Parameter::table([
+                (strength, "yield force", side.strength, any, Dimension::OUTPUT),
+                (displacement, "yield displacement", side.yield_displacement, positive, Dimension::INPUT),
+            ]));
         }
         let share = (0.0, 1.0);
         let numbers = [

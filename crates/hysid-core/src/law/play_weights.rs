@@ -92,10 +92,10 @@ impl PlayWeights {
             Self::Exponential { rho, tau, .. } => {
                 let inverse =
                     Dimension { input: -threshold.input, output: -threshold.output, time: -threshold.time };
-                vec![
-                    Parameter::new("ρ", "weight of a play at threshold 0", *rho, any, weight),
-                    Parameter::new("τ", "decline of the weight with the threshold", *tau, any, inverse),
-                ]
+                Parameter::table([
+                    ("ρ", "weight of a play at threshold 0", *rho, any, weight),
+                    ("τ", "decline of the weight with the threshold", *tau, any, inverse),
+                ])
             }
             Self::Free(weights) => {
                 Parameter::numbered(symbol, first, weights, "weight of a play", any, weight).collect()

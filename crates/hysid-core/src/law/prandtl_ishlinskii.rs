@@ -147,10 +147,10 @@ impl Law for PrandtlIshlinskii {
     fn parameters(&self) -> Vec<Parameter> {
         let (any, positive) = ((f64::NEG_INFINITY, f64::INFINITY), (0.0, f64::INFINITY));
         let (threshold, weight) = ("threshold of a play", "weight of a play");
-        let mut all = vec![
-            Parameter::new("c", "output constant", self.constant, any, Dimension::OUTPUT),
-            Parameter::new("w_0", "weight of the input", self.linear, any, Dimension::SLOPE),
-        ];
+        let mut all = Parameter::table([
+            ("c", "output constant", self.constant, any, Dimension::OUTPUT),
+            ("w_0", "weight of the input", self.linear, any, Dimension::SLOPE),
+        ]);
         let r = Parameter::numbered("r", 1, &self.thresholds, threshold, positive, Dimension::INPUT);
         let w = Parameter::numbered("w", 1, &self.weights, weight, any, Dimension::SLOPE);
         all.extend(r.zip(w).flat_map(|(r, w)| [r, w]));

@@ -200,10 +200,10 @@ impl Law for Preisach {
         let any = (f64::NEG_INFINITY, f64::INFINITY);
         let PreisachWeights { constant, slope, lines, reversible, cells } = &self.weights;
         let (line, interval) = ("line of the Preisach plane", "reversible weight of an interval");
-        let mut all = vec![
-            Parameter::new("c", "output constant", *constant, any, Dimension::OUTPUT),
-            Parameter::new("k", "reversible slope", *slope, any, Dimension::SLOPE),
-        ];
+        let mut all = Parameter::table([
+            ("c", "output constant", *constant, any, Dimension::OUTPUT),
+            ("k", "reversible slope", *slope, any, Dimension::SLOPE),
+        ]);
         all.extend(Parameter::numbered("x", 0, lines, line, any, Dimension::INPUT));
         all.extend(Parameter::numbered("v", 0, reversible, interval, any, Dimension::OUTPUT));
         for ((i, j), &w) in Plane::new(lines.clone()).indices().zip(cells) {

@@ -61,17 +61,11 @@ impl Thresholds {
                 let time = Dimension { input: 0, output: 0, time: 1 };
                 vec![Parameter::new("β", "growth of every threshold with the rate", beta, positive, time)]
             }
-            Self::Logarithmic { beta, lambda, epsilon } => vec![
-                Parameter::new(
-                    "β",
-                    "its logarithm is the factor at rest",
-                    beta,
-                    (1e-6, 1e6),
-                    Dimension::NONE,
-                ),
-                Parameter::new("λ", "growth of the factor with the rate", lambda, positive, Dimension::NONE),
-                Parameter::new("ε", "power of the rate", epsilon, (0.0, 2.0), Dimension::NONE),
-            ],
+            Self::Logarithmic { beta, lambda, epsilon } => Parameter::table([
+                ("β", "its logarithm is the factor at rest", beta, (1e-6, 1e6), Dimension::NONE),
+                ("λ", "growth of the factor with the rate", lambda, positive, Dimension::NONE),
+                ("ε", "power of the rate", epsilon, (0.0, 2.0), Dimension::NONE),
+            ]),
         }
     }
 }
@@ -133,17 +127,11 @@ impl Law for RateDependentPrandtlIshlinskii {
 
     fn parameters(&self) -> Vec<Parameter> {
         let any = (-LARGEST_VALUE, LARGEST_VALUE);
-        let mut all = vec![
-            Parameter::new("c", "level of the output", self.offset, any, Dimension::OUTPUT),
-            Parameter::new("a0", "share without memory", self.spring, any, Dimension::SLOPE),
-            Parameter::new(
-                "α",
-                "spacing of the thresholds at rest",
-                self.spacing,
-                (0.0, LARGEST_VALUE),
-                Dimension::INPUT,
-            ),
-        ];
+        let mut all = Parameter::table([
+            ("c", "level of the output", self.offset, any, Dimension::OUTPUT),
+            ("a0", "share without memory", self.spring, any, Dimension::SLOPE),
+            ("α", "spacing of the thresholds at rest", self.spacing, (0.0, LARGEST_VALUE), Dimension::INPUT),
+        ]);
         all.extend(self.thresholds.parameters());
         all.extend(self.weights.parameters("a", 1, Dimension::SLOPE, Dimension::INPUT));
         all
