@@ -121,7 +121,6 @@ impl Description {
     }
 }
 
-/// A row as the caller gives it.
 struct Row<'a> {
     inputs: &'a [Real],
     rate: Real,

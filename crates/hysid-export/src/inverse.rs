@@ -21,7 +21,6 @@ const SINGLE_UNITS: f64 = 8.0;
 
 /// The inverse of a model in an export.
 pub(crate) struct Inverse {
-    /// Lowest and highest input.
     pub limits: (f64, f64),
     /// Largest change of the input in a unit of time.
     pub slew: Option<f64>,
@@ -31,7 +30,6 @@ pub(crate) struct Inverse {
     pub tolerance: f64,
     /// Deviation that counts as reached where no number between two inputs is left, as a multiple of the tolerance.
     pub accepted: f64,
-    /// The arguments of a step behind the wanted output.
     pub arguments: Vec<Argument>,
     /// What its steps must give.
     pub vectors: Vec<InverseVector>,
@@ -75,12 +73,10 @@ impl Inverse {
         Ok(Self { limits, slew, trained_rate, tolerance, accepted, arguments, vectors })
     }
 
-    /// Names of the arguments of a step behind the wanted output.
     pub fn argument_names(&self) -> Vec<String> {
         self.arguments.iter().map(|argument| argument.name()).collect()
     }
 
-    /// The test vectors as a table.
     pub fn vectors_csv(&self) -> String {
         let names: String = self.argument_names().iter().map(|name| format!("{name},")).collect();
         let rows = self.vectors.iter().map(|vector| {

@@ -35,7 +35,6 @@ pub fn files_of(manifest: &str) -> Option<Vec<(String, String)>> {
     value["files"].as_array()?.iter().map(entry).collect()
 }
 
-/// The field as it stands in the text.
 fn field(sum: &str) -> String {
     format!("\"{OWN_SUM}\": \"{sum}\"")
 }
@@ -65,7 +64,6 @@ struct Entry<'a> {
     sha256: String,
 }
 
-/// The text of `manifest.json`.
 pub(crate) fn manifest(subject: &Subject<'_>, to: &'static str, files: &[File]) -> String {
     let facts = subject.facts();
     let manifest = Manifest {

@@ -67,7 +67,6 @@ impl FmiVersion {
         }
     }
 
-    /// Name of the source file with its functions.
     pub(crate) fn source(self) -> &'static str {
         match self {
             Self::Three => "fmi3.c",

@@ -7,21 +7,20 @@
 //! A target writes the statements in its language, each in one line or one loop. [`interpreter`] runs them here, for
 //! tests and for test vectors, and [`tangent`] derives the program of the slope `dy/dx`.
 
-pub mod choices;
-pub mod expression;
-pub mod functions;
+pub(crate) mod choices;
+pub(crate) mod expression;
 pub mod interpreter;
 pub mod tangent;
-pub mod unused;
+pub(crate) mod unused;
+pub(crate) mod uses;
 
 use expression::{Real, RealVariable, Truth, Whole, WholeVariable};
 
 /// Name of an array: its number in the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Array(pub(crate) usize);
+pub(crate) struct Array(pub(crate) usize);
 
 impl Array {
-    /// An element.
     pub fn at(self, index: impl Into<Whole>) -> Real {
         Real::Element(self, Box::new(index.into()))
     }
@@ -29,7 +28,7 @@ impl Array {
 
 /// What an array is for.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Storage {
+pub(crate) enum Storage {
     /// Numbers that never change.
     Constant(Vec<f64>),
     /// What is remembered from one step to the next, with the values before the first.
@@ -43,23 +42,17 @@ pub enum Storage {
 }
 
 impl Storage {
-    /// Number of elements.
     pub fn len(&self) -> usize {
         match self {
             Self::Constant(values) | Self::State(values) => values.len(),
             Self::Scratch(length) | Self::Argument(length) | Self::Output(length) => *length,
         }
     }
-
-    /// True without elements.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
 }
 
 /// An array with its name and what it is for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Declaration {
+pub(crate) struct Declaration {
     /// An identifier, unique in the program.
     pub name: String,
     /// What it is for.
@@ -68,27 +61,36 @@ pub struct Declaration {
 
 /// One thing that a step does.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Statement {
+pub(crate) enum Statement {
     /// A remark for the reader of the source code.
     Remark(String),
     /// Gives a variable a value. Its first occurrence declares it, in the innermost block around it.
     Let(RealVariable, Real),
-    /// Gives a variable another value.
     Assign(RealVariable, Real),
-    /// As `Let`, for a whole number.
     LetWhole(WholeVariable, Whole),
-    /// As `Assign`, for a whole number.
     AssignWhole(WholeVariable, Whole),
-    /// Gives an element of an array a value.
     Set(Array, Whole, Real),
     /// Runs the block with the variable at each number from the first on, and below the last.
     Each(WholeVariable, Whole, Whole, Vec<Statement>),
-    /// Runs the block as long as the condition holds.
     While(Truth, Vec<Statement>),
-    /// Runs the first block where the condition holds, otherwise the second.
     If(Truth, Vec<Statement>, Vec<Statement>),
     /// Runs the block only where the slope is computed. It changes derivatives, and no value that is read behind it.
     ForSlope(Vec<Statement>),
+}
+
+/// Looks at each statement, and then at those of the blocks in it; blocks for the slope alone are left out.
+pub(crate) fn every(statements: &[Statement], look: &mut impl FnMut(&Statement)) {
+    for statement in statements {
+        look(statement);
+        match statement {
+            Statement::Each(_, _, _, body) | Statement::While(_, body) => every(body, look),
+            Statement::If(_, yes, no) => {
+                every(yes, look);
+                every(no, look);
+            }
+            _ => {}
+        }
+    }
 }
 
 /// Precision of all real numbers of a program.
@@ -120,41 +122,35 @@ impl Precision {
 /// One step of a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Program {
-    /// Precision of its numbers.
-    pub precision: Precision,
-    /// All arrays.
-    pub arrays: Vec<Declaration>,
+    pub(crate) precision: Precision,
+    pub(crate) arrays: Vec<Declaration>,
     /// The arguments, whose first is the input that a tangent refers to.
-    pub arguments: Array,
+    pub(crate) arguments: Array,
     /// The outputs, the first of which is that of the model.
-    pub outputs: Array,
-    /// What a step does.
-    pub body: Vec<Statement>,
+    pub(crate) outputs: Array,
+    pub(crate) body: Vec<Statement>,
     pub(crate) reals: usize,
     pub(crate) wholes: usize,
 }
 
 impl Program {
-    /// An array's declaration.
-    pub fn declaration(&self, array: Array) -> &Declaration {
+    pub(crate) fn declaration(&self, array: Array) -> &Declaration {
         &self.arrays[array.0]
     }
 
     /// All arrays of the state, with their initial values.
-    pub fn states(&self) -> impl Iterator<Item = (Array, &str, &[f64])> {
+    pub(crate) fn states(&self) -> impl Iterator<Item = (Array, &str, &[f64])> {
         self.arrays.iter().enumerate().filter_map(|(index, declaration)| match &declaration.storage {
             Storage::State(values) => Some((Array(index), declaration.name.as_str(), values.as_slice())),
             _ => None,
         })
     }
 
-    /// Numbers in the state.
-    pub fn state_len(&self) -> usize {
+    pub(crate) fn state_len(&self) -> usize {
         self.states().map(|(_, _, values)| values.len()).sum()
     }
 
-    /// Numbers in the constants.
-    pub fn constants_len(&self) -> usize {
+    pub(crate) fn constants_len(&self) -> usize {
         let constants = self.arrays.iter().filter(|array| matches!(array.storage, Storage::Constant(_)));
         constants.map(|array| array.storage.len()).sum()
     }
@@ -162,7 +158,7 @@ impl Program {
 
 /// Writes a program, statement by statement.
 #[derive(Debug)]
-pub struct Builder {
+pub(crate) struct Builder {
     program: Program,
     /// Statements of the blocks that are open, outermost first.
     blocks: Vec<Vec<Statement>>,
@@ -188,12 +184,10 @@ impl Builder {
         builder
     }
 
-    /// Precision of the program's numbers.
     pub fn precision(&self) -> Precision {
         self.program.precision
     }
 
-    /// The program.
     pub fn finish(mut self) -> Program {
         self.program.body = self.blocks.pop().unwrap_or_default();
         self.program
@@ -226,7 +220,6 @@ impl Builder {
         self.array(name, Storage::Scratch(length))
     }
 
-    /// An argument of the step.
     pub fn argument(&self, index: usize) -> Real {
         self.program.arguments.at(index)
     }
@@ -243,7 +236,6 @@ impl Builder {
         self.blocks.pop().unwrap_or_default()
     }
 
-    /// A remark for the reader of the source code.
     pub fn remark(&mut self, text: impl Into<String>) {
         self.add(Statement::Remark(text.into()));
     }
@@ -261,7 +253,6 @@ impl Builder {
         variable
     }
 
-    /// Gives a variable another value.
     pub fn assign(&mut self, variable: RealVariable, value: impl Into<Real>) {
         self.add(Statement::Assign(variable, value.into()));
     }
@@ -274,14 +265,12 @@ impl Builder {
         self.whole_variable(kept.to_whole())
     }
 
-    /// As [`Builder::variable`], for a whole number.
     pub fn whole_variable(&mut self, value: impl Into<Whole>) -> WholeVariable {
         let variable = self.next_whole();
         self.add(Statement::LetWhole(variable, value.into()));
         variable
     }
 
-    /// As [`Builder::assign`], for a whole number.
     pub fn assign_whole(&mut self, variable: WholeVariable, value: impl Into<Whole>) {
         self.add(Statement::AssignWhole(variable, value.into()));
     }
@@ -292,12 +281,10 @@ impl Builder {
         variable
     }
 
-    /// Gives an element of an array a value.
     pub fn set(&mut self, array: Array, index: impl Into<Whole>, value: impl Into<Real>) {
         self.add(Statement::Set(array, index.into(), value.into()));
     }
 
-    /// Gives an output its value.
     pub fn output(&mut self, index: usize, value: impl Into<Real>) {
         self.set(self.program.outputs, index, value);
     }
@@ -314,26 +301,22 @@ impl Builder {
         self.add(Statement::Each(variable, first.into(), last.into(), body));
     }
 
-    /// Runs a block as long as a condition holds.
     pub fn while_true(&mut self, condition: Truth, write: impl FnOnce(&mut Self)) {
         let body = self.block(write);
         self.add(Statement::While(condition, body));
     }
 
-    /// Runs a block only where the slope is computed: it must leave all values that are read behind it as they are.
-    ///
-    /// A loop that iterates until values fit need not have made their derivatives fit: this is the place for that.
+    /// Runs a block only where the slope is computed: it must leave all values that are read behind it as they are. It
+    /// is for loops that iterate until values fit, which need not have made their derivatives fit.
     pub fn for_slope(&mut self, write: impl FnOnce(&mut Self)) {
         let body = self.block(write);
         self.add(Statement::ForSlope(body));
     }
 
-    /// Runs a block where a condition holds.
     pub fn when(&mut self, condition: Truth, write: impl FnOnce(&mut Self)) {
         self.when_else(condition, write, |_| {});
     }
 
-    /// Runs the first block where a condition holds, otherwise the second.
     pub fn when_else(&mut self, condition: Truth, yes: impl FnOnce(&mut Self), no: impl FnOnce(&mut Self)) {
         let (yes, no) = (self.block(yes), self.block(no));
         self.add(Statement::If(condition, yes, no));

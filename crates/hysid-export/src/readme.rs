@@ -6,7 +6,6 @@ use crate::target::Target;
 use crate::text::in_markdown;
 use crate::vectors::Action;
 
-/// The text of `README.md`.
 pub(crate) fn readme(subject: &Subject<'_>, to: Target, files: &[File]) -> String {
     let facts: String = subject
         .facts()

@@ -42,9 +42,8 @@ const ENDINGS: [&str; 12] = [
     "step",
 ];
 
-/// Refuses a name that is no identifier, or one of the target's lists.
-///
-/// Capital and small letters are the same here, as in file names of many systems.
+/// Refuses a name that is no identifier, or one of the target's lists, where capital and small letters are the same, as
+/// in file names of many systems.
 pub(crate) fn check(name: &str, lists: &[&str], target: &'static str) -> Result<(), Error> {
     let is_identifier = name.starts_with(|first: char| first.is_ascii_alphabetic())
         && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')

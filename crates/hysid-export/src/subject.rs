@@ -100,12 +100,10 @@ impl<'m> Subject<'m> {
         &self.vectors
     }
 
-    /// The inverse of the model, if the export has one.
     pub fn inverse(&self) -> Option<&Inverse> {
         self.inverse.as_ref()
     }
 
-    /// Names of the arguments of a step.
     pub fn argument_names(&self) -> Vec<String> {
         self.description.arguments.iter().map(|argument| argument.name()).collect()
     }
@@ -122,7 +120,6 @@ impl<'m> Subject<'m> {
         None
     }
 
-    /// Bytes of a number.
     pub fn bytes(&self) -> usize {
         match self.precision() {
             Precision::Double => 8,
@@ -208,7 +205,6 @@ impl<'m> Subject<'m> {
         facts
     }
 
-    /// The test vectors as a table.
     pub fn vectors_csv(&self) -> String {
         let names = self.argument_names();
         let mut text = format!("action,{},output,tangent\n", names.join(","));
@@ -235,7 +231,6 @@ fn checksum_of(model: &Model) -> String {
     behind.chars().filter(char::is_ascii_hexdigit).collect()
 }
 
-/// A range for people.
 fn shown((low, high): (f64, f64)) -> String {
     format!("{:.6} to {:.6}", Significant(low), Significant(high))
 }

@@ -81,7 +81,6 @@ pub(crate) struct BackEnd {
     pub usage: fn(&Subject<'_>) -> String,
 }
 
-/// What a back end wrote.
 pub(crate) struct Written {
     pub files: Vec<File>,
     /// What the user must know.

@@ -9,7 +9,6 @@ use std::fmt::Write as _;
 use hysid_core::data::record::ColumnNames;
 use hysid_core::error::is_hidden;
 
-/// Largest number of letters of a text.
 const MOST_LETTERS: usize = 300;
 
 /// Pairs of letters that begin or end comments, or begin trigraphs of C.

@@ -196,7 +196,6 @@ fn decay(builder: &mut Builder, phi: Real) -> (Real, Real) {
     (stress, increment)
 }
 
-/// A polynomial by Horner's rule, highest power first.
 fn polynomial(builder: &mut Builder, coefficients: &[f64], x: &Real) -> Real {
     let mut value = Real::Constant(coefficients[0]);
     for &coefficient in &coefficients[1..] {

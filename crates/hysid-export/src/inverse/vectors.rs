@@ -23,7 +23,6 @@ pub(crate) struct InverseVector {
     pub action: Action,
     /// The wanted output and the further arguments of a step; otherwise empty.
     pub arguments: Vec<f64>,
-    /// What a step gives.
     pub given: Option<Inverted>,
 }
 

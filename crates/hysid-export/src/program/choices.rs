@@ -12,7 +12,6 @@ pub fn without_choices(program: &Program) -> Program {
     lowered
 }
 
-/// Numbers of new variables.
 struct Next {
     reals: usize,
 }

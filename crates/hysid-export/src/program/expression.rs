@@ -15,21 +15,15 @@ pub struct WholeVariable(pub(crate) usize);
 /// A function of one real number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Unary {
-    /// `-a`
     Negative,
-    /// `|a|`
     Magnitude,
-    /// Square root.
     SquareRoot,
-    /// `e^a`
     Exp,
     /// `e^a - 1`, accurate near 0.
     ExpMinusOne,
-    /// Natural logarithm.
     Ln,
     /// `ln(1 + a)`, accurate near 0.
     LnOnePlus,
-    /// Hyperbolic tangent.
     Tanh,
     /// Inverse hyperbolic sine: `ln(1 + |a| + |a|/(sqrt(1 + 1/a²) + 1/|a|))` with the sign of `a`.
     InverseSinh,
@@ -46,64 +40,54 @@ pub enum Unary {
 /// A function of two real numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Binary {
-    /// `a + b`
     Sum,
-    /// `a - b`
     Difference,
-    /// `a b`
     Product,
-    /// `a / b`
     Quotient,
     /// `a^b` for `a >= 0`.
     Power,
     /// The magnitude of `a` with the sign of `b`.
     CopySign,
-    /// `sqrt(a² + b²)`
     Hypotenuse,
 }
 
-/// A comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Comparison {
-    /// `a < b`
     Below,
-    /// `a <= b`
     AtMost,
-    /// `a == b`
     Equal,
+}
+
+impl Comparison {
+    pub fn holds<T: PartialOrd>(self, a: T, b: T) -> bool {
+        match self {
+            Self::Below => a < b,
+            Self::AtMost => a <= b,
+            Self::Equal => a == b,
+        }
+    }
 }
 
 /// A real number: what a program computes.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Real {
-    /// A number.
+pub(crate) enum Real {
     Constant(f64),
-    /// The value of a variable.
     Variable(RealVariable),
-    /// An element of an array.
     Element(Array, Box<Whole>),
-    /// A function of one number.
     Unary(Unary, Box<Real>),
-    /// A function of two numbers.
     Binary(Binary, Box<Real>, Box<Real>),
     /// The first number where the condition holds, otherwise the second. Only that one is computed.
     Choice(Box<Truth>, Box<Real>, Box<Real>),
-    /// A whole number as a real one.
     OfWhole(Box<Whole>),
 }
 
 /// A whole number: an index or a count.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Whole {
-    /// A number.
+pub(crate) enum Whole {
     Constant(i64),
-    /// The value of a variable.
     Variable(WholeVariable),
-    /// `a + b`
     Sum(Box<Whole>, Box<Whole>),
-    /// `a - b`
     Difference(Box<Whole>, Box<Whole>),
-    /// `a b`
     Product(Box<Whole>, Box<Whole>),
     /// A real number that is whole, such as a count that is kept in a state.
     OfReal(Box<Real>),
@@ -111,16 +95,14 @@ pub enum Whole {
 
 /// A condition.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Truth {
+pub(crate) enum Truth {
     /// A comparison of real numbers, false for NaN.
     Real(Comparison, Box<Real>, Box<Real>),
-    /// A comparison of whole numbers.
     Whole(Comparison, Box<Whole>, Box<Whole>),
     /// Both; the second is computed only where the first holds.
     And(Box<Truth>, Box<Truth>),
     /// One or both; the second is computed only where the first does not hold.
     Or(Box<Truth>, Box<Truth>),
-    /// The opposite.
     Not(Box<Truth>),
 }
 
@@ -240,37 +222,30 @@ whole_operator!(Sub, sub, Difference);
 whole_operator!(Mul, mul, Product);
 
 impl Real {
-    /// A function of this number.
     pub fn apply(self, function: Unary) -> Self {
         Self::Unary(function, Box::new(self))
     }
 
-    /// `|a|`
     pub fn abs(&self) -> Self {
         self.clone().apply(Unary::Magnitude)
     }
 
-    /// `e^a`
     pub fn exp(&self) -> Self {
         self.clone().apply(Unary::Exp)
     }
 
-    /// `e^a - 1`
     pub fn exp_m1(&self) -> Self {
         self.clone().apply(Unary::ExpMinusOne)
     }
 
-    /// `ln a`
     pub fn ln(&self) -> Self {
         self.clone().apply(Unary::Ln)
     }
 
-    /// `ln(1 + a)`
     pub fn ln_1p(&self) -> Self {
         self.clone().apply(Unary::LnOnePlus)
     }
 
-    /// Square root.
     pub fn sqrt(&self) -> Self {
         self.clone().apply(Unary::SquareRoot)
     }
@@ -280,72 +255,58 @@ impl Real {
         self.clone().apply(Unary::Tanh)
     }
 
-    /// Inverse hyperbolic sine.
     pub fn asinh(&self) -> Self {
         self.clone().apply(Unary::InverseSinh)
     }
 
-    /// The smallest whole number that is not below it.
     pub fn ceil(&self) -> Self {
         self.clone().apply(Unary::Ceiling)
     }
 
-    /// The next whole number.
     pub fn rounded(&self) -> Self {
         self.clone().apply(Unary::Rounded)
     }
 
-    /// `2^a` for a whole number.
     pub fn power_of_two(&self) -> Self {
         self.clone().apply(Unary::PowerOfTwo)
     }
 
-    /// The same number, whose derivative counts as 0.
     pub fn detached(&self) -> Self {
         self.clone().apply(Unary::Detached)
     }
 
-    /// `a^b`
     pub fn powf(&self, exponent: impl Into<Real>) -> Self {
         Self::Binary(Binary::Power, Box::new(self.clone()), Box::new(exponent.into()))
     }
 
-    /// The magnitude with the sign of another number.
     pub fn copysign(&self, sign: impl Into<Real>) -> Self {
         Self::Binary(Binary::CopySign, Box::new(self.clone()), Box::new(sign.into()))
     }
 
-    /// `sqrt(a² + b²)`
     pub fn hypot(&self, other: impl Into<Real>) -> Self {
         Self::Binary(Binary::Hypotenuse, Box::new(self.clone()), Box::new(other.into()))
     }
 
-    /// 1 with the sign of the number.
     pub fn signum(&self) -> Self {
         Self::Constant(1.0).copysign(self)
     }
 
-    /// `a < b`
     pub fn below(&self, other: impl Into<Real>) -> Truth {
         Truth::Real(Comparison::Below, Box::new(self.clone()), Box::new(other.into()))
     }
 
-    /// `a <= b`
     pub fn at_most(&self, other: impl Into<Real>) -> Truth {
         Truth::Real(Comparison::AtMost, Box::new(self.clone()), Box::new(other.into()))
     }
 
-    /// `a > b`
     pub fn above(&self, other: impl Into<Real>) -> Truth {
         Truth::Real(Comparison::Below, Box::new(other.into()), Box::new(self.clone()))
     }
 
-    /// `a >= b`
     pub fn at_least(&self, other: impl Into<Real>) -> Truth {
         Truth::Real(Comparison::AtMost, Box::new(other.into()), Box::new(self.clone()))
     }
 
-    /// `a == b`
     pub fn equals(&self, other: impl Into<Real>) -> Truth {
         Truth::Real(Comparison::Equal, Box::new(self.clone()), Box::new(other.into()))
     }
@@ -375,27 +336,18 @@ impl Real {
 }
 
 impl Whole {
-    /// The number as a real one.
     pub fn to_real(&self) -> Real {
         Real::OfWhole(Box::new(self.clone()))
     }
 
-    /// `a < b`
     pub fn below(&self, other: impl Into<Whole>) -> Truth {
         Truth::Whole(Comparison::Below, Box::new(self.clone()), Box::new(other.into()))
     }
 
-    /// `a > b`
     pub fn above(&self, other: impl Into<Whole>) -> Truth {
         Truth::Whole(Comparison::Below, Box::new(other.into()), Box::new(self.clone()))
     }
 
-    /// `a >= b`
-    pub fn at_least(&self, other: impl Into<Whole>) -> Truth {
-        Truth::Whole(Comparison::AtMost, Box::new(other.into()), Box::new(self.clone()))
-    }
-
-    /// `a == b`
     pub fn equals(&self, other: impl Into<Whole>) -> Truth {
         Truth::Whole(Comparison::Equal, Box::new(self.clone()), Box::new(other.into()))
     }
@@ -407,17 +359,14 @@ impl Truth {
         Real::Choice(Box::new(self), Box::new(yes.into()), Box::new(no.into()))
     }
 
-    /// Both.
     pub fn and(self, other: Truth) -> Self {
         Self::And(Box::new(self), Box::new(other))
     }
 
-    /// One or both.
     pub fn or(self, other: Truth) -> Self {
         Self::Or(Box::new(self), Box::new(other))
     }
 
-    /// The opposite.
     pub fn negated(self) -> Self {
         Self::Not(Box::new(self))
     }

@@ -4,7 +4,7 @@
 
 use std::cell::Cell;
 
-use crate::program::expression::{Binary, Comparison, Real, Truth, Unary, Whole};
+use crate::program::expression::{Binary, Real, Truth, Unary, Whole};
 use crate::program::{Array, Precision, Program, Statement, Storage};
 
 /// Adding this and subtracting it rounds to a whole number; the low bits of the sum are that number plus the exponent
@@ -157,22 +157,8 @@ impl<'p> Machine<'p> {
 
     fn holds(&self, condition: &Truth) -> bool {
         match condition {
-            Truth::Real(comparison, a, b) => {
-                let (a, b) = (self.real(a), self.real(b));
-                match comparison {
-                    Comparison::Below => a < b,
-                    Comparison::AtMost => a <= b,
-                    Comparison::Equal => a == b,
-                }
-            }
-            Truth::Whole(comparison, a, b) => {
-                let (a, b) = (self.whole(a), self.whole(b));
-                match comparison {
-                    Comparison::Below => a < b,
-                    Comparison::AtMost => a <= b,
-                    Comparison::Equal => a == b,
-                }
-            }
+            Truth::Real(comparison, a, b) => comparison.holds(self.real(a), self.real(b)),
+            Truth::Whole(comparison, a, b) => comparison.holds(self.whole(a), self.whole(b)),
             Truth::And(a, b) => self.holds(a) && self.holds(b),
             Truth::Or(a, b) => self.holds(a) || self.holds(b),
             Truth::Not(a) => !self.holds(a),

@@ -126,23 +126,19 @@ impl Derivative {
             match statement {
                 Statement::Let(variable, value) => {
                     if let Some(&slope) = self.variables.get(variable) {
-                        block.push(Statement::Let(
-                            slope,
-                            self.of(program, value).unwrap_or(Real::Constant(0.0)),
-                        ));
+                        block.push(Statement::Let(slope, or_zero(self.of(program, value))));
                     }
                     block.push(statement.clone());
                 }
                 Statement::Assign(variable, value) => {
                     if let Some(&slope) = self.variables.get(variable) {
-                        let value = self.of(program, value).unwrap_or(Real::Constant(0.0));
-                        block.push(Statement::Assign(slope, value));
+                        block.push(Statement::Assign(slope, or_zero(self.of(program, value))));
                     }
                     block.push(statement.clone());
                 }
                 Statement::Set(array, index, value) => {
                     if let Some(&slope) = self.arrays.get(array) {
-                        let value = self.of(program, value).unwrap_or(Real::Constant(0.0));
+                        let value = or_zero(self.of(program, value));
                         block.push(Statement::Set(slope, index.clone(), value));
                     }
                     block.push(statement.clone());
@@ -183,13 +179,14 @@ impl Derivative {
             }
             Real::Choice(condition, yes, no) => match (self.of(program, yes), self.of(program, no)) {
                 (None, None) => None,
-                (yes, no) => {
-                    let or_zero = |slope: Option<Real>| slope.unwrap_or(Real::Constant(0.0));
-                    Some(Truth::clone(condition).choose(or_zero(yes), or_zero(no)))
-                }
+                (yes, no) => Some(Truth::clone(condition).choose(or_zero(yes), or_zero(no))),
             },
         }
     }
+}
+
+fn or_zero(slope: Option<Real>) -> Real {
+    slope.unwrap_or(Real::Constant(0.0))
 }
 
 fn of_unary(function: Unary, a: &Real, slope: Real) -> Option<Real> {

@@ -318,7 +318,6 @@ fn code(action: Action) -> usize {
     }
 }
 
-/// The language.
 struct Matlab {
     arguments: Vec<String>,
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::program::expression::{Binary, Comparison, Real, RealVariable, Truth, Unary, Whole};
-use crate::program::{Array, Declaration, Program, Statement};
+use crate::program::{Array, Declaration, Program, Statement, every};
 
 /// How strongly the outermost operation of an expression binds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,7 +20,6 @@ pub(crate) enum Binding {
 
 /// How a language writes what differs between languages.
 pub(crate) trait Language {
-    /// A finite or infinite number.
     fn number(&self, value: f64) -> String;
     /// An element of an array with this index, which counts from 0. A constant index of an argument is its number.
     fn element(&self, declaration: &Declaration, index: &str) -> String;
@@ -28,7 +27,6 @@ pub(crate) trait Language {
     fn unary(&self, function: Unary) -> Option<&'static str>;
     /// A function of two numbers; `None` for an infix operator. A quotient by a constant has its operator in any case.
     fn binary(&self, function: Binary) -> Option<&'static str>;
-    /// A choice between two numbers.
     fn choice(&self, condition: &str, yes: &str, no: &str) -> (String, Binding);
     /// Both conditions, one or both, the opposite.
     fn logic(&self) -> [&'static str; 3];
@@ -36,13 +34,10 @@ pub(crate) trait Language {
     fn to_whole(&self, real: &str) -> String;
     /// A whole number as a real one, as an atom.
     fn to_real(&self, whole: &str) -> String;
-    /// Declares a real variable.
     fn declare(&self, variable: &str, value: &str, is_constant: bool) -> String;
     /// Declares a variable with a whole number, which may be assigned.
     fn declare_whole(&self, variable: &str, value: &str) -> String;
-    /// An assignment.
     fn assign(&self, to: &str, value: &str) -> String;
-    /// A remark.
     fn remark(&self, text: &str) -> String;
     /// First lines of a loop over numbers, a loop with a condition, a branch.
     fn each(&self, variable: &str, first: &str, last: &str) -> String;
@@ -54,18 +49,20 @@ pub(crate) trait Language {
     fn end(&self) -> Option<&'static str>;
 }
 
-/// Writes a program.
 pub(crate) struct Printer<'a, L> {
     language: &'a L,
     program: &'a Program,
-    /// Variables that are given other values.
     assigned: BTreeSet<RealVariable>,
 }
 
 impl<'a, L: Language> Printer<'a, L> {
     pub fn new(language: &'a L, program: &'a Program) -> Self {
         let mut assigned = BTreeSet::new();
-        collect_assigned(&program.body, &mut assigned);
+        every(&program.body, &mut |statement| {
+            if let Statement::Assign(variable, _) = statement {
+                assigned.insert(*variable);
+            }
+        });
         Self { language, program, assigned }
     }
 
@@ -224,22 +221,6 @@ impl<'a, L: Language> Printer<'a, L> {
             Truth::Not(a) => (format!("{not}({})", self.truth(a, Binding::Choice)), Binding::Sign),
         };
         bracketed(text, binding, around)
-    }
-}
-
-fn collect_assigned(statements: &[Statement], assigned: &mut BTreeSet<RealVariable>) {
-    for statement in statements {
-        match statement {
-            Statement::Assign(variable, _) => {
-                assigned.insert(*variable);
-            }
-            Statement::Each(_, _, _, body) | Statement::While(_, body) => collect_assigned(body, assigned),
-            Statement::If(_, yes, no) => {
-                collect_assigned(yes, assigned);
-                collect_assigned(no, assigned);
-            }
-            _ => {}
-        }
     }
 }
 

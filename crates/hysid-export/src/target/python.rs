@@ -362,7 +362,6 @@ sys.exit(0 if largest <= 1e-9 else 1)
     )
 }
 
-/// The language.
 struct Python {
     arguments: Vec<String>,
 }

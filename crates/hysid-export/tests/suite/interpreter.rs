@@ -12,7 +12,6 @@ use hysid_export::program::tangent::with_tangent;
 
 static MODELS: LazyLock<Vec<(String, Model)>> = LazyLock::new(all);
 
-/// Arguments of a row.
 fn arguments(description: &Description, inputs: &[f64], step: f64, rate: f64) -> Vec<f64> {
     let value = |argument: &Argument| match argument {
         Argument::Input(input) => inputs[*input],

@@ -40,7 +40,6 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &BoucWen, sample: &Sa
     builder.value(law.offset + law.elastic_stiffness * &x + z + law.damping * &rate)
 }
 
-/// Moves the element up by `by` yield displacements.
 fn upwards(builder: &mut Builder, law: &BoucWen, (z, e): (RealVariable, RealVariable), by: &Real) {
     match &law.degradation {
         None if law.n == 1.0 => {

@@ -59,7 +59,6 @@ struct Elements<'l> {
     /// Forces as the modes feel them, at the end and at the beginning of a step.
     forces: Array,
     forces_before: Array,
-    /// Forces that follow from the displacements.
     following: Array,
     /// Bounds of the forces.
     largest: Array,
@@ -180,7 +179,6 @@ impl<'l> Parts<'l> {
         });
     }
 
-    /// The scaled output.
     fn output(&self, builder: &mut Builder, newest: &Real) -> Real {
         let y = builder.variable(self.law.direct * newest);
         for (i, mode) in self.law.modes.iter().enumerate() {

@@ -41,7 +41,6 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &MenegottoPinto, samp
     builder.value(y.clamp(-f64::MAX, f64::MAX))
 }
 
-/// 1 upwards, -1 downwards.
 fn sign_of(builder: &mut Builder, direction: &Whole) -> Real {
     builder.value(direction.equals(0_usize).choose(1.0, -1.0))
 }

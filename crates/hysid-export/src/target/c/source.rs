@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 use crate::description::HALF_WIDTH;
 use crate::manifest::token_of;
 use crate::program::expression::{Binary, Unary};
-use crate::program::functions::Functions;
 use crate::program::unused::used_arrays;
+use crate::program::uses::Uses;
 use crate::program::{Array, Declaration, Precision, Program, Storage};
 use crate::subject::Subject;
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
@@ -30,7 +30,7 @@ pub(super) fn source(subject: &Subject<'_>) -> String {
     let name = subject.name();
     let (step, tangent) = (subject.program(), subject.tangent());
     let c = C { precision: subject.precision(), arguments: subject.argument_names() };
-    let functions = Functions::of(&[step, tangent]);
+    let functions = Uses::of(&[step, tangent]);
 
     let mut text = format!("/* {name}.c: see {name}.h. */\n\n");
     if functions.infinity || uses_math(&functions) {
@@ -61,7 +61,7 @@ real {name}_half_width(const {name}_model *model)
     text
 }
 
-fn uses_math(functions: &Functions) -> bool {
+fn uses_math(functions: &Uses) -> bool {
     let own = [Unary::Negative, Unary::Rounded, Unary::PowerOfTwo, Unary::Detached];
     let infix = [Binary::Sum, Binary::Difference, Binary::Product, Binary::Quotient];
     functions.unary.iter().any(|function| !own.contains(function))
@@ -203,7 +203,7 @@ int {name}_restore({name}_model *model, const unsigned char *bytes)
 }
 
 /// Functions that the C library does not have.
-fn prelude(functions: &Functions, precision: Precision) -> String {
+fn prelude(functions: &Uses, precision: Precision) -> String {
     let (f, round, bits, shift) = match precision {
         Precision::Double => ("", "6755399441056767.0", "uint64_t", 52),
         Precision::Single => ("f", "12583039.0f", "uint32_t", 23),

@@ -11,7 +11,6 @@ use crate::subject::Subject;
 /// Value references: the time has 0, then come the inputs, in the order of the step's arguments without the time step.
 pub(super) const FIRST_INPUT: usize = 1;
 
-/// Value reference of the output.
 pub(super) const OUTPUT: usize = 1000;
 
 /// Value reference of half the width of the band.
@@ -21,7 +20,6 @@ pub(super) const HALF_WIDTH: usize = 1001;
 pub(super) const MODEL_OUTPUT: usize = 1002;
 pub(super) const REACH: usize = 1003;
 
-/// A variable of the FMU.
 struct Variable {
     name: String,
     unit: Option<String>,
@@ -43,7 +41,6 @@ pub(super) fn start_values(subject: &Subject<'_>) -> Vec<f64> {
     subject.description().arguments.iter().filter_map(of).collect()
 }
 
-/// What the values of the reach mean.
 const REACHES: &str = "whether the wanted output was reached: 0 reached, 1 beyond the lowest input, 2 beyond the highest \
                        input, 3 the input cannot change so quickly, 4 the model is not monotone, 5 the output jumps over \
                        it, -1 invalid time step";
@@ -105,14 +102,12 @@ fn variables(subject: &Subject<'_>) -> Vec<Variable> {
     all
 }
 
-/// Names of the inputs, and of the outputs.
 pub(super) fn variable_names(subject: &Subject<'_>) -> (Vec<String>, Vec<String>) {
     let inputs = start_values(subject).len();
     let mut names = variables(subject).into_iter().map(|variable| variable.name);
     (names.by_ref().take(inputs).collect(), names.collect())
 }
 
-/// The value references of the outputs.
 fn outputs(subject: &Subject<'_>) -> Vec<usize> {
     let of_inverse = subject.inverse().map(|_| [MODEL_OUTPUT, REACH]);
     [OUTPUT]
@@ -122,7 +117,6 @@ fn outputs(subject: &Subject<'_>) -> Vec<usize> {
         .collect()
 }
 
-/// The text of the file.
 pub(super) fn model_description(subject: &Subject<'_>, version: FmiVersion, token: &str) -> String {
     match version {
         FmiVersion::Three => version_three(subject, token),

@@ -5,7 +5,6 @@ use crate::inverse::Inverse;
 use crate::subject::Subject;
 use crate::target::template::filled;
 
-/// The text of the program.
 pub(super) fn self_test(subject: &Subject<'_>) -> String {
     let arguments = &subject.description().arguments;
     let time_step = arguments.iter().position(|argument| *argument == Argument::TimeStep);

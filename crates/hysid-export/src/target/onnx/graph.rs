@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::program::expression::{
     Binary, Comparison, Real, RealVariable, Truth, Unary, Whole, WholeVariable,
 };
-use crate::program::{Array, Program, Statement, Storage};
+use crate::program::{Array, Program, Statement, Storage, every};
 use crate::target::onnx::lanes;
 use crate::target::onnx::messages::{Attribute, BOOL, DOUBLE, Graph, INT64, Node, Tensor, ValueInfo};
 
@@ -63,7 +63,6 @@ fn names_read<'n>(nodes: &'n [Node], names: &mut BTreeSet<&'n str>) {
     }
 }
 
-/// A row of numbers.
 pub(super) fn row(name: &str, values: &[f64]) -> Tensor {
     Tensor {
         dims: vec![i64::try_from(values.len()).unwrap_or(i64::MAX)],
@@ -84,11 +83,9 @@ struct Values {
     reals: BTreeMap<RealVariable, String>,
     wholes: BTreeMap<WholeVariable, String>,
     arrays: BTreeMap<Array, String>,
-    /// Whole variables that are known.
     known: BTreeMap<WholeVariable, i64>,
     /// The variable of a loop on rows that has the numbers 0, 1, ... to below this one.
     all: Option<(WholeVariable, usize)>,
-    /// The shape of such rows.
     lanes: Option<String>,
 }
 
@@ -136,7 +133,6 @@ impl<'a> Compiler<'a> {
         compiler
     }
 
-    /// Divides the state into its arrays.
     fn split(&mut self, states: &[(Array, usize)]) {
         let sizes: Vec<i64> =
             states.iter().map(|(_, length)| i64::try_from(*length).unwrap_or(i64::MAX)).collect();
@@ -331,7 +327,6 @@ impl<'a> Compiler<'a> {
         self.values.reals.extend(sums);
     }
 
-    /// Writes a row of an array.
     fn set_row(&mut self, array: Array, index: &Whole, value: &Real) {
         let value = self.real(value);
         let value = match self.values.lanes.clone() {
@@ -426,7 +421,12 @@ impl<'a> Compiler<'a> {
     /// The values from outside that statements change.
     fn changed(&self, statements: &[Statement]) -> Vec<Changed> {
         let mut all = Vec::new();
-        collect(statements, &mut all);
+        every(statements, &mut |statement| match statement {
+            Statement::Assign(variable, _) => all.push(Changed::Real(*variable)),
+            Statement::AssignWhole(variable, _) => all.push(Changed::Whole(*variable)),
+            Statement::Set(array, _, _) => all.push(Changed::Array(*array)),
+            _ => {}
+        });
         all.retain(|value| match value {
             Changed::Real(variable) => self.values.reals.contains_key(variable),
             Changed::Whole(variable) => self.values.wholes.contains_key(variable),
@@ -478,7 +478,6 @@ impl<'a> Compiler<'a> {
         changed.iter().map(one).collect()
     }
 
-    /// A whole number that is known here.
     fn known(&self, value: &Whole) -> Option<i64> {
         match value {
             Whole::Constant(value) => Some(*value),
@@ -490,16 +489,11 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// A condition that is known here.
     fn known_truth(&self, condition: &Truth) -> Option<bool> {
         match condition {
             Truth::Whole(comparison, a, b) => {
                 let (a, b) = (self.known(a)?, self.known(b)?);
-                Some(match comparison {
-                    Comparison::Below => a < b,
-                    Comparison::AtMost => a <= b,
-                    Comparison::Equal => a == b,
-                })
+                Some(comparison.holds(a, b))
             }
             Truth::Not(a) => Some(!self.known_truth(a)?),
             Truth::Real(..) | Truth::And(..) | Truth::Or(..) => None,
@@ -701,22 +695,6 @@ impl<'a> Compiler<'a> {
                 let a = self.truth(a);
                 self.node("Not", &[&a])
             }
-        }
-    }
-}
-
-fn collect(statements: &[Statement], changed: &mut Vec<Changed>) {
-    for statement in statements {
-        match statement {
-            Statement::Assign(variable, _) => changed.push(Changed::Real(*variable)),
-            Statement::AssignWhole(variable, _) => changed.push(Changed::Whole(*variable)),
-            Statement::Set(array, _, _) => changed.push(Changed::Array(*array)),
-            Statement::Each(_, _, _, body) | Statement::While(_, body) => collect(body, changed),
-            Statement::If(_, yes, no) => {
-                collect(yes, changed);
-                collect(no, changed);
-            }
-            Statement::Remark(_) | Statement::Let(..) | Statement::LetWhole(..) | Statement::ForSlope(_) => {}
         }
     }
 }

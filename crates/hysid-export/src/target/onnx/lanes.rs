@@ -1,6 +1,7 @@
 //! Which loops can be computed for all numbers at once.
 
 use crate::program::expression::{Binary, Real, RealVariable, Truth, Whole, WholeVariable};
+use crate::program::uses::Uses;
 use crate::program::{Array, Statement};
 
 /// True if no pass of the loop needs what another one wrote, but for sums: each array that is written is only read where
@@ -44,7 +45,6 @@ pub(super) fn addend(variable: RealVariable, value: &Real) -> Option<&Real> {
 struct Lanes {
     /// Whole variables that rise with the loop's by a fixed step: places that differ from pass to pass.
     steps: Vec<WholeVariable>,
-    /// Variables of the pass itself.
     own: Vec<RealVariable>,
     /// Those of them that differ from pass to pass.
     varying: Vec<RealVariable>,
@@ -146,23 +146,5 @@ impl Lanes {
 }
 
 fn mentions(value: &Real, variable: RealVariable) -> bool {
-    let of_truth = |condition: &Truth| truth_mentions(condition, variable);
-    match value {
-        Real::Constant(_) | Real::Element(..) | Real::OfWhole(_) => false,
-        Real::Variable(other) => *other == variable,
-        Real::Unary(_, a) => mentions(a, variable),
-        Real::Binary(_, a, b) => mentions(a, variable) || mentions(b, variable),
-        Real::Choice(condition, a, b) => {
-            of_truth(condition) || mentions(a, variable) || mentions(b, variable)
-        }
-    }
-}
-
-fn truth_mentions(condition: &Truth, variable: RealVariable) -> bool {
-    match condition {
-        Truth::Real(_, a, b) => mentions(a, variable) || mentions(b, variable),
-        Truth::Whole(..) => false,
-        Truth::And(a, b) | Truth::Or(a, b) => truth_mentions(a, variable) || truth_mentions(b, variable),
-        Truth::Not(a) => truth_mentions(a, variable),
-    }
+    Uses::of_real(value).reals.contains(&variable)
 }

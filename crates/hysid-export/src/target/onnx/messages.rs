@@ -143,12 +143,10 @@ pub(super) struct Dimension {
 }
 
 impl ValueInfo {
-    /// A scalar.
     pub fn scalar(name: &str, data_type: i32) -> Self {
         Self::of(name, data_type, Vec::new())
     }
 
-    /// A row of so many numbers.
     pub fn row(name: &str, length: usize) -> Self {
         let value = Some(i64::try_from(length).unwrap_or(i64::MAX));
         Self::of(name, DOUBLE, vec![Dimension { value, name: None }])

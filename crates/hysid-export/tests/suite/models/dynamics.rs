@@ -9,7 +9,6 @@ use hysid_core::model::Predictor;
 
 use super::data;
 
-/// Numbers between -1 and 1.
 struct Numbers(u64);
 
 impl Numbers {

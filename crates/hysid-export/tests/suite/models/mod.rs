@@ -122,7 +122,6 @@ pub fn ensembles() -> Vec<(String, Model)> {
     vec![fitted("auto", 1, &[("starts", json!(1)), ("epochs", json!(2))])]
 }
 
-/// Models of all kinds.
 pub fn all() -> Vec<(String, Model)> {
     [networks(), laws(), laws_with_inertia(), ensembles()].concat()
 }

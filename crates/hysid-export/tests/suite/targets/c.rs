@@ -14,7 +14,6 @@ use super::case::{Case, MODELS, NAME, written};
 use super::tools::{succeeds, tool};
 use crate::models::{data, path, time_step};
 
-/// Warnings are errors.
 pub const STRICT: [&str; 8] =
     ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-ffp-contract=off"];
 
@@ -99,10 +98,8 @@ int main(void)
     )
 }
 
-/// Writes outputs in binary.
 const OUTPUTS: &str = "double y = actuator_step(&modelARGUMENTS); fwrite(&y, sizeof y, 1, stdout);";
 
-/// Writes outputs and half widths of the band.
 const BAND: &str = "double pair[2];
         pair[0] = actuator_trial(&modelARGUMENTS);
         pair[1] = actuator_half_width(&model);

@@ -11,10 +11,8 @@ use hysid_export::{Options, Target, export};
 
 use crate::models::{all, path, time_step};
 
-/// A model of every kind.
 pub static MODELS: LazyLock<Vec<(String, Model)>> = LazyLock::new(all);
 
-/// Name of the exported models.
 pub const NAME: &str = "actuator";
 
 /// The arguments of steps, and the outputs of the library.
@@ -46,7 +44,6 @@ impl Case {
         case
     }
 
-    /// True if the last argument is the time step.
     pub fn has_time(&self) -> bool {
         self.arguments.last() == Some(&Argument::TimeStep)
     }

@@ -18,7 +18,6 @@ fn with_inverse(inverse: InverseOptions) -> Options {
     Options { inverse: Some(inverse), ..Options::named(NAME) }
 }
 
-/// Compiles a program of the export.
 fn compiled(compiler: &str, folder: &Path, program: &str) {
     let files = ["actuator.c", "actuator_inverse.c", program, "-lm", "-o", "program"];
     succeeds(Command::new(compiler).current_dir(folder).args(STRICT).args(files));

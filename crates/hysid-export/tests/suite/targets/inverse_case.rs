@@ -25,7 +25,6 @@ pub fn tight(model: &Model) -> InverseOptions {
     InverseOptions { limits: Some((low + 0.2 * width, high - 0.25 * width)), slew: Some(width) }
 }
 
-/// Random numbers between 0 and 1.
 pub fn unit() -> impl FnMut() -> f64 {
     let mut bits: u64 = 7;
     move || {
@@ -100,7 +99,6 @@ impl InverseCase {
         self.rows.iter().flatten().flat_map(|value| value.to_le_bytes()).collect()
     }
 
-    /// Number of rows by their reach, as text.
     pub fn reaches(&self) -> String {
         let count =
             |word: &str| self.expected.iter().flatten().filter(|given| given.2.word() == word).count();

@@ -5,10 +5,8 @@ use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::process::{Command, Output, Stdio};
 
-/// A program, if it starts. `probe` are arguments with which it does nothing.
-///
-/// Without it, the test that asks has proved nothing. The file of the environment variable `HYSID_UNPROVED` gets a line
-/// that says so and how to install it, which `cargo xtask test` shows; with `HYSID_PROVE_ALL` the test fails.
+/// A program, if it starts. `probe` are arguments with which it does nothing. A test without it has proved nothing: the
+/// file of the environment variable `HYSID_UNPROVED` gets a line that says so; with `HYSID_PROVE_ALL` the test fails.
 pub fn tool(what: &str, program: &str, probe: &[&str], install: &str) -> Option<String> {
     let starts = Command::new(program)
         .args(probe)
@@ -36,7 +34,6 @@ pub fn python(what: &str, modules: &[&str]) -> Option<String> {
     tool(what, &python, &["-c", &imports], &install)
 }
 
-/// Runs a command that must succeed.
 pub fn succeeds(command: &mut Command) -> Output {
     let output = command.output().unwrap();
     let text =

@@ -14,7 +14,6 @@ const STEADY: f64 = 3e-5;
 const SUNK: f64 = 0.02;
 const NEARLY_AT_REST: f64 = 0.003;
 
-/// The energy within its limits.
 pub(super) fn limited(builder: &mut Builder, e: &Real) -> Real {
     builder.value(e.clamp(0.0, LARGEST_ENERGY))
 }

@@ -71,7 +71,6 @@ pub(super) struct ElementParts<'l> {
     /// `χ`, `w_0`, `w_1` and `T_0` of each state, in the step from one to the other.
     path_step: Array,
     sums: Array,
-    /// The force of each element.
     following: Array,
 }
 

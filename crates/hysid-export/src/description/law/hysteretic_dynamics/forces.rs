@@ -127,7 +127,6 @@ impl Parts<'_> {
 }
 
 impl Elements<'_> {
-    /// A force within its bounds.
     fn limited(&self, e: &Whole, force: &Real) -> Real {
         let largest = self.largest.at(e);
         force.clamp(-&largest, largest)

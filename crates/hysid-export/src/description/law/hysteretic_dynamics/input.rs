@@ -105,12 +105,10 @@ impl Steps {
         builder.assign(self.length, row / count);
     }
 
-    /// The scaled input where the motion is.
     pub fn reached(&self) -> Real {
         self.reached.at(0_usize)
     }
 
-    /// The newest sample of the scaled input.
     pub fn newest(&self) -> Real {
         self.recent.at(0_usize)
     }

@@ -43,7 +43,6 @@ impl Factors {
         }
     }
 
-    /// A factor of a mode.
     pub fn at(&self, factor: usize, mode: &Whole) -> Real {
         self.factors.at(self.place(factor, mode))
     }
