@@ -25,9 +25,7 @@ fn fit(arguments: &str) -> String {
 
 /// Runs it to the end.
 fn ran(bench: &Workbench, arguments: &str) -> Ran {
-    let ran = bench.run(&fit(arguments));
-    assert_eq!(ran.status, Some(0), "{arguments}: {}", ran.stderr);
-    ran
+    bench.succeeds(&fit(arguments))
 }
 
 fn spawned(bench: &Workbench, arguments: &str) -> Child {
@@ -97,8 +95,7 @@ fn a_fit_that_is_interrupted_says_how_to_go_on() {
     assert_eq!(interrupted.status, Some(130), "{}", interrupted.stderr);
     assert!(interrupted.last_line().contains("--resume c.bin"), "{}", interrupted.stderr);
     assert!(std::fs::metadata(bench.path("c.bin")).unwrap().modified().unwrap() > before);
-    let ran = bench.run(&fit("-o n.json --resume c.bin --checkpoint d.bin --time-limit 0.5 --json"));
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds(&fit("-o n.json --resume c.bin --checkpoint d.bin --time-limit 0.5 --json"));
     assert!(ran.stdout.contains("\"termination\": \"stopped\""), "{}", ran.stdout);
     assert!(bench.path("d.bin").exists());
 }

@@ -21,8 +21,7 @@ fn texts(cells: &[&dyn ToString]) -> Vec<String> {
 fn told(data: String, options: &str, lines: &[&str]) {
     let bench = Workbench::new();
     bench.put("data.csv", data);
-    let ran = bench.run(&format!("fit data.csv {QUICK} {options}"));
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds(&format!("fit data.csv {QUICK} {options}"));
     for line in lines {
         assert!(ran.stderr.contains(line), "{line}\n{}", ran.stderr);
     }

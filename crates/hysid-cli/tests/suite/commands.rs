@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::workbench::{ROWS, Ran, Workbench, csv, json, rows, table, with_cell};
+use crate::workbench::{ROWS, Ran, Workbench, csv, json, must_contain, rows, table, with_cell};
 use serde_json::Value;
 
 /// The keys of an object, in order.
@@ -21,8 +21,7 @@ const ERRORS: &str =
 fn fit_simulate_and_evaluate_agree() {
     let bench = Workbench::new();
     bench.put("loop.csv", csv("Time (s),x_mm,force [kN]", ",", "\n", &rows()));
-    let fit = bench.run("fit loop.csv --model xpnn+ --starts 2 --epochs 5");
-    assert_eq!(fit.status, Some(0), "{}", fit.stderr);
+    let fit = bench.succeeds("fit loop.csv --model xpnn+ --starts 2 --epochs 5");
     for said in
         ["samples  60, all scored, in 1 record", "Time (s): steps of 0.1 s", "x_mm:", "backward differences"]
     {
@@ -33,7 +32,7 @@ fn fit_simulate_and_evaluate_agree() {
     }
     assert!(bench.text("loop.html").contains("<html"));
 
-    let errors = json(&bench.run("evaluate loop.json loop.csv --json"));
+    let errors = bench.json("evaluate loop.json loop.csv --json");
     assert_eq!(keys(&errors), ERRORS);
     let simulated = bench.run("simulate loop.json loop.csv -o out.csv");
     assert_eq!((simulated.status, simulated.stdout.as_str()), (Some(0), ""), "{}", simulated.stderr);
@@ -54,8 +53,7 @@ fn fit_simulate_and_evaluate_agree() {
 fn json_has_the_promised_keys() {
     let bench = Workbench::new();
     bench.put("loop.csv", table());
-    let fit =
-        json(&bench.run("fit loop.csv -o m.json --no-report --model xpnn+ --starts 2 --epochs 2 --json"));
+    let fit = bench.json("fit loop.csv -o m.json --no-report --model xpnn+ --starts 2 --epochs 2 --json");
     let promised = "architecture evaluations members model notes parameters residuals seconds \
                     selection termination train validation";
     assert_eq!(keys(&fit), promised);
@@ -72,8 +70,7 @@ fn the_model_depends_on_the_seed_and_not_on_the_threads() {
     bench.put("loop.csv", table());
     let model = |options: &str| {
         let fit = "fit loop.csv -o m.json --no-report --model xpnn+ --starts 3 --epochs 4";
-        let ran = bench.run(&format!("{fit} {options}"));
-        assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+        bench.succeeds(&format!("{fit} {options}"));
         bench.text("m.json")
     };
     let one = model("--threads 1");
@@ -86,8 +83,7 @@ fn simulate_keeps_every_column_as_it_is() {
     let bench = Workbench::with_model();
     let text = "note,t,x\n\"a, b\",0,0.10\n,1.0,+.5\nc,2e0,-0.25\n";
     bench.put("drive.csv", text);
-    let ran = bench.run("simulate model.json drive.csv");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds("simulate model.json drive.csv");
     let lines: Vec<&str> = ran.stdout.lines().collect();
     assert_eq!(lines[0], "note,t,x,y_model");
     for (line, before) in lines[1..].iter().zip(text.lines().skip(1)) {
@@ -104,7 +100,7 @@ fn simulate_keeps_every_column_as_it_is() {
 fn simulate_writes_a_header_that_reads_back() {
     let bench = Workbench::with_model();
     bench.put("drive.csv", "\"# note\",t,x\na,0,0.1\nb,1,0.5\nc,2,-0.2\n");
-    assert_eq!(bench.run("simulate model.json drive.csv -o once.csv").status, Some(0));
+    bench.succeeds("simulate model.json drive.csv -o once.csv");
     // Read back, and the output of the model scored against itself.
     let ran = bench.run("evaluate model.json once.csv --output y_model --json");
     assert_eq!(json(&ran)["max_abs_error"], 0.0);
@@ -120,10 +116,8 @@ fn further_inputs_and_a_given_rate_are_found_by_name() {
         .map(|row| vec![row[1].clone(), format!("{}", number(&row[0]).cos()), row[2].clone(), row[2].clone()])
         .collect();
     bench.put("wide.csv", csv("x_mm,v_mm_s,load,y", ",", "\n", &wide));
-    let fit = bench.run("fit wide.csv --input x_mm --input load --rate v_mm_s --model xpnn+ --starts 1 --epochs 2 --no-report");
-    assert_eq!(fit.status, Some(0), "{}", fit.stderr);
-    assert!(fit.stderr.contains("of x_mm from column v_mm_s"), "{}", fit.stderr);
-    assert!(fit.stderr.contains("load:"), "{}", fit.stderr);
+    let fit = bench.succeeds("fit wide.csv --input x_mm --input load --rate v_mm_s --model xpnn+ --starts 1 --epochs 2 --no-report");
+    must_contain(&fit.stderr, &["of x_mm from column v_mm_s", "load:"]);
     let swapped: Vec<Vec<String>> =
         wide.iter().map(|row| vec![row[1].clone(), row[2].clone(), row[0].clone()]).collect();
     bench.put("swapped.csv", csv("v_mm_s,load,x_mm", ",", "\n", &swapped));
@@ -147,8 +141,7 @@ fn several_files_and_records_are_named_after_their_origin() {
     };
     bench.put("one.csv", cut("r"));
     bench.put("two.csv", cut("r"));
-    let ran = bench.run("fit one.csv two.csv --model xpnn+ --starts 1 --epochs 1 --no-report");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds("fit one.csv two.csv --model xpnn+ --starts 1 --epochs 1 --no-report");
     assert!(ran.stderr.contains("4 records: one/r0, one/r1, two/r0, two/r1"), "{}", ran.stderr);
     assert!(bench.path("one.json").exists());
 }
@@ -162,8 +155,7 @@ fn evaluate_warns_beyond_the_trained_range() {
         .collect();
     bench.put("wider.csv", csv("t,x,y", ",", "\n", &wider));
     for command in ["evaluate", "simulate"] {
-        let ran = bench.run(&format!("{command} model.json wider.csv"));
-        assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+        let ran = bench.succeeds(&format!("{command} model.json wider.csv"));
         assert!(ran.stderr.starts_with("warning: x: "), "{}", ran.stderr);
     }
 }
@@ -228,7 +220,7 @@ fn ctrl_c_and_signals_save_the_best_model_so_far() {
         );
         assert!(began.elapsed() < Duration::from_secs(10), "{:?}", began.elapsed());
         assert!(ran.stdout.contains("stopped"), "{}", ran.stdout);
-        assert_eq!(bench.run("evaluate m.json good.csv").status, Some(0));
+        bench.succeeds("evaluate m.json good.csv");
     }
 }
 
@@ -252,7 +244,7 @@ fn the_time_limit_is_kept() {
     let took = began.elapsed();
     assert!(took > Duration::from_secs(1) && took < Duration::from_secs(10), "{took:?}");
     assert_eq!(json(&ran)["termination"], "stopped");
-    assert_eq!(bench.run("evaluate good.json good.csv").status, Some(0));
+    bench.succeeds("evaluate good.json good.csv");
 }
 
 #[test]
@@ -279,15 +271,10 @@ fn output_to_a_pipe_has_no_colours_and_may_be_cut_off() {
 #[test]
 fn the_demo_needs_nothing_and_can_be_typed_after() {
     let bench = Workbench::new();
-    let ran = bench.run("demo");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
-    for column in ["train", "validation", "unseen test"] {
-        assert!(ran.stdout.contains(column), "{}", ran.stdout);
-    }
+    let ran = bench.succeeds("demo");
+    must_contain(&ran.stdout, &["train", "validation", "unseen test"]);
     let page = bench.text("hysid-demo/demo.html");
-    for words in ["<svg", "The ensemble", "Candidates without weight: ", "90 % band"] {
-        assert!(page.contains(words), "{words}");
-    }
+    must_contain(&page, &["<svg", "The ensemble", "Candidates without weight: ", "90 % band"]);
     assert!(bench.text("hysid-demo/demo-loops.svg").starts_with("<svg"));
     let demo = bench.text("hysid-demo/demo.json");
     let typed: Vec<&str> = ran.stdout.lines().filter(|line| line.starts_with("  hysid ")).collect();
@@ -297,6 +284,6 @@ fn the_demo_needs_nothing_and_can_be_typed_after() {
         assert_eq!(again.status, Some(0), "{line}: {}", again.stderr);
     }
     assert_eq!(bench.text("hysid-demo/demo.json"), demo, "the same data and options give the same model");
-    let unseen = json(&bench.run("evaluate hysid-demo/demo.json hysid-demo/demo-test.csv --json"));
+    let unseen = bench.json("evaluate hysid-demo/demo.json hysid-demo/demo-test.csv --json");
     assert!(unseen["nrmse_std_percent"].as_f64().unwrap() < 5.0, "{unseen}");
 }

@@ -1,6 +1,6 @@
 //! `hysid compare` as a user runs it, and models that are no networks in the other commands.
 
-use crate::workbench::{Workbench, json, table};
+use crate::workbench::{Workbench, json, must_contain, table};
 
 fn bench() -> Workbench {
     let bench = Workbench::new();
@@ -29,16 +29,14 @@ fn models_are_sorted_by_their_error_on_unseen_data() {
         assert!(row["error"].as_str().unwrap().contains("needs the rate"), "{row}");
     }
     let page = bench.text("good-compared.html");
-    for word in ["Error against size", "prandtl-ishlinskii", "needs the rate", "<svg"] {
-        assert!(page.contains(word), "{word}");
-    }
+    must_contain(&page, &["Error against size", "prandtl-ishlinskii", "needs the rate", "<svg"]);
 }
 
 #[test]
 fn the_table_fits_a_terminal() {
     let bench = bench();
-    let ran = bench.run("compare good.csv --models gpnn,bouc-wen,generalized-prandtl-ishlinskii --no-report");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran =
+        bench.succeeds("compare good.csv --models gpnn,bouc-wen,generalized-prandtl-ishlinskii --no-report");
     assert!(ran.stdout.lines().all(|line| line.chars().count() <= 80), "{}", ran.stdout);
     assert!(ran.stdout.contains("the training data (name test data with --test)"), "{}", ran.stdout);
     assert!(ran.stderr.contains("6/6"), "{}", ran.stderr);
@@ -48,8 +46,7 @@ fn the_table_fits_a_terminal() {
 #[test]
 fn a_fit_that_was_stopped_is_marked() {
     let bench = bench();
-    let ran = bench.run("compare good.csv --models xpnn+ --time-limit 0.05");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds("compare good.csv --models xpnn+ --time-limit 0.05");
     let row = ran.stdout.lines().find(|line| line.starts_with("xpnn+")).unwrap();
     assert!(row.contains("* "), "{}", ran.stdout);
     for text in [ran.stdout, bench.text("good-compared.html")] {
@@ -62,7 +59,7 @@ fn a_fit_that_was_stopped_is_marked() {
 #[test]
 fn a_law_is_compared_in_all_its_variants() {
     let bench = bench();
-    let rows = json(&bench.run("compare good.csv --models bouc-wen --no-report --json --time-limit 2"));
+    let rows = bench.json("compare good.csv --models bouc-wen --no-report --json --time-limit 2");
     let mut labels: Vec<&str> =
         rows.as_array().unwrap().iter().map(|row| row["label"].as_str().unwrap()).collect();
     labels.sort_unstable();
@@ -88,14 +85,11 @@ fn what_cannot_be_compared_is_refused() {
 #[test]
 fn a_law_is_fitted_reported_judged_and_simulated_like_a_network() {
     let bench = bench();
-    let ran = bench.run("fit good.csv --model bouc-wen -o law.json --starts 2 --epochs 10");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds("fit good.csv --model bouc-wen -o law.json --starts 2 --epochs 10");
     assert!(ran.stdout.contains("bouc-wen with 7 parameters; multi-start search"), "{}", ran.stdout);
     let page = bench.text("law.html");
-    for word in ["Parameters", "yield displacement", "Convergence", "multi-start search"] {
-        assert!(page.contains(word), "{word}");
-    }
-    assert_eq!(bench.run("evaluate law.json good.csv").status, Some(0));
+    must_contain(&page, &["Parameters", "yield displacement", "Convergence", "multi-start search"]);
+    bench.succeeds("evaluate law.json good.csv");
     let simulated = bench.run("simulate law.json good.csv");
     assert!(simulated.stdout.starts_with("t,x,y,y_model\n"), "{}", simulated.stdout);
     bench.refuses_in_part(
@@ -108,8 +102,8 @@ fn a_law_is_fitted_reported_judged_and_simulated_like_a_network() {
         2 fit good.csv --model duhem-nn --states 0 => states 0: duhem-nn has at least 1
     ",
     );
-    let useless = bench.run("fit good.csv --model preisach --starts 3 --degradation --operators 6 -o m.json");
-    assert_eq!(useless.status, Some(0), "{}", useless.stderr);
+    let useless =
+        bench.succeeds("fit good.csv --model preisach --starts 3 --degradation --operators 6 -o m.json");
     for option in ["--starts", "--degradation"] {
         assert!(useless.stderr.contains(&format!("preisach ignores {option}")), "{}", useless.stderr);
     }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::workbench::{Workbench, succeeds};
+use crate::workbench::{Workbench, must_contain};
 use serde_json::Value;
 
 /// Turning points joined in steps, through a law.
@@ -43,7 +43,7 @@ fn a_member_has_the_figures_of_its_law_in_csv_text_and_json() {
     let bench = Workbench::new();
     let turning = [0.0, 2.0, -2.0, 2.0, -2.0, 4.0, -4.0, 4.0, -4.0, 0.0];
     bench.put("member.csv", table("disp_mm,force_kN", &turning, 0.05, &mut member()));
-    let ran = succeeds(&bench, "cycles member.csv");
+    let ran = bench.succeeds("cycles member.csv");
     assert_eq!(bench.files("."), ["member.csv", "member.cycles.csv", "member.cycles.html"]);
     let rows = rows(&bench.text("member.cycles.csv"));
     assert_eq!(rows.len(), 4);
@@ -62,10 +62,9 @@ fn a_member_has_the_figures_of_its_law_in_csv_text_and_json() {
     let marked: Vec<&str> = rows.iter().map(|row| row["backbone_peak"].as_str()).collect();
     assert_eq!(marked, ["yes", "no", "yes", "no"]);
     assert!(ran.stdout.lines().all(|line| line.chars().count() <= 80), "{}", ran.stdout);
-    assert!(ran.stdout.contains("backbone: 4 points") && ran.stdout.contains("energy, J"), "{}", ran.stdout);
-    assert!(ran.stdout.contains("no time: no period and frequency"), "{}", ran.stdout);
+    must_contain(&ran.stdout, &["backbone: 4 points", "energy, J", "no time: no period and frequency"]);
 
-    let ran = succeeds(&bench, "cycles member.csv --json");
+    let ran = bench.succeeds("cycles member.csv --json");
     let told: Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!((&told["field"], &told["division"]), (&"structure".into(), &"zero".into()));
     assert_eq!((&told["units"]["energy"], &told["of_model"]), (&"J".into(), &false.into()));
@@ -92,7 +91,7 @@ fn a_magnet_has_losses_in_its_units_at_each_frequency() {
         }
     }
     bench.put("core.csv", text);
-    let ran = succeeds(&bench, "cycles core.csv --output B_T --input H_A_per_m --no-report");
+    let ran = bench.succeeds("cycles core.csv --output B_T --input H_A_per_m --no-report");
     let rows = rows(&bench.text("core.cycles.csv"));
     let complete: Vec<_> = rows.iter().filter(|row| row["complete"] == "yes").collect();
     assert_eq!(complete.len(), 8);
@@ -128,7 +127,7 @@ fn reversal_curves_in_data_give_the_density_of_the_plane_as_table_and_picture() 
         }
     }
     bench.put("forc.csv", text);
-    let ran = succeeds(&bench, "cycles forc.csv -o out.csv");
+    let ran = bench.succeeds("cycles forc.csv -o out.csv");
     assert_eq!(bench.files("."), ["forc.csv", "out.csv", "out.forc.csv", "out.html"]);
     assert!(ran.stdout.contains("19 rising first-order reversal curves"), "{}", ran.stdout);
     let nodes = rows(&bench.text("out.forc.csv"));
@@ -148,16 +147,16 @@ fn reversal_curves_in_data_give_the_density_of_the_plane_as_table_and_picture() 
         page.contains("FORC diagram") && page.contains("Everett function") && page.contains("#1020"),
         "a heat map"
     );
-    let ran = succeeds(&bench, "cycles forc.csv -o out.csv --smoothing-factor 4");
+    let ran = bench.succeeds("cycles forc.csv -o out.csv --smoothing-factor 4");
     assert!(ran.stdout.replace('\n', " ").contains("smoothing factor 4 (as asked for)"), "{}", ran.stdout);
 }
 
 #[test]
 fn a_model_is_driven_through_cycles_and_reversal_curves_and_they_are_said_to_be_its() {
     let bench = Workbench::new();
-    succeeds(&bench, "generate ferromagnet -o sheet.csv");
-    succeeds(&bench, "fit sheet.csv --model preisach -o model.json --no-report");
-    let ran = succeeds(&bench, "cycles model.json --time t");
+    bench.succeeds("generate ferromagnet -o sheet.csv");
+    bench.succeeds("fit sheet.csv --model preisach -o model.json --no-report");
+    let ran = bench.succeeds("cycles model.json --time t");
     assert!(ran.stderr.contains("ignore --time"), "{}", ran.stderr);
     assert!(ran.stdout.replace('\n', " ").contains("of the model, not of measured data"), "{}", ran.stdout);
     let cycles = rows(&bench.text("model.cycles.csv"));
@@ -170,7 +169,7 @@ fn a_model_is_driven_through_cycles_and_reversal_curves_and_they_are_said_to_be_
     let nodes = rows(&bench.text("model.cycles.forc.csv"));
     assert!(nodes.len() > 800, "{}", nodes.len());
     assert!(bench.text("model.cycles.html").contains("Hysid drove the model"));
-    let ran = succeeds(&bench, "cycles model.json --json");
+    let ran = bench.succeeds("cycles model.json --json");
     let told: Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!(told["of_model"], Value::Bool(true));
     assert_eq!(told["reversal_curves"]["curves"].as_array().unwrap().len(), 40);
@@ -181,7 +180,7 @@ fn the_table_goes_to_stdout_where_asked_and_files_of_others_are_kept() {
     let bench = Workbench::new();
     bench
         .put("member.csv", table("disp_mm,force_kN", &[0.0, 2.0, -2.0, 2.0, -2.0, 0.0], 0.05, &mut member()));
-    let ran = succeeds(&bench, "cycles member.csv -o -");
+    let ran = bench.succeeds("cycles member.csv -o -");
     assert!(ran.stdout.starts_with("record,cycle,first_row,last_row,complete,start_time,"), "{}", ran.stdout);
     assert_eq!(bench.files("."), ["member.csv"]);
     assert_eq!(rows(&ran.stdout).len(), 2);
@@ -199,15 +198,15 @@ fn the_table_goes_to_stdout_where_asked_and_files_of_others_are_kept() {
         2 cycles => required
     ",
     );
-    succeeds(&bench, "cycles member.csv -o other.csv");
-    succeeds(&bench, "cycles member.csv -o other.csv --field actuator");
+    bench.succeeds("cycles member.csv -o other.csv");
+    bench.succeeds("cycles member.csv -o other.csv --field actuator");
 }
 
 #[test]
 fn poor_data_leave_cells_empty_and_say_why() {
     let bench = Workbench::new();
     bench.put("half.csv", table("disp_mm,force_kN", &[0.0, 2.0, 1.0], 0.05, &mut member()));
-    let ran = succeeds(&bench, "cycles half.csv");
+    let ran = bench.succeeds("cycles half.csv");
     let row = &rows(&bench.text("half.cycles.csv"))[0];
     assert_eq!((row["complete"].as_str(), row["energy [J]"].as_str()), ("no", ""));
     assert!(row["notes"].contains("no whole cycle"), "{row:?}");
@@ -227,7 +226,7 @@ fn poor_data_leave_cells_empty_and_say_why() {
         })
         .collect();
     bench.put("blank.csv", blanked);
-    succeeds(&bench, "cycles blank.csv");
+    bench.succeeds("cycles blank.csv");
     let rows = rows(&bench.text("blank.cycles.csv"));
     assert_eq!(rows[0]["energy [J]"], "");
     assert!(rows[0]["notes"].contains("40 rows of the cycle have no output"), "{:?}", rows[0]);
@@ -237,7 +236,7 @@ fn poor_data_leave_cells_empty_and_say_why() {
 #[test]
 fn cycles_of_a_model_with_a_rate_say_at_which_speeds_they_are() {
     let bench = Workbench::with_model();
-    let ran = succeeds(&bench, "cycles model.json --no-report");
+    let ran = bench.succeeds("cycles model.json --no-report");
     let line = ran.stderr.lines().find(|line| line.starts_with("speed ")).expect("a line of speeds");
     assert!(line.contains("record \"slow\" at "), "{line}");
     // The slow one is a millionth of the fastest.

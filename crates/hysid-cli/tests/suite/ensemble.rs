@@ -21,7 +21,7 @@ fn assert_narrow(text: &str) {
 #[test]
 fn an_ensemble_tells_its_members_and_what_they_cost() {
     let bench = bench();
-    let fit = json(&bench.run(&format!("fit good.csv -o e.json {QUICK} --json")));
+    let fit = bench.json(&format!("fit good.csv -o e.json {QUICK} --json"));
     let members = fit["members"].as_array().unwrap();
     assert_eq!(members.len(), 3);
     for member in members {
@@ -59,7 +59,7 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
 #[test]
 fn the_band_stands_in_columns_and_its_coverage_is_counted() {
     let bench = bench();
-    assert_eq!(bench.run(&format!("fit good.csv -o e.json --no-report {QUICK}")).status, Some(0));
+    bench.succeeds(&format!("fit good.csv -o e.json --no-report {QUICK}"));
     let simulated = bench.run("simulate e.json good.csv --band 0.6");
     let mut lines = simulated.stdout.lines();
     assert_eq!(lines.next(), Some("t,x,y,y_model,y_low,y_high"), "{}", simulated.stderr);
@@ -70,13 +70,13 @@ fn the_band_stands_in_columns_and_its_coverage_is_counted() {
         assert!(low < model && model < high, "{line}");
         covered += usize::from((low..=high).contains(&y));
     }
-    let evaluated = json(&bench.run("evaluate e.json good.csv --band 0.6 --json"));
+    let evaluated = bench.json("evaluate e.json good.csv --band 0.6 --json");
     let percent = 100.0 * covered as f64 / ROWS as f64;
     assert_eq!(evaluated["band"]["coverage_percent"].as_f64(), Some(percent), "{evaluated}");
     assert_eq!(evaluated["band"]["samples"].as_u64(), Some(ROWS as u64));
     let told = bench.run("evaluate e.json good.csv --band 0.6").stdout;
     assert!(told.contains("of the measured outputs lie within the band of 60 %\n"), "{told}");
-    let of_nine = json(&bench.run("evaluate e.json good.csv --band 0.6 --in 9-of-10 --json"));
+    let of_nine = bench.json("evaluate e.json good.csv --band 0.6 --in 9-of-10 --json");
     assert_eq!((evaluated["band"].get("of_ten"), &of_nine["band"]["of_ten"]), (None, &9.into()));
     assert!(of_nine["band"]["coverage_percent"].as_f64() >= Some(percent), "{of_nine}");
     let told = bench.run("evaluate e.json good.csv --band 0.6 --in 9-of-10").stdout;
@@ -113,7 +113,7 @@ fn a_band_that_is_not_there_is_refused() {
         2 simulate model.json good.csv --band 0.9 --in 9 => choose 5-of-10 to 9-of-10
     ",
     );
-    assert_eq!(bench.run(&format!("fit good.csv -o e.json --no-report {QUICK}")).status, Some(0));
+    bench.succeeds(&format!("fit good.csv -o e.json --no-report {QUICK}"));
     let taken = bench.run("simulate e.json taken.csv --band 0.9");
     assert_eq!(
         taken.last_line(),
@@ -126,9 +126,8 @@ fn a_band_that_is_not_there_is_refused() {
 fn auto_chooses_among_kinds_and_is_the_same_for_any_number_of_threads() {
     let bench = bench();
     let fit = |options: &str| {
-        let ran =
-            bench.run(&format!("fit good.csv -o a.json --rate none --companding 0.1 --epochs 4 {options}"));
-        assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+        let ran = bench
+            .succeeds(&format!("fit good.csv -o a.json --rate none --companding 0.1 --epochs 4 {options}"));
         (ran, bench.text("a.json"))
     };
     let (ran, model) = fit("--members 5");
@@ -142,7 +141,7 @@ fn auto_chooses_among_kinds_and_is_the_same_for_any_number_of_threads() {
     let (ran, _) = fit("--members 1");
     assert!(ran.stdout.contains("\nchosen one "), "{}", ran.stdout);
     assert!(bench.text("a.html").contains("How it was chosen"));
-    let evaluated = json(&bench.run("evaluate a.json good.csv --json --band 0.9"));
+    let evaluated = bench.json("evaluate a.json good.csv --json --band 0.9");
     assert!(evaluated["band"]["coverage_percent"].as_f64().unwrap() > 50.0, "{evaluated}");
 }
 
@@ -154,13 +153,13 @@ fn auto_keeps_its_time_limit_and_says_where_it_is() {
     assert!(began.elapsed() < Duration::from_secs(12), "{:?}", began.elapsed());
     assert_eq!(json(&ran)["termination"], "stopped");
     assert!(ran.stderr.contains(" % fitting "), "{}", ran.stderr);
-    assert_eq!(bench.run("evaluate a.json good.csv").status, Some(0));
+    bench.succeeds("evaluate a.json good.csv");
 }
 
 #[test]
 fn compare_begins_with_auto_and_tells_structures() {
     let bench = bench();
-    let rows = json(&bench.run("compare good.csv --time-limit 0.05 --rate none --no-report --json"));
+    let rows = bench.json("compare good.csv --time-limit 0.05 --rate none --no-report --json");
     let row = |model: &str| {
         let found = rows.as_array().unwrap().iter().find(|row| row["model"] == model);
         found.unwrap_or_else(|| panic!("{model}: {rows}")).clone()
@@ -174,8 +173,7 @@ fn compare_begins_with_auto_and_tells_structures() {
 fn folds_are_told_one_by_one_and_together() {
     let bench = bench();
     let command = "validate good.csv --model prandtl-ishlinskii";
-    let ran = bench.run(command);
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds(command);
     assert_narrow(&ran.stdout);
     let lines: Vec<&str> = ran.stdout.lines().collect();
     let heading: Vec<&str> = lines[0].split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect();
@@ -185,7 +183,7 @@ fn folds_are_told_one_by_one_and_together() {
     assert!(ran.stdout.contains("prandtl-ishlinskii: 5 folds in "), "{}", ran.stdout);
     assert!(ran.stderr.contains("fold 5 of 5: "), "{}", ran.stderr);
 
-    let found = json(&bench.run(&format!("{command} --json")));
+    let found = bench.json(&format!("{command} --json"));
     let folds = found["folds"].as_array().unwrap();
     assert_eq!((folds.len(), found["folds_in_all"].as_u64()), (5, Some(5)));
     let logarithms = folds.iter().map(|fold| fold["unseen"]["nrmse_std_percent"].as_f64().unwrap().ln());
@@ -201,8 +199,7 @@ fn records_are_held_out_in_turn() {
         row
     });
     bench.put("four.csv", csv("record,x_mm,F_kN", ",", "\n", &named.collect::<Vec<_>>()));
-    let ran = bench.run("validate four.csv --model pnn --starts 1 --epochs 3 --folds 2 --population 9");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds("validate four.csv --model pnn --starts 1 --epochs 3 --folds 2 --population 9");
     assert!(ran.stdout.contains("test 0, test 2") && ran.stdout.contains("unseen kN"), "{}", ran.stdout);
     // The same warnings as fit.
     assert!(ran.stderr.contains("subgradient ignores --population"), "{}", ran.stderr);
@@ -222,8 +219,7 @@ const LONG: &str = "--model xpnn+ --stops 20 --hidden 20 --starts 20 --epochs 10
 
 #[test]
 fn each_fold_has_its_time() {
-    let ran = bench().run(&format!("validate good.csv {LONG} --time-limit 0.2"));
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench().succeeds(&format!("validate good.csv {LONG} --time-limit 0.2"));
     assert!(ran.stdout.contains("xpnn+: 5 folds, 5 of them ended by the time limit, in "), "{}", ran.stdout);
 }
 

@@ -20,17 +20,15 @@ fn table(blank_within: bool) -> String {
 fn the_model_gives_the_input_for_an_output() {
     let bench = Workbench::new();
     bench.put("loops.csv", table(false));
-    let ran =
-        bench.run("fit loops.csv --inverse --model prandtl-ishlinskii -o inverse.json --no-report --json");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench
+        .succeeds("fit loops.csv --inverse --model prandtl-ishlinskii -o inverse.json --no-report --json");
     assert!(ran.stderr.contains("390") && ran.stderr.contains("output   u_V"), "{}", ran.stderr);
     // The inverse of a Prandtl-Ishlinskii model is one.
     let printed: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
     let error = printed["train"]["nrmse_std_percent"].as_f64().unwrap();
     assert!(error < 1.0, "{error}");
     bench.put("wanted.csv", "y_um\n0.1\n0.5\n1.0\n0.2\n");
-    let ran = bench.run("simulate inverse.json wanted.csv");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds("simulate inverse.json wanted.csv");
     assert!(ran.stdout.starts_with("y_um,u_V_model\n"), "{}", ran.stdout);
 }
 

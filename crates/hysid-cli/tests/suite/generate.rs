@@ -1,6 +1,6 @@
 //! `hysid generate` as a user runs it.
 
-use crate::workbench::{Workbench, succeeds};
+use crate::workbench::Workbench;
 
 const SPECIMENS: &str = "ferromagnet reinforced-concrete-joint reinforced-concrete-joint-cycles \
     terfenol-actuator terfenol-rod shape-memory-actuator two-wire-actuator concrete piezo-actuator \
@@ -17,8 +17,7 @@ fn outputs(text: &str) -> Vec<f64> {
 fn what_is_to_be_typed_next_works() {
     let bench = Workbench::new();
     for name in SPECIMENS.split(' ').step_by(3) {
-        let ran =
-            succeeds(&bench, &format!("generate {name} -o {name}.csv --test {name}-test.csv --noise 1"));
+        let ran = bench.succeeds(&format!("generate {name} -o {name}.csv --test {name}-test.csv --noise 1"));
         assert_eq!(ran.stdout, "");
         for (file, what) in [(format!("{name}.csv"), "training"), (format!("{name}-test.csv"), "test")] {
             assert!(ran.stderr.contains(&format!("wrote {file}: {what} data, ")), "{}", ran.stderr);
@@ -36,13 +35,13 @@ fn what_is_to_be_typed_next_works() {
 fn columns_have_names_with_units_and_records_only_where_there_are_several() {
     let bench = Workbench::new();
     let header = |name: &str| {
-        let text = succeeds(&bench, &format!("generate {name}")).stdout;
+        let text = bench.succeeds(&format!("generate {name}")).stdout;
         text.lines().next().unwrap().to_string()
     };
     assert_eq!(header("ferromagnet"), "H_A_per_m,B_T");
     assert_eq!(header("reinforced-concrete-joint"), "t_s,displacement_mm,force_kN");
     assert_eq!(header("piezo-actuator"), "record,t_s,voltage_V,displacement_um");
-    let piezo = succeeds(&bench, "generate piezo-actuator").stdout;
+    let piezo = bench.succeeds("generate piezo-actuator").stdout;
     let first_row = piezo.lines().nth(1).unwrap();
     assert!(first_row.ends_with(',') && !first_row.contains("NaN"), "a blank is an empty cell: {first_row}");
 }
@@ -50,7 +49,7 @@ fn columns_have_names_with_units_and_records_only_where_there_are_several() {
 #[test]
 fn each_set_of_data_goes_where_it_is_asked_to() {
     let bench = Workbench::new();
-    succeeds(&bench, "generate concrete -o train.csv --test test.csv");
+    bench.succeeds("generate concrete -o train.csv --test test.csv");
     let (train, test) = (bench.text("train.csv"), bench.text("test.csv"));
     for (arguments, expected) in [
         ("generate concrete", &train),
@@ -59,9 +58,9 @@ fn each_set_of_data_goes_where_it_is_asked_to() {
         ("generate concrete -o - --test again.csv", &train),
         ("generate concrete -o once-more.csv --test -", &test),
     ] {
-        assert_eq!(&succeeds(&bench, arguments).stdout, expected, "hysid {arguments}");
+        assert_eq!(&bench.succeeds(arguments).stdout, expected, "hysid {arguments}");
     }
-    let only_test = succeeds(&bench, "generate concrete --test only.csv");
+    let only_test = bench.succeeds("generate concrete --test only.csv");
     assert_eq!((only_test.stdout.as_str(), bench.text("only.csv")), ("", test));
     assert!(only_test.stderr.contains("hysid evaluate MODEL.json only.csv"), "{}", only_test.stderr);
     assert!(!only_test.stderr.contains("hysid fit"), "{}", only_test.stderr);
@@ -70,8 +69,7 @@ fn each_set_of_data_goes_where_it_is_asked_to() {
 #[test]
 fn noise_depends_on_the_seed_and_is_not_shared_by_training_and_test() {
     let bench = Workbench::new();
-    let set =
-        |arguments: &str| outputs(&succeeds(&bench, &format!("generate ferromagnet {arguments}")).stdout);
+    let set = |arguments: &str| outputs(&bench.succeeds(&format!("generate ferromagnet {arguments}")).stdout);
     let noise = |arguments: &str| -> Vec<f64> {
         let clean = set(arguments.split(" --noise").next().unwrap());
         let noise: Vec<f64> = set(arguments).iter().zip(&clean).map(|(noisy, clean)| noisy - clean).collect();
@@ -95,7 +93,7 @@ fn noise_depends_on_the_seed_and_is_not_shared_by_training_and_test() {
 #[test]
 fn the_list_describes_every_specimen_in_80_columns() {
     let bench = Workbench::new();
-    let list = succeeds(&bench, "generate --list").stdout;
+    let list = bench.succeeds("generate --list").stdout;
     for line in list.lines() {
         assert!(line.chars().count() <= 80 && line == line.trim_end(), "{line}");
     }
@@ -109,7 +107,7 @@ fn the_list_describes_every_specimen_in_80_columns() {
         assert_eq!(list.lines().filter(|line| line.starts_with(&format!("  {what} "))).count(), 16, "{what}");
     }
 
-    let json = succeeds(&bench, "generate --list --json").stdout;
+    let json = bench.succeeds("generate --list --json").stdout;
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let objects = json.as_array().unwrap();
     let names: Vec<&str> = objects.iter().map(|object| object["name"].as_str().unwrap()).collect();

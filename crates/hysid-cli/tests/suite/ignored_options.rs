@@ -6,8 +6,7 @@ const QUICK: &str = "--starts 1 --epochs 2";
 
 fn fitted(bench: &Workbench, options: &str, searched: bool) -> (String, String) {
     let effort = if searched { QUICK } else { "" };
-    let ran = bench.run(&format!("fit good.csv {options} {effort} --no-report --force -o model.json"));
-    assert_eq!(ran.status, Some(0), "{options}: {}", ran.stderr);
+    let ran = bench.succeeds(&format!("fit good.csv {options} {effort} --no-report --force -o model.json"));
     (ran.stderr, bench.text("model.json"))
 }
 

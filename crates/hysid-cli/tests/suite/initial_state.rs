@@ -33,10 +33,10 @@ const MODEL: &str = "--model prandtl-ishlinskii --operators 12";
 fn states_are_found_told_and_used() {
     let bench = bench();
     let fit = |state: &str, out: &str| {
-        json(&bench.run(&format!("fit train.csv -o {out} {MODEL} --initial-state {state} --json")))
+        bench.json(&format!("fit train.csv -o {out} {MODEL} --initial-state {state} --json"))
     };
     let evaluate = |model: &str, options: &str| {
-        json(&bench.run(&format!("evaluate {model} test.csv --json {options}")))["rmse"].as_f64().unwrap()
+        bench.json(&format!("evaluate {model} test.csv --json {options}"))["rmse"].as_f64().unwrap()
     };
     let (found, virgin) = (fit("unknown", "found.json"), fit("virgin", "virgin.json"));
     assert_eq!(found["initial_state"], "saturated-up");
@@ -54,7 +54,7 @@ fn states_are_found_told_and_used() {
     assert!(told.stdout.contains("\nnote   initial state: 3 records begin"), "{}", told.stdout);
     assert!(told.stdout.lines().all(|line| line.chars().count() <= 80), "{}", told.stdout);
     assert_eq!(
-        json(&bench.run(&format!("fit train.csv -o again.json {MODEL} --initial-state unknown --json")))["train"],
+        bench.json(&format!("fit train.csv -o again.json {MODEL} --initial-state unknown --json"))["train"],
         found["train"]
     );
 
@@ -78,7 +78,7 @@ fn states_are_found_told_and_used() {
 #[test]
 fn a_state_that_is_none_is_refused() {
     let bench = bench();
-    assert_eq!(bench.run(&format!("fit train.csv -o m.json --no-report {MODEL}")).status, Some(0));
+    bench.succeeds(&format!("fit train.csv -o m.json --no-report {MODEL}"));
     for (arguments, words) in [
         ("fit train.csv -o n.json --initial-state saturated", "saturated"),
         (

@@ -39,10 +39,10 @@ fn bench() -> Workbench {
         let fit = format!(
             "fit good.csv -o {rate}.json --no-report --model xpnn+ --starts 1 --epochs 2 --rate {rate}"
         );
-        assert_eq!(bench.run(&fit).status, Some(0));
+        bench.succeeds(&fit);
     }
     let ensemble = "fit good.csv -o ensemble.json --no-report --model xpnn --members 2 --starts 2 --epochs 2";
-    assert_eq!(bench.run(ensemble).status, Some(0));
+    bench.succeeds(ensemble);
     bench
 }
 
@@ -56,8 +56,7 @@ fn records_of_a_long_table_are_simulated_as_if_each_were_alone() {
     let long = long(',', plain);
     bench.put("long.csv", &long);
     for model in ["central", "backward", "savitzky-golay", "ensemble"] {
-        let ran = bench.run(&format!("simulate {model}.json long.csv"));
-        assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+        let ran = bench.succeeds(&format!("simulate {model}.json long.csv"));
         let simulated = last_cells(&ran.stdout);
         assert_eq!(simulated.len(), LENGTHS.iter().sum::<usize>());
         let rows: Vec<&str> = long.lines().skip(1).collect();
@@ -83,7 +82,7 @@ fn the_input_alone_is_enough_to_simulate() {
     let bench = Workbench::new();
     bench.put("good.csv", table());
     let fit = "fit good.csv -o m.json --no-report --model pnn --starts 1 --epochs 2";
-    assert_eq!(bench.run(fit).status, Some(0));
+    bench.succeeds(fit);
     let place = table().lines().next().unwrap().split(',').position(|name| name == "x").unwrap();
     let alone: String =
         table().lines().map(|line| format!("{}\n", line.split(',').nth(place).unwrap())).collect();
@@ -130,8 +129,7 @@ fn decimal_commas_are_written_wherever_the_first_of_them_stands() {
         let _ = writeln!(text, "{row};{x}");
     }
     bench.put("late.csv", &text);
-    let ran = bench.run("simulate central.json late.csv");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds("simulate central.json late.csv");
     let numbers = last_cells(&ran.stdout);
     assert!(numbers.len() == 9000 && numbers.iter().all(|number| !number.contains('.')));
     // A pipe cannot be read twice.
@@ -238,7 +236,7 @@ fn an_interrupted_simulation_leaves_the_old_table() {
     use std::process::{Command, Stdio};
 
     let bench = bench();
-    assert_eq!(bench.run("simulate central.json good.csv -o out.csv").status, Some(0));
+    bench.succeeds("simulate central.json good.csv -o out.csv");
     let old = bench.text("out.csv");
     assert!(Command::new("mkfifo").arg(bench.path("drive")).status().unwrap().success());
     let mut child = bench

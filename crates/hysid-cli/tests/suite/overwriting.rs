@@ -22,8 +22,7 @@ fn refused_then_forced(bench: &Workbench, command: &str, file: &str, expected: &
     assert_eq!((ran.status, ran.stdout.as_str()), (Some(2), ""), "hysid {command}");
     assert_eq!(ran.stderr.lines().count(), 1, "refused before any work: {}", ran.stderr);
     assert_eq!((bench.text(file).as_str(), bench.files(".")), (MEASURED, before), "hysid {command}");
-    let forced = bench.run(&format!("{command} --force"));
-    assert_eq!(forced.status, Some(0), "hysid {command} --force: {}", forced.stderr);
+    let forced = bench.succeeds(&format!("{command} --force"));
     assert!(fs::read(bench.path(file)).unwrap() != MEASURED.as_bytes(), "hysid {command} --force");
     forced
 }
@@ -48,8 +47,7 @@ fn a_measured_file_is_replaced_by_no_command() {
     ] {
         refused_then_forced(&bench, command, file, expected);
         // Its own file it replaces without being told.
-        let again = bench.run(command);
-        assert_eq!(again.status, Some(0), "hysid {command}, again: {}", again.stderr);
+        bench.succeeds(command);
     }
     let hidden: Vec<String> = bench.files(".").into_iter().filter(|name| name.starts_with('.')).collect();
     assert!(hidden.is_empty(), "{hidden:?}");
@@ -59,11 +57,10 @@ fn a_measured_file_is_replaced_by_no_command() {
 fn what_somebody_edited_is_kept() {
     let bench = Workbench::with_model();
     let kept = |command: &str, file: &str| {
-        assert_eq!(bench.run(command).status, Some(0), "hysid {command}");
+        bench.succeeds(command);
         let edited = bench.text(file).replace("</svg>", "<text>mine</text></svg>") + "\n";
         bench.put(file, &edited);
-        let again = bench.run(command);
-        assert_eq!(again.status, Some(0), "hysid {command}, again: {}", again.stderr);
+        bench.succeeds(command);
         assert_eq!(bench.text(&format!("{file}.bak")), edited, "hysid {command}");
     };
     kept("look good.csv -o plain.csv", "plain.csv");
@@ -87,8 +84,8 @@ fn the_demo_and_the_reproduction_look_before_they_work() {
         let ran = bench.run("reproduce nds -o out");
         assert_eq!((ran.status, bench.text(&format!("out/{name}")).as_str()), (Some(2), MEASURED), "{name}");
         assert!(ran.stderr.contains(&format!("out/{name}: a file is there already")), "{}", ran.stderr);
-        assert_eq!(bench.run("reproduce nds -o out --force").status, Some(0));
-        assert_eq!(bench.run("reproduce nds -o out").status, Some(0), "its own files");
+        bench.succeeds("reproduce nds -o out --force");
+        bench.succeeds("reproduce nds -o out");
         for name in bench.files("out") {
             fs::remove_file(bench.path(&format!("out/{name}"))).unwrap();
         }
@@ -121,8 +118,7 @@ fn a_replaced_model_is_kept_and_a_note_says_so() {
     let bench = Workbench::with_model();
     let (first, fit) =
         (bench.text("model.json"), "fit good.csv -o model.json --no-report --model pnn --starts 1");
-    let ran = bench.run(fit);
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds(fit);
     assert_eq!(ran.last_line(), "the file that was model.json is kept as model.json.bak");
     assert_eq!(bench.text("model.json.bak"), first);
     // The same model again: what is kept stays.
@@ -151,10 +147,10 @@ mod unix {
         fs::set_permissions(bench.path("model.json"), fs::Permissions::from_mode(0o600)).unwrap();
         symlink("model.json", bench.path("link.json")).unwrap();
         let fit = "--no-report --model pnn --starts 1 --epochs 1 --seed";
-        assert_eq!(bench.run(&format!("fit good.csv -o link.json {fit} 3")).status, Some(0));
+        bench.succeeds(&format!("fit good.csv -o link.json {fit} 3"));
         assert!(fs::symlink_metadata(bench.path("link.json")).unwrap().is_symlink());
         assert_eq!((mode("model.json"), mode("model.json.bak")), (0o600, 0o600));
-        assert_eq!(bench.run("simulate model.json good.csv -o out.csv").status, Some(0));
+        bench.succeeds("simulate model.json good.csv -o out.csv");
 
         let made = Command::new("mkfifo").arg(bench.path("pipe")).status().unwrap();
         assert!(made.success());
@@ -175,7 +171,7 @@ mod unix {
         fs::create_dir(bench.path("store")).unwrap();
         symlink("store/c.bin", bench.path("c.bin")).unwrap();
         let fit = "fit good.csv -o new.json --no-report --model xpnn+ --starts 1 --epochs 2 --checkpoint";
-        assert_eq!(bench.run(&format!("{fit} c.bin")).status, Some(0));
+        bench.succeeds(&format!("{fit} c.bin"));
         assert!(fs::symlink_metadata(bench.path("c.bin")).unwrap().is_symlink());
         assert!(fs::metadata(bench.path("store/c.bin")).unwrap().is_file());
         // Names that could be guessed are not used: links there stay links, and what they lead to stays as it is.
@@ -183,9 +179,9 @@ mod unix {
             bench.put("victim", MEASURED);
             symlink("victim", bench.path(guess)).unwrap();
         }
-        assert_eq!(bench.run(&format!("{fit} d.bin")).status, Some(0));
+        bench.succeeds(&format!("{fit} d.bin"));
         assert_eq!(bench.text("victim"), MEASURED);
-        assert_eq!(bench.run(&format!("{fit} /dev/null")).status, Some(0));
+        bench.succeeds(&format!("{fit} /dev/null"));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! `hysid plan`: drives from data and for kinds of specimens, their files, and what is refused.
 
-use crate::workbench::{Workbench, succeeds};
+use crate::workbench::Workbench;
 
 /// Cycles of one amplitude, 400 rows.
 fn cycles(header: &str, has_time: bool) -> String {
@@ -36,7 +36,7 @@ fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
 #[test]
 fn a_drive_has_the_columns_of_the_data_and_a_page_beside_it() {
     let bench = bench();
-    let said = succeeds(&bench, "plan --like data.csv");
+    let said = bench.succeeds("plan --like data.csv");
     let (header, columns) = columns(&bench.text("data.drive.csv"));
     assert_eq!(header, ["t_s", "disp_mm"]);
     let [t, x] = &columns[..] else { panic!("two columns") };
@@ -60,13 +60,13 @@ fn a_drive_has_the_columns_of_the_data_and_a_page_beside_it() {
     let widest = said.stdout.lines().map(|line| line.chars().count()).max().unwrap();
     assert!(widest <= 80, "{}", said.stdout);
     // The same again replaces the files of before.
-    assert_eq!(succeeds(&bench, "plan --like data.csv").stdout, said.stdout);
+    assert_eq!(bench.succeeds("plan --like data.csv").stdout, said.stdout);
 }
 
 #[test]
 fn data_without_time_give_a_drive_without_time() {
     let bench = bench();
-    let said = succeeds(&bench, "plan --like slow.csv -o -");
+    let said = bench.succeeds("plan --like slow.csv -o -");
     let (header, columns) = columns(&said.stdout);
     assert_eq!(header, ["disp_mm"]);
     assert!(columns[0].len() > 300);
@@ -77,7 +77,7 @@ fn data_without_time_give_a_drive_without_time() {
 #[test]
 fn the_json_object_has_the_segments_with_their_reasons() {
     let bench = bench();
-    let said = succeeds(&bench, "plan --like data.csv --json -o drive.csv --no-report");
+    let said = bench.succeeds("plan --like data.csv --json -o drive.csv --no-report");
     let told: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
     assert_eq!(told["drive"], "drive.csv");
     assert!(told["page"].is_null());
@@ -95,8 +95,7 @@ fn a_kind_of_specimen_has_a_first_test() {
     let (header, columns) = columns(&bench.text("structure.drive.csv"));
     assert_eq!(header, ["x"]);
     assert!(columns[0].len() <= 3000 && columns[0].contains(&50.0) && columns[0].contains(&-50.0));
-    let said =
-        succeeds(&bench, "plan --for piezo --range 0:150 --step 0.001 --duration 5 -o piezo.csv --json");
+    let said = bench.succeeds("plan --for piezo --range 0:150 --step 0.001 --duration 5 -o piezo.csv --json");
     let told: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
     assert!(told["duration"].as_f64().unwrap() <= 5.0 && told["limits"]["range"][1] == 150.0);
 }
@@ -106,27 +105,26 @@ fn what_cannot_be_planned_is_said_in_one_line() {
     let bench = bench();
     bench.put("constant.csv", "x,y\n".to_string() + &"1,2\n".repeat(60));
     bench.put("two.csv", cycles("a,b,force", true));
-    let refused = |line: &str, status: i32, expected: &str| {
-        let ran = bench.run(line);
-        assert_eq!(ran.status, Some(status), "{line}: {}", ran.stderr);
-        assert!(ran.last_line().contains(expected), "{line}: {}", ran.stderr);
-        assert!(!bench.path("data.drive.csv").exists(), "{line}");
-    };
-    refused("plan", 2, "--for: structure, damper");
-    refused("plan --for jelly --range 0:1", 2, "structure, damper, rubber, actuator, magnet");
-    refused("plan --for piezo", 2, "--range LOW:HIGH");
-    refused("plan --for piezo --range 0:1 --duration 3", 2, "--step");
-    refused("plan --for piezo --range 0:1 --length 60", 2, "too few");
-    refused("plan --for piezo --like data.csv", 2, "cannot be used with");
-    refused("plan --like none.csv", 1, "none.csv");
-    refused("plan --like constant.csv", 1, "constant");
-    refused("plan --like two.csv --input a --input b --output force", 2, "--input");
-    refused("plan --like data.csv --length 50", 2, "too few");
-    refused("plan --like data.csv --length 5", 2, "length 5");
-    refused("plan --like data.csv --range 5:1", 2, "not below");
-    refused("plan --like slow.csv --duration 3", 2, "--length");
-    refused("plan --like slow.csv --step 0.1", 2, "step");
-    refused("plan --like data.csv -o data.csv", 2, "would be overwritten");
-    refused("plan --like data.csv -o drive.html", 2, ".csv for the drive");
-    refused("plan --like data.csv --json -o -", 2, "name a file");
+    bench.refuses_in_part(
+        "
+        2 plan => --for: structure, damper
+        2 plan --for jelly --range 0:1 => structure, damper, rubber, actuator, magnet
+        2 plan --for piezo => --range LOW:HIGH
+        2 plan --for piezo --range 0:1 --duration 3 => --step
+        2 plan --for piezo --range 0:1 --length 60 => too few
+        2 plan --for piezo --like data.csv => cannot be used with
+        1 plan --like none.csv => none.csv
+        1 plan --like constant.csv => constant
+        2 plan --like two.csv --input a --input b --output force => --input
+        2 plan --like data.csv --length 50 => too few
+        2 plan --like data.csv --length 5 => length 5
+        2 plan --like data.csv --range 5:1 => not below
+        2 plan --like slow.csv --duration 3 => --length
+        2 plan --like slow.csv --step 0.1 => step
+        2 plan --like data.csv -o data.csv => would be overwritten
+        2 plan --like data.csv -o drive.html => .csv for the drive
+        2 plan --like data.csv --json -o - => name a file
+    ",
+    );
+    assert!(!bench.path("data.drive.csv").exists());
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::workbench::{Workbench, succeeds};
+use crate::workbench::Workbench;
 
 /// What a machine without fonts says of PDF and PNG. Set where no proof may be missing.
 const PROVE_ALL: &str = "HYSID_PROVE_ALL";
@@ -40,7 +40,7 @@ fn member() -> String {
 fn with_member() -> Workbench {
     let bench = Workbench::new();
     bench.put("member.csv", member());
-    succeeds(&bench, "fit member.csv -o model.json --no-report --model prandtl-ishlinskii --operators 4");
+    bench.succeeds("fit member.csv -o model.json --no-report --model prandtl-ishlinskii --operators 4");
     bench
 }
 
@@ -64,7 +64,7 @@ fn dots(drawing: &str, colour: &str) -> Vec<(f64, f64)> {
 #[test]
 fn the_energy_of_an_elastic_plastic_member_is_that_of_its_law() {
     let bench = with_member();
-    let ran = succeeds(&bench, "plot model.json member.csv --kind energy");
+    let ran = bench.succeeds("plot model.json member.csv --kind energy");
     assert!(ran.stderr.ends_with("figure  member.energy.svg\n"), "{}", ran.stderr);
     let drawing = bench.text("member.energy.svg");
     // Measured and model are drawn, in the colours of a light page.
@@ -99,7 +99,7 @@ fn every_kind_has_its_figure() {
         ("backbone", &[0, 1], 1),
     ];
     for (kind, labels, charts) in kinds {
-        succeeds(&bench, &format!("plot model.json member.csv --kind {kind} -o {kind}.svg"));
+        bench.succeeds(&format!("plot model.json member.csv --kind {kind} -o {kind}.svg"));
         let drawing = bench.text(&format!("{kind}.svg"));
         assert!(drawing.contains(" width=\"88.000mm\" "), "{kind}");
         for place in labels {
@@ -125,7 +125,7 @@ fn losses_over_frequency_are_those_of_the_cycles() {
         }
     }
     bench.put("damper.csv", text);
-    succeeds(&bench, "plot damper.csv --kind frequency --field structure -o losses.svg");
+    bench.succeeds("plot damper.csv --kind frequency --field structure -o losses.svg");
     let drawing = bench.text("losses.svg");
     let losses = dots(&drawing, "#0a5fd1");
     assert_eq!(losses.len(), 3, "{losses:?}");
@@ -153,7 +153,7 @@ fn a_pdf_has_its_size_its_font_and_its_maker() {
     assert!(text.contains("/FontFile") || text.contains("/FontDescriptor"));
     assert!(text.contains("/Creator (Hysid ") && text.contains("/Title (Loops of force "));
     // Its own file is replaced, another one is not.
-    succeeds(&bench, "plot model.json member.csv -o figure.pdf");
+    bench.succeeds("plot model.json member.csv -o figure.pdf");
     bench.put("theirs.pdf", b"%PDF-1.7\n1 0 obj <</Creator (LaTeX)>> endobj\n");
     let arguments = "plot model.json member.csv -o theirs.pdf";
     let ran = bench.run(arguments);
@@ -182,7 +182,7 @@ fn a_png_has_its_dots_its_density_and_the_colours_of_the_figure() {
     for colour in [[255, 255, 255], [0xb4, 0xbe, 0xc9], [0x0a, 0x5f, 0xd1], [0, 0, 0]] {
         assert!(has(colour), "{colour:?}");
     }
-    succeeds(&bench, "plot member.csv -o figure.png --dpi 50");
+    bench.succeeds("plot member.csv -o figure.png --dpi 50");
 }
 
 #[test]
@@ -193,24 +193,24 @@ fn records_are_chosen_and_data_or_a_model_drawn_alone() {
         text.extend(member().lines().skip(1).map(|line| format!("{record},{line}\n")));
     }
     bench.put("two.csv", text);
-    let ran = succeeds(&bench, "plot model.json two.csv --kind histories -o both.svg");
+    let ran = bench.succeeds("plot model.json two.csv --kind histories -o both.svg");
     // Both are copies of the training data, which is said of each by its name.
     for record in ["first", "second"] {
         assert!(ran.stderr.contains(&format!("record \"{record}\" is equal to what the model")), "{ran}");
     }
     let both = bench.text("both.svg");
     assert!(has_text(&both, "first") && has_text(&both, "second"));
-    succeeds(&bench, "plot model.json two.csv --kind histories --only second -o one.svg");
+    bench.succeeds("plot model.json two.csv --kind histories --only second -o one.svg");
     let one = bench.text("one.svg");
     assert!(!has_text(&one, "first") && one.matches("class=\"curves\"").count() == 2);
     // Without a measured output, the model alone.
     bench.put("drive.csv", "t_s,disp_mm\n0,0\n1,1\n2,2\n3,1\n4,0\n5,-1\n");
-    succeeds(&bench, "plot model.json drive.csv -o drive.svg");
+    bench.succeeds("plot model.json drive.csv -o drive.svg");
     let drive = bench.text("drive.svg");
     assert!(drive.contains("#0a5fd1") && !drive.contains("#b4bec9") && !has_text(&drive, "measured"));
     // Another unit is converted to that of the model.
     bench.put("metres.csv", "disp_m,force_N\n0,0\n0.001,2000\n0.002,2000\n0.001,0\n0,-2000\n");
-    succeeds(&bench, "plot model.json metres.csv -o metres.svg");
+    bench.succeeds("plot model.json metres.csv -o metres.svg");
     assert!(has_text(&bench.text("metres.svg"), "disp (mm)"));
 }
 

@@ -1,18 +1,12 @@
 //! Commands about the program itself: models, completions, manual pages.
 
-use crate::workbench::Workbench;
+use crate::workbench::{Workbench, must_contain};
 use serde_json::Value;
-
-fn json(bench: &Workbench, arguments: &str) -> Value {
-    let ran = bench.run(arguments);
-    assert_eq!(ran.status, Some(0), "{arguments}: {}", ran.stderr);
-    serde_json::from_str(&ran.stdout).unwrap()
-}
 
 #[test]
 fn the_list_of_models_has_every_name_that_a_fit_takes() {
     let bench = Workbench::new();
-    let listed = json(&bench, "models --json");
+    let listed = bench.json("models --json");
     let names: Vec<&str> =
         listed.as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
     // A wrong name makes a fit say all names.
@@ -27,7 +21,7 @@ fn the_list_of_models_has_every_name_that_a_fit_takes() {
 #[test]
 fn a_model_file_is_shown_with_what_it_stores() {
     let bench = Workbench::with_model();
-    let shown = json(&bench, "models model.json --json");
+    let shown = bench.json("models model.json --json");
     let file: Value = serde_json::from_str(&bench.text("model.json")).unwrap();
     assert_eq!(shown["model"], "xpnn+");
     assert_eq!(shown["bytes"], bench.text("model.json").len());
@@ -50,18 +44,16 @@ fn a_model_file_is_shown_with_what_it_stores() {
 #[test]
 fn a_law_is_shown_with_its_parameters_and_an_ensemble_with_its_members() {
     let bench = Workbench::with_model();
-    let fit = bench.run("fit good.csv -o law.json --no-report --model prandtl-ishlinskii -q");
-    assert_eq!(fit.status, Some(0), "{}", fit.stderr);
-    let law = json(&bench, "models law.json --json");
+    bench.succeeds("fit good.csv -o law.json --no-report --model prandtl-ishlinskii -q");
+    let law = bench.json("models law.json --json");
     let parameters = law["law_parameters"].as_array().unwrap();
     assert_eq!(law["parameters"], parameters.len());
     let text = bench.run("models law.json").stdout;
     let mut shown = parameters.iter().take(60);
     assert!(shown.all(|one| text.contains(one["symbol"].as_str().unwrap())), "{text}");
     assert!(text.contains(&format!("{} more parameter", parameters.len() - 60)), "{text}");
-    let fit = bench.run("fit good.csv -o both.json --no-report --model masing --members 2 -q");
-    assert_eq!(fit.status, Some(0), "{}", fit.stderr);
-    let both = json(&bench, "models both.json --json");
+    bench.succeeds("fit good.csv -o both.json --no-report --model masing --members 2 -q");
+    let both = bench.json("models both.json --json");
     let shares =
         both["members"].as_array().unwrap().iter().map(|one| one["weights"]["inside"].as_f64().unwrap());
     let (count, sum) = (shares.len(), shares.sum::<f64>());
@@ -74,9 +66,7 @@ fn completions_of_every_shell_know_commands_and_options() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let ran = bench.run(&format!("completions {shell}"));
         assert_eq!((ran.status, ran.stderr.as_str()), (Some(0), ""), "{shell}");
-        for known in ["diagnose", "completions", "time-limit", "quiet"] {
-            assert!(ran.stdout.contains(known), "{shell}: {known}");
-        }
+        must_contain(&ran.stdout, &["diagnose", "completions", "time-limit", "quiet"]);
     }
     let ran = bench.run("completions tcsh");
     assert_eq!(ran.status, Some(2));
@@ -90,8 +80,7 @@ fn completions_of_every_shell_know_commands_and_options() {
 #[test]
 fn there_is_a_manual_page_of_the_program_and_of_each_command() {
     let bench = Workbench::new();
-    let ran = bench.run("man -o pages");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    bench.succeeds("man -o pages");
     let pages = bench.files("pages");
     for page in ["hysid.1", "hysid-fit.1", "hysid-look.1", "hysid-man.1"] {
         assert!(pages.iter().any(|known| known == page), "{page}: {pages:?}");
@@ -99,7 +88,7 @@ fn there_is_a_manual_page_of_the_program_and_of_each_command() {
     let fit = bench.text("pages/hysid-fit.1");
     assert!(fit.contains(".TH hysid-fit 1") && fit.contains("time\\-limit"), "{fit}");
     // A later version replaces its own pages, and no file of somebody else.
-    assert_eq!(bench.run("man -o pages").status, Some(0));
+    bench.succeeds("man -o pages");
     bench.put("pages/hysid.1", "my notes");
     assert_eq!(bench.run("man -o pages").status, Some(2));
     assert_eq!(bench.text("pages/hysid.1"), "my notes");

@@ -8,8 +8,7 @@ const FIT: &str = "fit loop.csv --model xpnn+ --starts 1 --epochs 3";
 fn a_quiet_fit_writes_the_same_files_and_results_and_says_only_warnings() {
     let bench = Workbench::new();
     bench.put("loop.csv", table());
-    let told = bench.run(FIT);
-    assert_eq!(told.status, Some(0), "{}", told.stderr);
+    let told = bench.succeeds(FIT);
     assert!(told.stderr.contains("samples"), "{}", told.stderr);
     let warnings: Vec<&str> = told.stderr.lines().filter(|line| line.starts_with("warning: ")).collect();
     assert!(warnings.len() < told.stderr.lines().count());
@@ -18,8 +17,7 @@ fn a_quiet_fit_writes_the_same_files_and_results_and_says_only_warnings() {
     let without_time =
         |text: &str| text.lines().filter(|line| !line.ends_with(" s")).collect::<Vec<_>>().join("\n");
     for quiet in [format!("--quiet {FIT}"), format!("{FIT} -q")] {
-        let ran = bench.run(&quiet);
-        assert_eq!(ran.status, Some(0), "{quiet}");
+        let ran = bench.succeeds(&quiet);
         assert_eq!(ran.stderr.lines().collect::<Vec<_>>(), warnings, "{quiet}");
         assert_eq!(without_time(&ran.stdout), without_time(&told.stdout), "{quiet}");
         assert_eq!(bench.text("loop.json"), model, "{quiet}");
@@ -30,8 +28,7 @@ fn a_quiet_fit_writes_the_same_files_and_results_and_says_only_warnings() {
 fn warnings_and_errors_are_said_in_quiet_too() {
     let bench = Workbench::with_model();
     bench.put("far.csv", with_cell(5, 1, "9"));
-    let ran = bench.run("evaluate model.json far.csv -q");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds("evaluate model.json far.csv -q");
     assert!(!ran.stderr.is_empty());
     assert!(ran.stderr.lines().all(|line| line.starts_with("warning: ")), "{}", ran.stderr);
     let ran = bench.run("-q evaluate model.json gone.csv");

@@ -5,8 +5,7 @@ use crate::workbench::Workbench;
 #[test]
 fn an_experiment_by_name_leaves_its_page_and_tables() {
     let bench = Workbench::new();
-    let ran = bench.run("reproduce nds -o out");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds("reproduce nds -o out");
     assert!(ran.stdout.contains("page    out/nds.html"), "{}", ran.stdout);
     assert_eq!(bench.files("out"), ["nds.csv", "nds.html", "nds.md"]);
     let page = bench.text("out/nds.html");
@@ -22,8 +21,7 @@ fn an_experiment_by_name_leaves_its_page_and_tables() {
 #[test]
 fn an_example_says_what_stands_in_for_the_measurements_and_what_was_reached() {
     let bench = Workbench::new();
-    let ran = bench.run("reproduce example7 --quick -o out --seed 4");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let ran = bench.succeeds("reproduce example7 --quick -o out --seed 4");
     let text = bench.text("out/example7.md");
     for word in [
         "Synthetic specimen magnetostrictive-actuator in place of the paper's measured data (example 7)",
@@ -61,8 +59,7 @@ fn a_terminal_of_80_columns_has_room_for_everything() {
     let bench = Workbench::new();
     // The first has the widest tables, the second the longest names.
     for name in ["example2", "nds"] {
-        let ran = bench.run(&format!("reproduce {name} --quick -o out"));
-        assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+        let ran = bench.succeeds(&format!("reproduce {name} --quick -o out"));
         let too_long: Vec<&str> = ran.stdout.lines().filter(|line| line.chars().count() > 80).collect();
         assert!(too_long.is_empty(), "{name}: {too_long:#?}");
     }

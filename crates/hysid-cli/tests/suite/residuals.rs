@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::workbench::{Workbench, json};
+use crate::workbench::Workbench;
 use serde_json::Value;
 
 /// Numbers that look random, between -1 and 1.
@@ -34,7 +34,7 @@ fn bench() -> (Workbench, Value) {
     bench.put("train.csv", table(2000, 0.0, 0));
     bench.put("same.csv", table(2000, 0.0, 5000));
     bench.put("viscous.csv", table(2000, 0.05, 9000));
-    let fit = json(&bench.run(&format!("{FIT} --json")));
+    let fit = bench.json(&format!("{FIT} --json"));
     (bench, fit)
 }
 
@@ -45,15 +45,14 @@ fn finding<'v>(residuals: &'v Value, test: &str) -> &'v Value {
 #[test]
 fn evaluate_says_what_the_residual_tells_and_what_helps() {
     let (bench, _) = bench();
-    let told = bench.run("evaluate law.json viscous.csv --residuals");
-    assert_eq!(told.status, Some(0), "{}", told.stderr);
+    let told = bench.succeeds("evaluate law.json viscous.csv --residuals");
     assert!(told.stdout.contains("The residual is correlated with the rate of x"), "{}", told.stdout);
     assert!(told.stdout.contains("option rate") && told.stdout.contains("RMSE of force_kN, kN"), "{told}");
     assert!(told.stdout.lines().all(|line| line.chars().count() <= 80), "{}", told.stdout);
 
-    let viscous = json(&bench.run("evaluate law.json viscous.csv --residuals --json"));
+    let viscous = bench.json("evaluate law.json viscous.csv --residuals --json");
     assert_eq!(finding(&viscous["residuals"], "rate")["verdict"], "found");
-    let same = json(&bench.run("evaluate law.json same.csv --residuals --json"));
+    let same = bench.json("evaluate law.json same.csv --residuals --json");
     for finding in same["residuals"]["findings"].as_array().unwrap() {
         assert_ne!(finding["verdict"], "found", "{finding}");
     }
@@ -61,21 +60,21 @@ fn evaluate_says_what_the_residual_tells_and_what_helps() {
     let (rms, rmse) = (same["residuals"]["rms"].as_f64().unwrap(), same["rmse"].as_f64().unwrap());
     assert!((rms - rmse).abs() < 1e-9 * rmse);
     // Without the option nothing is tested.
-    assert!(json(&bench.run("evaluate law.json same.csv --json")).get("residuals").is_none());
+    assert!(bench.json("evaluate law.json same.csv --json").get("residuals").is_none());
     assert!(!bench.run("evaluate law.json same.csv").stdout.contains("whiteness"));
 }
 
 #[test]
 fn data_that_the_model_knows_and_short_data_are_told_apart() {
     let (bench, _) = bench();
-    let known = json(&bench.run("evaluate law.json train.csv --residuals --json"));
+    let known = bench.json("evaluate law.json train.csv --residuals --json");
     assert!(known["residuals"]["caution"].as_str().unwrap().contains("was fitted to these data"));
     let short: Vec<String> = table(2000, 0.0, 0).lines().take(31).map(String::from).collect();
     bench.put("short.csv", short.join("\n"));
     let refused = bench.run("evaluate law.json short.csv --residuals");
     assert_eq!(refused.status, Some(1));
     assert!(refused.last_line().contains("short.csv: has only 30 rows with an output"), "{}", refused.stderr);
-    assert_eq!(bench.run("evaluate law.json short.csv").status, Some(0));
+    bench.succeeds("evaluate law.json short.csv");
 }
 
 /// Records, and more rows than a block of the run holds.
@@ -87,7 +86,7 @@ fn records_of_a_table_are_tested_together() {
         table(6000, 0.0, first).lines().skip(1).for_each(|line| writeln!(text, "{name},{line}").unwrap());
     }
     bench.put("records.csv", text);
-    let found = json(&bench.run("evaluate law.json records.csv --residuals --json"));
+    let found = bench.json("evaluate law.json records.csv --residuals --json");
     assert_eq!((&found["residuals"]["rows"], &found["residuals"]["records"]), (&12_000.into(), &2.into()));
     assert_eq!(finding(&found["residuals"], "whiteness")["verdict"], "not found");
 }
@@ -113,7 +112,7 @@ fn a_law_has_intervals_in_json_and_on_its_page() {
     {
         assert!(page.contains(words), "{words}");
     }
-    let again = json(&bench.run(&format!("{FIT} --json --threads 2")));
+    let again = bench.json(&format!("{FIT} --json --threads 2"));
     assert_eq!((&again["intervals"], &again["residuals"]), (&fit["intervals"], &fit["residuals"]));
 }
 
@@ -123,7 +122,7 @@ fn a_network_has_held_out_residuals_and_no_intervals() {
     bench.put("train.csv", table(600, 0.0, 0));
     let fit = "fit train.csv -o m.json --json --model pnn --stops 3 --epochs 20";
     for options in ["--starts 2", "--starts 2 --members 2", "--starts 1"] {
-        let fit = json(&bench.run(&format!("{fit} {options}")));
+        let fit = bench.json(&format!("{fit} {options}"));
         assert!(fit.get("intervals").is_none());
         let residuals = fit["residuals"].as_array().unwrap();
         if fit["validation"].is_null() {

@@ -7,8 +7,7 @@ use serde_json::Value;
 fn bench() -> Workbench {
     let bench = Workbench::new();
     bench.put("good.csv", csv("t_s,disp_mm,force_kN", ",", "\n", &rows()));
-    let ran = bench.run("fit good.csv -o model.json --no-report --model xpnn+ --starts 1 --epochs 3");
-    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    bench.succeeds("fit good.csv -o model.json --no-report --model xpnn+ --starts 1 --epochs 3");
     bench
 }
 
@@ -24,7 +23,7 @@ fn scaled(header: &str, factors: [f64; 3]) -> String {
 #[test]
 fn known_units_are_converted_to_the_model_s() {
     let bench = bench();
-    let own = json(&bench.run("evaluate model.json good.csv --json"));
+    let own = bench.json("evaluate model.json good.csv --json");
     bench.put("other.csv", scaled("clock_ms,displacement_m,force_N", [1e3, 1e-3, 1e3]));
     let named = "--time clock_ms --input displacement_m --output force_N";
     let ran = bench.run(&format!("evaluate model.json other.csv {named} --json"));
@@ -45,7 +44,7 @@ fn known_units_are_converted_to_the_model_s() {
     assert!(ran.stderr.contains(told), "{}", ran.stderr);
     // The same quantity in another unit is found without being named.
     bench.put("found.csv", scaled("t_ms,disp_m,force_N", [1e3, 1e-3, 1e3]));
-    let found = json(&bench.run("evaluate model.json found.csv --json"));
+    let found = bench.json("evaluate model.json found.csv --json");
     assert!((rmse(&found) / rmse(&own) - 1.0).abs() < 1e-6, "{found} {own}");
     let [one, other] =
         ["good.csv", "found.csv"].map(|data| bench.run(&format!("simulate model.json {data}")));
@@ -66,12 +65,12 @@ fn other_units_are_refused_unless_they_are_said_to_be_the_same() {
     let ran: Ran = bench.command("--same-units").args(asked).output().unwrap().into();
     assert_ne!(ran.status, Some(0), "an option stands behind its command");
     let ran: Ran = bench.command("").args(asked).arg("--same-units").output().unwrap().into();
-    assert_eq!(json(&ran), json(&bench.run("evaluate model.json good.csv --json")));
+    assert_eq!(json(&ran), bench.json("evaluate model.json good.csv --json"));
     let ran = bench.run("simulate model.json good.csv --input force_kN");
     assert!(ran.last_line().contains("column \"force_kN\" is in kN, the model's \"disp_mm\" in mm"));
     // A column without a unit is taken as it is.
     bench.put("plain.csv", csv("t,x,y", ",", "\n", &rows()));
-    json(&bench.run("evaluate model.json plain.csv --time t --input x --output y --json"));
+    bench.json("evaluate model.json plain.csv --time t --input x --output y --json");
 }
 
 #[test]

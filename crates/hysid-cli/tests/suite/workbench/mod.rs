@@ -103,6 +103,20 @@ impl Workbench {
         self.command(arguments).output().unwrap().into()
     }
 
+    /// Runs what must succeed.
+    #[track_caller]
+    pub fn succeeds(&self, arguments: &str) -> Ran {
+        let ran = self.run(arguments);
+        assert_eq!(ran.status, Some(0), "hysid {arguments}: {}", ran.stderr);
+        ran
+    }
+
+    /// What a run that succeeds prints as JSON.
+    #[track_caller]
+    pub fn json(&self, arguments: &str) -> serde_json::Value {
+        json(&self.succeeds(arguments))
+    }
+
     /// Runs the lines of a table of [`cases`], and compares exit status and last line of stderr.
     pub fn refuses(&self, table: &str) {
         for (status, arguments, expected) in cases(table) {
@@ -129,11 +143,12 @@ impl Workbench {
     }
 }
 
-/// Runs what must succeed.
-pub fn succeeds(bench: &Workbench, arguments: &str) -> Ran {
-    let ran = bench.run(arguments);
-    assert_eq!(ran.status, Some(0), "hysid {arguments}: {}", ran.stderr);
-    ran
+/// Compares a text with words that it must contain.
+#[track_caller]
+pub fn must_contain(text: &str, words: &[&str]) {
+    for words in words {
+        assert!(text.contains(words), "{words}: {text}");
+    }
 }
 
 /// What a run that succeeded printed as JSON.
