@@ -193,13 +193,11 @@ pub struct ColumnOptions {
     /// Rate of the first input: auto, none, central, backward, savitzky-golay or a column with the rate
     #[arg(long, value_name = "METHOD|COLUMN", default_value = "auto", value_parser = rate, hide_short_help = true)]
     pub rate: RateOption,
-    /// How the tables are read.
     #[command(flatten)]
     pub reading: ReadingOptions,
 }
 
 impl ColumnOptions {
-    /// What is said of the columns.
     pub fn choice(&self) -> ColumnChoice {
         let Self { record, time, input, output, rate, .. } = self.clone();
         ColumnChoice { record, time, input, output, rate }
@@ -218,7 +216,6 @@ pub struct DataSetsOptions {
 }
 
 impl DataSetsOptions {
-    /// The band of a probability, if one is wanted.
     pub fn level(&self, probability: Option<f64>) -> Option<BandLevel> {
         probability.map(|probability| BandLevel { probability, of_ten: self.of_ten })
     }
@@ -304,7 +301,6 @@ pub struct Fit {
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
     /// Fit an inverse model: the first input and the output are exchanged
@@ -313,7 +309,6 @@ pub struct Fit {
     /// after the last one are left out. See also `hysid invert`, which inverts a model of the system itself.
     #[arg(long, help_heading = "Columns", hide_short_help = true)]
     pub inverse: bool,
-    /// The model and its training.
     #[command(flatten)]
     pub model: ModelOptions,
     /// Stop after this time and keep the best model so far
@@ -352,10 +347,8 @@ pub struct Validate {
     /// A single record always gives five folds, cut in time.
     #[arg(long, value_name = "N", default_value = "5", value_parser = folds)]
     pub folds: usize,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// The model and its training.
     #[command(flatten)]
     pub model: ModelOptions,
     /// Time for each fold, after which its best model so far is evaluated
@@ -434,10 +427,8 @@ pub struct Simulate {
     /// Where the memory begins.
     #[command(flatten)]
     pub beginning: BeginningOptions,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Which units are the same.
     #[command(flatten)]
     pub units: UnitOptions,
 }
@@ -487,10 +478,8 @@ pub struct Invert {
     /// Where the memory begins.
     #[command(flatten)]
     pub beginning: BeginningOptions,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Which units are the same.
     #[command(flatten)]
     pub units: UnitOptions,
     /// Print the result as one JSON object
@@ -522,10 +511,8 @@ pub struct Evaluate {
     /// Where the memory begins.
     #[command(flatten)]
     pub beginning: BeginningOptions,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Which units are the same.
     #[command(flatten)]
     pub units: UnitOptions,
     /// Print the result as one JSON object
@@ -554,7 +541,6 @@ pub struct Compare {
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
     /// Time for each model, after which its best fit so far is used [default: 20, none for auto]
@@ -587,7 +573,6 @@ pub struct Look {
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
     /// Print the result as one JSON object
@@ -610,7 +595,6 @@ pub struct Diagnose {
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
     /// Ignore reversals of the input below this share of its range
@@ -728,7 +712,6 @@ pub struct Export {
     /// Also compute half the width of the prediction band that contains this share of the rows (0.5 to 0.99)
     #[arg(long, value_name = "SHARE")]
     pub band: Option<f64>,
-    /// In how many data sets.
     #[command(flatten)]
     pub data_sets: DataSetsOptions,
     /// Version of the Functional Mock-up Interface of `--to fmu`: 3 or 2 [default: 3]

@@ -15,7 +15,6 @@ const BETWEEN: Duration = Duration::from_secs(3);
 /// Largest share of the time that may go into checkpoints.
 const LARGEST_SHARE: f64 = 0.05;
 
-/// Reads a checkpoint file.
 pub fn read(path: &Path) -> Result<Checkpoint> {
     let bytes = files::read(path)?;
     Checkpoint::from_bytes(&bytes).map_err(|error| anyhow!("{}: {error}", path.display()))

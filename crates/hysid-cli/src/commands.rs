@@ -46,7 +46,6 @@ fn check_band(model: &Model, path: &Path) -> Result<()> {
 enum Given {
     /// The content of a model file.
     Model(Vec<u8>),
-    /// Tables.
     Tables(Vec<Table>),
 }
 
@@ -70,7 +69,6 @@ impl Given {
     }
 }
 
-/// Reads a model file.
 fn read_model(path: &Path) -> Result<Model> {
     model_from_bytes(path, files::read(path)?)
 }

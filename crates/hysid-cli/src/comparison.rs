@@ -27,9 +27,7 @@ pub use page::page;
 /// A simulation is timed over at least this time.
 const TIMED: Duration = Duration::from_millis(30);
 
-/// The data of a comparison.
 pub struct Data<'a> {
-    /// What all are fitted to.
     pub train: &'a Read,
     /// What none has seen.
     pub test: Option<&'a Read>,
@@ -37,7 +35,6 @@ pub struct Data<'a> {
 
 /// A model and what became of it.
 pub struct Row {
-    /// What was asked for.
     pub request: FitSpec,
     /// The model, or why there is none.
     pub outcome: Result<Fitted, String>,
@@ -45,13 +42,10 @@ pub struct Row {
 
 /// A fitted model and its errors.
 pub struct Fitted {
-    /// The model.
     pub model: Model,
-    /// Errors on the training data.
     pub train: Errors,
     /// Errors on the test data, if there are any.
     pub test: Option<Errors>,
-    /// Seconds on its threads.
     pub fit_seconds: f64,
     /// Nanoseconds for a sample of a free run, on one thread.
     pub simulate_ns_per_sample: f64,
@@ -202,7 +196,6 @@ const HEADINGS: [&str; 6] = ["model", "unseen %", "train %", "parameters", "fit 
 
 /// The comparison as plain text in 80 columns.
 pub fn table(rows: &[Row], tested: bool) -> String {
-    /// Width of the names.
     const NAME: usize = 33;
     let line = |cells: [&str; 6]| {
         let [model, test, train, parameters, fit, simulate] = cells;

@@ -27,15 +27,12 @@ pub use text::text;
 
 use crate::terminal;
 
-/// Cycles, and what they are cycles of.
 pub struct Cycles<'a> {
     /// The file that the title of the page names.
     pub file: String,
     /// True for a model that was driven; false for measured data.
     pub of_model: bool,
-    /// The loops.
     pub data: std::borrow::Cow<'a, Dataset>,
-    /// The cycles in figures.
     pub table: CycleTable,
     /// First-order reversal curves, if there are any.
     pub curves: Option<ReversalCurves>,
@@ -98,12 +95,10 @@ impl<'a> Cycles<'a> {
         })
     }
 
-    /// The figures of the field.
     pub fn figures(&self) -> impl Iterator<Item = &'static Figure> + use<'_> {
         FIGURES.iter().filter(|figure| figure.is_of(self.table.field))
     }
 
-    /// All of it as one JSON object.
     pub fn json(&self, files: &Files) -> Result<String> {
         let named = |figure: &Figure| {
             let named = self.quantities.as_figure(figure.name, figure.quantity);
@@ -141,9 +136,7 @@ impl<'a> Cycles<'a> {
 /// The files that are written, if they are.
 #[derive(Debug, Default)]
 pub struct Files {
-    /// The table of cycles.
     pub table: Option<PathBuf>,
-    /// The page.
     pub page: Option<PathBuf>,
     /// The table of reversal curves.
     pub curves: Option<PathBuf>,

@@ -10,7 +10,6 @@ use hysid_tables::Table;
 use crate::arguments::{ColumnOptions, ReadingOptions};
 use crate::messages::{note, warning};
 
-/// Reads tables.
 pub fn read_tables(paths: &[PathBuf], options: &ReadingOptions) -> Result<Vec<Table>> {
     let reading = options.reading();
     paths.iter().map(|path| Table::read(path, &reading)).collect()

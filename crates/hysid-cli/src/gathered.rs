@@ -31,7 +31,6 @@ pub struct Gathered {
 }
 
 impl Gatherer {
-    /// Takes rows that are simulated.
     pub fn take(&mut self, rows: &Simulated<'_>) {
         if self.records.is_empty() || self.has_ended {
             self.records.push(Rows { name: rows.record.to_string(), ..Rows::default() });

@@ -25,7 +25,6 @@ use crate::{errors_table, files, interrupt};
 
 /// What is to be done with the data, and how.
 pub struct Work<'a> {
-    /// What is to be identified.
     pub request: &'a FitSpec,
     /// A fit begun before, with these options.
     pub begun: Option<Checkpoint>,

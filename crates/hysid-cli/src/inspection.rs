@@ -211,7 +211,6 @@ impl<'m> Inspected<'m> {
     }
 }
 
-/// A member of an ensemble.
 #[derive(Serialize)]
 struct Member {
     model: &'static str,
@@ -231,7 +230,6 @@ fn members(model: &Model) -> Vec<Member> {
     members
 }
 
-/// A parameter of a law.
 #[derive(Serialize)]
 struct LawParameter {
     symbol: String,

@@ -44,7 +44,6 @@ impl Bounds {
 
 /// The inputs of all records.
 pub struct Inverted {
-    /// One for each record of the reference.
     pub records: Vec<Inversion>,
     /// How far the search looked ahead in each.
     pub previews: Vec<f64>,
@@ -74,7 +73,6 @@ impl Inverted {
         Ok(Self { records, previews, errors })
     }
 
-    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.records.iter().map(|record| record.input.len()).sum()
     }
@@ -108,7 +106,6 @@ impl Inverted {
     }
 }
 
-/// What the reach of a row means.
 pub fn meaning(reach: Reach) -> &'static str {
     match reach {
         Reach::Reached => "the model has the wanted output",

@@ -86,7 +86,6 @@ pub fn insist(text: fmt::Arguments) {
     let _ = writeln!(io::stderr().lock(), "{}", terminal::line(&text.to_string()));
 }
 
-/// Warns on stderr.
 pub fn warning(text: impl fmt::Display) {
     insist(format_args!("warning: {text}"));
 }

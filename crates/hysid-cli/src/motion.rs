@@ -22,13 +22,9 @@ pub use units::Units;
 
 use crate::arguments::{Force, Mass};
 
-/// The motion in a table.
 pub struct MeasuredMotion {
-    /// Which column is what.
     pub names: MotionColumns,
-    /// Their units.
     pub units: Units,
-    /// The records.
     pub records: Vec<MotionRecord>,
     /// How the numbers of the table are written.
     pub sign: DecimalSign,
@@ -40,9 +36,7 @@ pub struct MeasuredMotion {
 
 /// The motion of a record, in the units of the table.
 pub struct MotionRecord {
-    /// Its name.
     pub name: String,
-    /// Its rows in the table.
     pub rows: Range<usize>,
     columns: [Option<Vec<f64>>; 6],
 }

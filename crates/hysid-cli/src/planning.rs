@@ -17,7 +17,6 @@ pub use text::text;
 /// A plan and what was understood before it.
 pub struct Planned<'a> {
     pub plan: &'a Plan,
-    /// What the plan is.
     pub title: String,
     /// How the data were read; empty without data.
     pub understood: Vec<(String, String)>,
@@ -54,7 +53,6 @@ pub struct Printed<'a> {
 }
 
 impl<'a> Printed<'a> {
-    /// The plan that is in these files.
     pub fn of(plan: &'a Plan, drive: &Path, page: Option<&Path>) -> Self {
         Self {
             drive: drive.display().to_string(),
@@ -86,7 +84,6 @@ fn rate_unit(plan: &Plan) -> String {
     }
 }
 
-/// The plan in one sentence.
 fn headline(plan: &Plan) -> String {
     let input = &plan.names.inputs[0];
     let duration = duration(plan).map_or_else(String::new, |duration| {
@@ -112,7 +109,6 @@ fn headline(plan: &Plan) -> String {
     )
 }
 
-/// The segments as a table.
 fn segments(plan: &Plan) -> Table {
     let mut table = Table::new(["", "segment", "rows", "amplitude", "mean", "rate"]);
     for (index, segment) in plan.segments.iter().enumerate() {

@@ -16,23 +16,19 @@ pub use drawing::{Format, Style, drawing};
 
 use crate::arguments::PlotKind;
 
-/// What is drawn.
 pub struct Subject {
     /// The data; the output is NaN where it was not measured.
     pub data: Dataset,
     /// Output of a model, and its band if one is wanted, for each record.
     pub predicted: Option<Vec<Prediction>>,
-    /// Probability of the band.
     pub band: Option<f64>,
 }
 
 impl Subject {
-    /// True if there is a measured output.
     fn is_measured(&self) -> bool {
         self.data.scored() > 0
     }
 
-    /// The records and their predictions.
     fn records(&self) -> impl Iterator<Item = (&hysid::data::record::Record, Option<&Prediction>)> {
         let predicted = |index| self.predicted.as_ref().map(|predicted| &predicted[index]);
         self.data.records().iter().enumerate().map(move |(index, record)| (record, predicted(index)))

@@ -25,13 +25,10 @@ const MOST_EQUAL: usize = 16;
 /// What is wanted of the rows beside the outputs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted {
-    /// The measured outputs.
     pub measured: bool,
     /// Time, inputs and rate.
     pub drive: bool,
-    /// The cells as they are.
     pub cells: bool,
-    /// A band of this level.
     pub band: Option<BandLevel>,
     /// Over how many rows at the beginning of each record the first input and the output are to be zero in the mean.
     pub zero: Option<usize>,
@@ -47,7 +44,6 @@ pub struct Simulated<'r> {
     pub record: &'r str,
     /// Rows of their record before them.
     pub before: usize,
-    /// Their record ends with them.
     pub ends_record: bool,
     /// How the numbers of the table are written, as far as it is read.
     pub numbers: &'r CellReader,
@@ -60,7 +56,6 @@ impl<'r> Simulated<'r> {
         &self.waiting.drive
     }
 
-    /// The cells of a row, if these are wanted.
     pub fn cells(&self, row: usize) -> impl Iterator<Item = &'r str> {
         self.waiting.cells(row)
     }
@@ -71,7 +66,6 @@ impl<'r> Simulated<'r> {
 pub struct Drive {
     /// Time; empty if there is none.
     pub time: Vec<f64>,
-    /// Inputs.
     pub inputs: Vec<Vec<f64>>,
     /// Rate of the first input; empty if no column has it.
     pub rate: Vec<f64>,
@@ -132,7 +126,6 @@ pub fn run(
     Ok(end.is_continue().then(|| run.simulation.range_warnings().into_iter().chain(run.known).collect()))
 }
 
-/// A run on its way.
 struct TableRun<'r, 'm> {
     file: String,
     roles: &'r Roles,
@@ -146,7 +139,6 @@ struct TableRun<'r, 'm> {
     spread: usize,
     /// What is subtracted from the first input and the output of the present record, once it is known.
     offsets: Option<(f64, f64)>,
-    /// Records so far.
     records: usize,
     /// Name of the present one: of the rows that are simulated, while the row that was read last may begin the next one.
     name: String,
@@ -163,7 +155,6 @@ struct TableRun<'r, 'm> {
     waiting: Waiting,
 }
 
-/// The columns of each role.
 struct Columns {
     record: Option<usize>,
     time: Option<ColumnReader>,

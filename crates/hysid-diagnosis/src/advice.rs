@@ -70,13 +70,11 @@ impl Found {
         self.deterioration == Verdict::Yes || self.strength_loss
     }
 
-    /// True if the output follows the input alone.
     fn is_a_function(&self) -> bool {
         self.static_hysteresis == Verdict::No && self.rate_dependence != Verdict::Yes
     }
 }
 
-/// The simplest model that can hold what was found.
 pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>, resonates: bool) -> Advice {
     let found = Found::of(findings, resonates);
     let (model, reason) = simplest(&found);
@@ -271,7 +269,6 @@ mod tests {
         advice.model.map(ModelName::name)
     }
 
-    /// How many statements are assumptions.
     fn assumed(advice: &Advice) -> usize {
         advice.statement.iter().filter(|text| text.starts_with("not testable with these data: ")).count()
     }

@@ -85,7 +85,6 @@ impl Artifact {
         Dataset::new(data.names().clone(), records?).ok()
     }
 
-    /// In words.
     pub fn in_words(self, data: &Dataset) -> String {
         match self {
             Self::Lag(rows) => {
@@ -207,7 +206,6 @@ pub(crate) fn withhold_what_inertia_makes(findings: &mut [Finding]) {
     );
 }
 
-/// Withholds this verdict on these properties.
 fn withhold_all(
     findings: &mut [Finding],
     (verdict, properties): (Verdict, &[Property]),
@@ -235,7 +233,6 @@ fn share_left(with: &Finding, without: &Finding) -> Option<f64> {
     as_many.then(|| Some(without.index? / with.index?)).flatten()
 }
 
-/// True if the difference is smaller without an artifact.
 fn is_smaller(with: &Finding, without: &Finding) -> bool {
     share_left(with, without).is_some_and(|share| share < SMALLER)
 }

@@ -42,13 +42,10 @@ const KEPT: usize = 4;
 /// A monotone way of the input between two turning points.
 #[derive(Debug, Clone)]
 pub(crate) struct Branch {
-    /// Number of the record.
     pub record: usize,
     /// Rows from the turning point at its beginning to that at its end, both included.
     pub rows: Range<usize>,
-    /// The input at its beginning.
     pub from: f64,
-    /// The input at its end.
     pub to: f64,
     /// Mean speed of the input.
     pub speed: Option<f64>,
@@ -67,19 +64,16 @@ pub(crate) struct Branch {
 /// A turning point that a branch comes back to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Closing {
-    /// Input at the turning point.
     pub x: f64,
     /// Number of the branch that first arrived there.
     pub arrived: usize,
 }
 
 impl Branch {
-    /// True if the input grows.
     pub fn rises(&self) -> bool {
         self.to > self.from
     }
 
-    /// Way of the input.
     pub fn travel(&self) -> f64 {
         (self.to - self.from).abs()
     }
@@ -97,7 +91,6 @@ impl Branch {
         self.rows.start as f64 + share * (self.rows.len() - 1) as f64
     }
 
-    /// Time between its ends.
     pub fn duration(&self) -> Option<f64> {
         self.speed.map(|speed| self.travel() / speed)
     }
@@ -115,28 +108,23 @@ struct CurvePoint {
     y: f64,
     deviation: f64,
     bend: f64,
-    /// Deviation of `x`.
     input_deviation: f64,
 }
 
 /// A value read from a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Reading {
-    /// The output.
     pub y: f64,
-    /// Its standard deviation from the noise.
     pub deviation: f64,
     /// How far smoothing and reading between the rows may be off.
     pub bend: f64,
 }
 
 impl Curve {
-    /// True if the curve has no points.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// Smallest and largest input.
     pub fn range(&self) -> (f64, f64) {
         match (self.points.first(), self.points.last()) {
             (Some(first), Some(last)) => (first.x, last.x),
@@ -144,12 +132,10 @@ impl Curve {
         }
     }
 
-    /// The points, in the order of the input.
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.points.iter().map(|point| (point.x, point.y))
     }
 
-    /// The points with the deviation of their outputs, in the order of the input.
     pub fn points_with_deviation(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         self.points.iter().map(|point| (point.x, point.y, point.deviation))
     }
@@ -200,9 +186,7 @@ pub(crate) struct BranchSet<'a> {
     pub input: (f64, f64),
     /// Smallest and largest output.
     pub output: (f64, f64),
-    /// Noise of the input.
     pub input_noise: Noise,
-    /// Noise of the output.
     pub output_noise: Noise,
     /// Reversals of the input below this are no turning points.
     pub smallest_reversal: f64,
@@ -219,7 +203,6 @@ pub(crate) struct BranchSet<'a> {
 }
 
 impl<'a> BranchSet<'a> {
-    /// Looks through the data.
     pub fn new(data: &'a Dataset, options: &DiagnosisOptions) -> Self {
         let input = data.input_range(0);
         let width = input.1 - input.0;
@@ -281,24 +264,20 @@ impl<'a> BranchSet<'a> {
         }
     }
 
-    /// Range of the output.
     pub fn height(&self) -> f64 {
         self.output.1 - self.output.0
     }
 
-    /// Range of the input.
     pub fn width(&self) -> f64 {
         self.input.1 - self.input.0
     }
 
-    /// The branches of a record.
     pub fn of_record(&self, record: usize) -> &[Branch] {
         let first = self.branches.partition_point(|branch| branch.record < record);
         let count = self.branches[first..].partition_point(|branch| branch.record == record);
         &self.branches[first..first + count]
     }
 
-    /// Rows of the turning points between branches, record by record.
     pub fn turning_rows(&self) -> Vec<Vec<usize>> {
         let mut rows = vec![Vec::new(); self.data.records().len()];
         for pair in self.branches.windows(2).filter(|pair| pair[0].record == pair[1].record) {
@@ -370,13 +349,11 @@ impl<'a> BranchSet<'a> {
         if steps == 0 { 0.0 } else { time / steps as f64 }
     }
 
-    /// Inputs closer than this are the same.
     pub fn same_input(&self) -> f64 {
         0.01 * self.width() + 2.0 * self.input_noise.deviation()
     }
 }
 
-/// The branches of a record.
 fn follow(
     number: usize,
     record: &Record,
@@ -436,7 +413,6 @@ fn follow(
     }
 }
 
-/// Smallest and largest value.
 fn range(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
 }
@@ -448,7 +424,6 @@ fn step_beside(x: &[f64], row: usize) -> f64 {
     before.max(after)
 }
 
-/// Resolution of the first input and of the output.
 fn resolutions(data: &Dataset) -> (f64, f64) {
     let records = || data.records().iter();
     let input = resolution(records().flat_map(|record| &record.inputs()[0]));
@@ -549,7 +524,6 @@ fn channels<'d>(data: &'d Dataset, branch: &Branch) -> (&'d [f64], &'d [f64]) {
     (&record.inputs()[0][branch.rows.clone()], &record.output()[branch.rows.clone()])
 }
 
-/// True if all rows have an output.
 fn is_scored(output: &[f64]) -> bool {
     !output.iter().any(|y| y.is_nan())
 }
@@ -607,12 +581,10 @@ impl BranchSet<'_> {
         (time[last] > time[first]).then(|| (x[last] - x[first]).abs() / (time[last] - time[first]))
     }
 
-    /// Where a branch is in the data.
     pub fn piece(&self, branch: &Branch) -> Piece {
         Piece::of(&self.data.records()[branch.record], (branch.rows.start, branch.rows.end - 1))
     }
 
-    /// A branch for a picture.
     pub fn curve(&self, label: &str, branch: &Branch) -> PictureCurve {
         PictureCurve { label: label.into(), points: branch.curve.points().collect() }
     }

@@ -43,9 +43,7 @@ pub(crate) struct Comparison {
     pub freedom: f64,
     /// What other causes may add to it: turning points between rows, wear.
     pub other: f64,
-    /// Where it was found.
     pub pieces: Vec<Piece>,
-    /// What is drawn of it.
     pub curves: Vec<PictureCurve>,
 }
 
@@ -77,7 +75,6 @@ pub(crate) struct Judgement {
     pub threshold: f64,
     /// Without a verdict: why there is none.
     pub doubt: &'static str,
-    /// Number of comparisons.
     pub count: usize,
     /// Places of the comparisons, the one that decides first.
     pub order: Vec<usize>,

@@ -48,7 +48,6 @@ pub(crate) const CLOSED: f64 = 0.02;
 /// that users read is a [`CycleTable`].
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cycle {
-    /// Name of the record.
     pub record: String,
     /// First and last row, counted from 0 at the beginning of the record.
     pub rows: (usize, usize),
@@ -69,12 +68,10 @@ pub(crate) struct Cycle {
 }
 
 impl Cycle {
-    /// Height of the loop.
     pub fn height(&self) -> f64 {
         self.output.1 - self.output.0
     }
 
-    /// Swing of the input.
     pub fn swing(&self) -> f64 {
         self.input.1 - self.input.0
     }

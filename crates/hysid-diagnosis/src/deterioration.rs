@@ -38,7 +38,6 @@ struct Trend<'c> {
     variance: f64,
 }
 
-/// Tests for deterioration.
 pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
     let groups = repeated(survey, cycles);
     let largest = groups.iter().flatten().map(|cycle| cycle.area).fold(0.0, f64::max);

@@ -152,7 +152,6 @@ fn beta_fraction(a: f64, b: f64, x: f64) -> f64 {
     fraction
 }
 
-/// The value, or a tiny one in place of 0.
 fn apart(value: f64) -> f64 {
     if value.abs() < TINY { TINY } else { value }
 }

@@ -116,12 +116,10 @@ pub struct DataIssue {
 }
 
 impl DataIssue {
-    /// A complaint about all records together.
     fn of_all(kind: DataIssueKind, severity: Severity, statement: String) -> Self {
         Self { kind, record: None, severity, statement, value: None, unit: None, evidence: Vec::new() }
     }
 
-    /// A complaint about rows of a record.
     fn of_rows(kind: DataIssueKind, severity: Severity, statement: String, rows: Vec<Piece>) -> Self {
         let record = rows.first().map(|piece| piece.record.clone());
         Self { record, evidence: rows, ..Self::of_all(kind, severity, statement) }
@@ -245,13 +243,11 @@ impl Units {
         format!("{:.3}{unit}", Significant(value))
     }
 
-    /// A lag in words.
     fn behind(&self, lag: f64) -> String {
         format!("{} {} the input", self.time(lag.abs()), if lag > 0.0 { "behind" } else { "ahead of" })
     }
 }
 
-/// Rows of a record as evidence.
 fn piece(record: &Record, first: usize, last: usize) -> Piece {
     Piece::of(record, (first, last))
 }

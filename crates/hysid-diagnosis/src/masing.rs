@@ -48,7 +48,6 @@ impl OwnPart<'_> {
     }
 }
 
-/// Tests for Masing's rule.
 pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
     let mut parts: Vec<OwnPart> =
         survey.branches.iter().filter_map(|branch| own_part(survey, branch)).collect();

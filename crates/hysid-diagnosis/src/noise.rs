@@ -22,7 +22,6 @@ const SINE: f64 = 0.954;
 /// How the noise of a part depends on that of the rows before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Correlation {
-    /// Not at all.
     White,
     /// By this factor from row to row.
     Decaying(f64),
@@ -77,17 +76,14 @@ impl Correlation {
     }
 }
 
-/// Noise of a channel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Noise {
-    /// The variance of each part.
     parts: Vec<(Correlation, f64)>,
     /// Deviation of the noise if it were white, as neighbouring rows show it.
     roughness: f64,
 }
 
 impl Noise {
-    /// White noise.
     pub fn white(deviation: f64) -> Self {
         let part = (Correlation::White, deviation * deviation);
         Self { parts: if deviation > 0.0 { vec![part] } else { Vec::new() }, roughness: deviation }

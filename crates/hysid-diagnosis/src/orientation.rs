@@ -18,7 +18,6 @@ const WIDE: f64 = 0.3;
 
 const EXPERIMENT: &str = "run a few closed loops over the whole range of the input";
 
-/// Tests which way loops are passed.
 pub(crate) fn test(survey: &BranchSet) -> Finding {
     let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
     let counts = |opening: &&Opening| {

@@ -38,7 +38,6 @@ struct Softness<'b> {
     deviation: f64,
 }
 
-/// Tests for pinching.
 pub(crate) fn test(survey: &BranchSet, cycles: &[CycleRow]) -> Finding {
     let not_testable = |why: &str| Finding::not_testable(Property::Pinching, why, EXPERIMENT);
     let longest = survey.branches.iter().map(|branch| branch.travel()).fold(0.0, f64::max);

@@ -85,7 +85,6 @@ pub(crate) struct Speeds<'b> {
 }
 
 impl Speeds<'_> {
-    /// Ratio of the speeds.
     fn ratio(&self) -> f64 {
         let mean = |set: &[&Branch]| set.iter().filter_map(|b| b.speed).sum::<f64>() / set.len() as f64;
         mean(&self.fast) / mean(&self.slow)

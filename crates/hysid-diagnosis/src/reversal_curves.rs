@@ -157,7 +157,6 @@ impl ReversalCurves {
     }
 }
 
-/// The median distance of neighbouring reversal inputs.
 fn median_step(reversals: &[f64]) -> f64 {
     let mut steps: Vec<f64> = reversals.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     crate::significance::median(&mut steps)

@@ -141,7 +141,6 @@ fn windows(record: &[f64], width: usize, lag: usize, mut take: impl FnMut(&[f64]
     }
 }
 
-/// Highest order of an autoregression.
 const HIGHEST_ORDER: usize = 12;
 
 /// An autoregression of a residual, `e_t = φ_1 e_{t-1} + ... + φ_p e_{t-p} + ε_t` with independent `ε`.

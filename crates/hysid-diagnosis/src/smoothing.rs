@@ -32,13 +32,11 @@ const JUDGED: usize = 60;
 /// A row on the parabola through its neighbours.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Smoothed {
-    /// The output there.
     pub y: f64,
     /// Deviation of `y` for white noise of deviation 1.
     pub deviation: f64,
     /// How far a window half as long is off, beyond its noise.
     pub bend: f64,
-    /// The neighbours.
     pub rows: Range<usize>,
 }
 
@@ -47,9 +45,7 @@ pub(crate) struct Smoothed {
 pub(crate) struct Place {
     /// Where it stands on the way: its time, or its input.
     pub station: f64,
-    /// The input.
     pub x: f64,
-    /// The output.
     pub y: f64,
 }
 

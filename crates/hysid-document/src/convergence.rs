@@ -6,7 +6,6 @@ use hysid_core::options::network::Method;
 use crate::chart::thin::thin;
 use crate::chart::{Axis, Chart, Colour, Curve};
 
-/// Points of a curve.
 const POINTS: usize = 1000;
 
 /// Lowest error on the logarithmic axis, in percent.

@@ -64,7 +64,7 @@ pub struct Card {
     pub anchor: String,
     /// Its heading.
     pub heading: Text,
-    /// Its parts.
+    /// Its parts, in order.
     pub parts: Vec<Part>,
 }
 

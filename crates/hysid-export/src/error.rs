@@ -22,7 +22,7 @@ pub enum Error {
     /// More inputs than the target takes.
     #[error("{target} has one input, and the model has {inputs}")]
     Inputs {
-        /// What has one input.
+        /// The target.
         target: &'static str,
         /// Inputs of the model.
         inputs: usize,
@@ -32,7 +32,7 @@ pub enum Error {
         "{target} is a force that follows from a displacement, and the model has inertia: a resonance of its own"
     )]
     Inertia {
-        /// What has no inertia.
+        /// The target.
         target: &'static str,
     },
     /// A band of a model that has none.

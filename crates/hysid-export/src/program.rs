@@ -26,7 +26,6 @@ impl Array {
     }
 }
 
-/// What an array is for.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Storage {
     /// Numbers that never change.
@@ -55,7 +54,6 @@ impl Storage {
 pub(crate) struct Declaration {
     /// An identifier, unique in the program.
     pub name: String,
-    /// What it is for.
     pub storage: Storage,
 }
 
@@ -245,7 +243,6 @@ impl Builder {
         self.variable(value).into()
     }
 
-    /// A variable that can be given other values.
     pub fn variable(&mut self, value: impl Into<Real>) -> RealVariable {
         let variable = RealVariable(self.program.reals);
         self.program.reals += 1;

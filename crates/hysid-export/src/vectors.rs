@@ -169,7 +169,6 @@ pub(crate) fn of_both_precisions(value: f64) -> f64 {
     if single.is_normal() { f64::from(single) } else { value }
 }
 
-/// The place between -1 and 1 in a range.
 pub(crate) fn within((low, high): (f64, f64), place: f64) -> f64 {
     0.5 * (low + high) + 0.5 * (high - low) * place
 }

@@ -25,7 +25,6 @@ pub struct Destination {
 /// How a file that is replaced is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Copy {
-    /// Not at all.
     None,
     /// As `NAME.bak`, in the place of the one before.
     Replacing,

@@ -47,7 +47,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// What it is, after "is no".
     pub(crate) fn words(&self) -> &'static str {
         match self {
             Self::Model => "model of Hysid",

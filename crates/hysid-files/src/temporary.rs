@@ -7,10 +7,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{NamedTempFile, TempDir};
 
-/// Random letters in a name.
 pub(crate) const RANDOM_LETTERS: usize = 8;
 
-/// Ends every name.
 pub(crate) const ENDING: &str = ".hysid-partial";
 
 /// Letters of the target's name that are kept: file systems allow 255 bytes in all.
@@ -25,7 +23,6 @@ pub(crate) fn beginning(target: &Path) -> String {
     format!(".{}.", name.chars().take(MOST_LETTERS).collect::<String>())
 }
 
-/// The folder of a target.
 pub(crate) fn folder_of(target: &Path) -> &Path {
     match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -109,7 +106,6 @@ impl TemporaryFolder {
     }
 }
 
-/// Creates a temporary folder beside a target.
 pub(crate) fn create_folder(target: &Path) -> io::Result<TemporaryFolder> {
     let folder = builder(&beginning(target)).tempdir_in(folder_of(target)).map_err(plain)?;
     let lock = File::open(folder.path()).ok().filter(|lock| lock.try_lock().is_ok());

@@ -293,7 +293,6 @@ struct Naming<'n> {
     /// Place of the table among all.
     table: usize,
     stem: &'n str,
-    /// There are other tables.
     has_others: bool,
 }
 

@@ -20,7 +20,6 @@ const LABEL: usize = 9;
 /// Repeated tests that are said one by one.
 const MOST_REPEATS: usize = 5;
 
-/// Inputs that are said one by one.
 const MOST_INPUTS: usize = 20;
 
 /// What was understood of data and request, label and text, line by line.

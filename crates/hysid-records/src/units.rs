@@ -99,7 +99,6 @@ fn factor(file: &str, found: &str, trained: &str) -> Result<Option<f64>> {
     }
 }
 
-/// A conversion in words.
 fn conversion(found: &str, trained: &str, factor: f64) -> String {
     let (here, there) = (unit_of(found), unit_of(trained));
     format!(

@@ -51,7 +51,6 @@ pub fn verdict(report: &Report) -> Part {
     )
 }
 
-/// An error and what to think of it.
 fn judged(errors: &Errors) -> String {
     match errors.nrmse_std_percent {
         Some(percent) => format!("{} % ({})", number(percent, 3), grade(percent)),

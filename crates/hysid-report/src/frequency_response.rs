@@ -24,7 +24,6 @@ const GAP: f64 = 5.0;
 /// Width of the lines of models, in pixels: thin, because several curves overlap.
 const WIDTH: f64 = 1.6;
 
-/// Digits of a resonance, at most.
 const MOST_DIGITS: f64 = 6.0;
 
 /// Colours of the model, by falling amplitude.
@@ -178,7 +177,6 @@ impl<'a> Section<'a> {
         format!("{} per {}", unit::of(self.output), unit::of(self.input))
     }
 
-    /// The note on the method.
     fn method(&self) -> String {
         let segments = &self.responses.segments;
         let oscillator = self.responses.oscillator.as_ref();

@@ -15,7 +15,6 @@ const MOST_RECORDS: usize = 6;
 /// Points of each kind of curve in all records together.
 const POINTS: usize = 4000;
 
-/// Most inputs drawn.
 const MOST_INPUTS: usize = 4;
 
 /// The histories of a set.
@@ -126,7 +125,6 @@ impl Panel<'_> {
         Curve::new(outline(self.time, low, high, self.points), Colour::Band, 0.0)
     }
 
-    /// Where the error is to be expected.
     fn error_band(&self, predicted: &Prediction) -> Curve {
         let from = |edges: &[f64]| -> Vec<f64> {
             predicted.output.iter().zip(edges).map(|(output, edge)| output - edge).collect()

@@ -6,10 +6,8 @@ use hysid_document::{Cell, Part, Table, count, number};
 
 use crate::{Report, seen_label};
 
-/// Most rows of the table.
 const MOST_ROWS: usize = 60;
 
-/// Heading of the intervals.
 const INTERVAL: &str = "95 % interval";
 
 /// An interval, or why there is none.
@@ -25,7 +23,6 @@ fn interval(interval: &ParameterInterval) -> String {
     }
 }
 
-/// What the intervals mean.
 fn explanation(intervals: &ParameterIntervals) -> Part {
     let correlated = match intervals.correlation_lag {
         0 => "neighbouring rows of the residual are not correlated".to_string(),

@@ -14,7 +14,6 @@ use serde_json::{Value, json};
 /// Largest file that is taken, in bytes.
 pub const MOST_FILE_BYTES: u64 = 1_000_000_000;
 
-/// What can be chosen.
 #[derive(Debug, Serialize)]
 pub struct Choices {
     program: String,
@@ -52,7 +51,6 @@ struct Described {
 }
 
 impl Choices {
-    /// All of them.
     pub fn all() -> Self {
         let models = std::iter::once(ModelName::AUTO).chain(ModelName::all());
         let specimen = |specimen: &&Specimen| Described { name: specimen.name, what: specimen.summary };

@@ -46,13 +46,10 @@ pub struct Course {
     tell: Tell,
 }
 
-/// What is to be fitted.
 pub struct Work {
     /// Number of the fit.
     pub id: u64,
-    /// What is to be identified.
     pub request: FitSpec,
-    /// The data.
     pub data: Arc<Data>,
     /// What is told of both before the fit.
     pub beforehand: Beforehand,
@@ -177,7 +174,6 @@ pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(anyhow!(words)))
 }
 
-/// Runs a fit.
 fn run(course: &Arc<Course>, work: Work, pool: &rayon::ThreadPool) -> Result<(Identified, Arc<Data>)> {
     let Work { request, data, beforehand, file, time_limit, keep, .. } = work;
     let models = Latest::default();

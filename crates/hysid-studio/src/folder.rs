@@ -35,9 +35,7 @@ pub const UPLOAD: &str = ".upload-";
 /// A folder in that of a project.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Inner {
-    /// Files with data.
     Data,
-    /// Models and their reports.
     Models,
 }
 

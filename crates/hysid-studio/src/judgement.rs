@@ -13,7 +13,6 @@ use hysid_report::residual_words::{name, p_value, verdict};
 use hysid_report::{BAND, BandCoverage, ReportSet};
 use serde::Serialize;
 
-/// Runs that are kept.
 const MOST_KEPT: usize = 8;
 
 /// The free run of a model over a file.

@@ -15,7 +15,6 @@ const VERSION: u32 = 1;
 /// Largest number of a file or a model, far below those that a page in a browser rounds.
 const LARGEST_ID: u64 = 1 << 48;
 
-/// What is stored of a project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Project {
@@ -37,13 +36,11 @@ pub struct Project {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Understanding {
-    /// How tables are read.
     pub reading: ReadingChoice,
     /// The columns, if they are not guessed.
     pub columns: Option<ChosenColumns>,
 }
 
-/// Columns by their names.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs, reason = "each field is the role of its name")]
@@ -63,14 +60,12 @@ impl Begun {
 }
 
 impl ChosenColumns {
-    /// What is said of the columns.
     pub fn choice(&self) -> ColumnChoice {
         let Self { record, time, inputs, rate, output } = self.clone();
         let rate = rate.map_or_else(RateOption::default, RateOption::Column);
         ColumnChoice { record, time, input: inputs, output: Some(output), rate }
     }
 
-    /// The columns of these roles.
     pub fn of(roles: &Roles) -> Self {
         Self {
             record: roles.record.clone(),
@@ -82,22 +77,17 @@ impl ChosenColumns {
     }
 }
 
-/// A file with data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProjectFile {
-    /// Its number.
     pub id: u64,
     /// Its name in the folder of data.
     pub name: String,
-    /// Its length.
     pub bytes: u64,
-    /// What it is for.
     #[serde(rename = "use")]
     pub usage: Use,
 }
 
-/// What a file is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Use {
@@ -105,11 +95,9 @@ pub enum Use {
     Training,
     /// Models are judged by it.
     Unseen,
-    /// Nothing.
     Unused,
 }
 
-/// What is to be fitted, and how.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitRequest {
@@ -130,17 +118,13 @@ pub struct FitRequest {
 pub struct Begun {
     /// Its number, which its model gets too.
     pub id: u64,
-    /// What was asked for.
     pub request: FitRequest,
-    /// Names of the files.
     pub files: Vec<String>,
     /// How they were read.
     pub understanding: Understanding,
-    /// Which column was what, chosen or guessed.
     pub columns: ChosenColumns,
 }
 
-/// A model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProjectModel {
@@ -148,11 +132,9 @@ pub struct ProjectModel {
     pub begun: Begun,
     /// Its file in the folder of models.
     pub file: String,
-    /// Its report there, if it has one.
     pub report: Option<String>,
     /// Date and time of day in UTC.
     pub made: String,
-    /// Seconds of the fit.
     pub seconds: f64,
     /// True if the fit did not come to its end, because the studio was ended.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -223,7 +205,6 @@ impl Project {
         Ok(self)
     }
 
-    /// Its text.
     pub fn text(&self) -> String {
         serde_json::to_string_pretty(self).expect("a project is plain data") + "\n"
     }
@@ -250,7 +231,6 @@ impl Project {
         self.models.iter().find(|model| model.begun.id == id).ok_or_else(|| anyhow!("there is no model {id}"))
     }
 
-    /// The files for one use.
     pub fn files_for(&self, usage: Use) -> impl Iterator<Item = &ProjectFile> {
         self.files.iter().filter(move |file| file.usage == usage)
     }
@@ -263,7 +243,6 @@ impl Project {
 }
 
 impl Understanding {
-    /// What is said of the columns.
     pub fn choice(&self) -> ColumnChoice {
         self.columns.as_ref().map_or_else(ColumnChoice::default, ChosenColumns::choice)
     }

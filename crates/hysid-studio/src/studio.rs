@@ -45,9 +45,7 @@ pub struct Studio {
 /// How often something has changed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct News {
-    /// Of the project.
     pub project: u64,
-    /// Of the fit.
     pub fit: u64,
 }
 
@@ -149,7 +147,6 @@ impl Studio {
         self.reading.lock().unwrap()
     }
 
-    /// Forgets what was read.
     #[cfg(test)]
     pub(crate) fn forget_view(&self) {
         self.show(View::default());

@@ -39,11 +39,8 @@ pub struct View {
 /// A table that was read before its file was in the project, with the number of the file.
 pub type AtHand = Option<(u64, Result<Table>)>;
 
-/// A file as it is read.
 pub struct FileView {
-    /// Its number.
     pub id: u64,
-    /// The table, if it can be read.
     pub table: Option<TableView>,
     /// The data, if the columns can be used.
     pub data: Option<Arc<Data>>,
@@ -52,13 +49,10 @@ pub struct FileView {
     roles: Option<Roles>,
 }
 
-/// A table as it is read.
 pub struct TableView {
     /// How its file is stored and laid out, in words.
     pub read_as: String,
-    /// Rows.
     pub rows: usize,
-    /// Columns.
     pub looked: Looked,
 }
 

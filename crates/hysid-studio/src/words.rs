@@ -2,10 +2,8 @@
 
 use std::borrow::Cow;
 
-/// Most characters.
 const MOST_LETTERS: usize = 1000;
 
-/// What an error says.
 pub fn said(error: &anyhow::Error) -> String {
     shortened(&format!("{error:#}")).into_owned()
 }

@@ -21,7 +21,6 @@ use budget::Unpacking;
 /// Bytes that tell what a file is.
 const FIRST: usize = 1 << 16;
 
-/// The text of a table.
 pub struct Text {
     /// The file, as the user named it.
     pub file: String,

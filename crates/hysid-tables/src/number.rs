@@ -133,7 +133,6 @@ pub enum NumberProblem {
     OtherSign(DecimalSign),
     /// It exceeds what a number can hold.
     TooLarge,
-    /// It is infinite.
     NotFinite,
     /// It is something else.
     NotANumber,

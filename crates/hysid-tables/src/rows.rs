@@ -24,7 +24,6 @@ const LONGEST_ROW: usize = 1 << 29;
 /// Lines from which a layout can be found.
 const FEWEST_LINES: usize = 6;
 
-/// Most columns of a table.
 const MOST_COLUMNS: usize = 20_000;
 
 /// Bytes at the end of a file that are looked through for rows, if they begin like none.
@@ -286,7 +285,6 @@ impl Rows {
         }
     }
 
-    /// The present row.
     fn row(&self) -> Result<Row<'_>> {
         let ends = &self.ends[..self.cells];
         let raw = &self.buffer[self.start..self.start + self.parsed];

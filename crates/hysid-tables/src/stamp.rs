@@ -2,7 +2,6 @@
 
 use jiff::civil;
 
-/// Seconds of a day.
 const DAY: f64 = 86_400.0;
 
 /// Fewest characters of a time stamp.
@@ -27,16 +26,13 @@ const MONTHS: [&str; 12] = [
 /// A time stamp in a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamp {
-    /// The date, if there is one.
     date: Option<Date>,
     /// Seconds since midnight.
     seconds: f64,
 }
 
-/// A date as it is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Date {
-    /// Days since 1970.
     Day(i64),
     /// Two numbers of which one is the day and one the month, and the year.
     Slashed(i16, i16, i16),
@@ -163,7 +159,6 @@ fn date_with_name(text: &str) -> Option<i64> {
     day_of(if year < 100 { year + 2000 } else { year }, month as i16 + 1, day.parse().ok()?)
 }
 
-/// Days since 1970.
 fn day_of(year: i16, month: i16, day: i16) -> Option<i64> {
     let date = civil::Date::new(year, i8::try_from(month).ok()?, i8::try_from(day).ok()?).ok()?;
     let since = date.since((jiff::Unit::Day, civil::date(1970, 1, 1))).ok()?;

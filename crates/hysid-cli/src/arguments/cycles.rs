@@ -33,7 +33,6 @@ pub struct Cycles {
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
     /// Figures of: structure, magnet, actuator or general (all) [default: by names and units]

@@ -52,10 +52,8 @@ pub struct Force {
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: MotionOptions,
-    /// How the tables are read.
     #[command(flatten)]
     pub reading: ReadingOptions,
     /// Rows of the window of the filter that differentiates, an odd number [default: chosen from the data]

@@ -37,7 +37,6 @@ impl FromArgMatches for ModelOptions {
     }
 }
 
-/// The names of the arguments.
 pub fn names() -> impl Iterator<Item = &'static str> {
     OPTIONS.iter().map(|option| option.name)
 }

@@ -37,7 +37,6 @@ pub struct Plan {
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
     /// Lowest and highest input [default: of the data]

@@ -75,10 +75,8 @@ pub struct Plot {
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// How units are taken.
     #[command(flatten)]
     pub units: UnitOptions,
     /// Field of engineering: structure, magnet, actuator or general [default: by the columns]
@@ -107,7 +105,6 @@ pub struct Plot {
 }
 
 impl Plot {
-    /// How cycles are found.
     pub fn options(&self) -> CycleOptions {
         CycleOptions { division: self.divide, field: self.field, ..CycleOptions::default() }
     }

@@ -18,7 +18,6 @@ use crate::files::{self, check_outputs};
 use crate::interrupt;
 use crate::messages::{json_results, note, results, summarised, warning};
 
-/// Runs the command.
 pub fn run(arguments: &Compare) -> Result<Outcome> {
     let page = (!arguments.no_report)
         .then(|| Destination::new(page_path(arguments), Kind::Page, arguments.overwriting.force));

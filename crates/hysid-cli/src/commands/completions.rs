@@ -6,7 +6,6 @@ use crate::Outcome;
 use crate::arguments::{Arguments, Completions};
 use crate::messages::raw_results;
 
-/// Runs the command.
 pub fn run(arguments: &Completions) -> Result<Outcome> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Arguments::whole(), "hysid", &mut script);

@@ -17,7 +17,6 @@ use crate::data::data_of;
 use crate::files::{self, check_outputs};
 use crate::messages::{note_labelled, raw_results, results, warning};
 
-/// Runs the command.
 pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
     let outputs = Outputs::of(arguments)?;
     let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();

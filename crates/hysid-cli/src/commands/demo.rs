@@ -20,7 +20,6 @@ use crate::identification::{self, Work, identify, note_interrupted};
 use crate::interrupt;
 use crate::messages::{note, results};
 
-/// Runs the command.
 pub fn run(arguments: &Demo) -> Result<Outcome> {
     let folder = &arguments.out;
     files::make_folder(folder)?;

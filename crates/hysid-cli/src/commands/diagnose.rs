@@ -26,7 +26,6 @@ struct Told {
     page: Option<Page>,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Diagnose) -> Result<Outcome> {
     let page = (!arguments.no_report)
         .then(|| Destination::new(page_path(arguments), Kind::Page, arguments.overwriting.force));

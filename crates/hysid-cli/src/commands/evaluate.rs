@@ -20,7 +20,6 @@ use crate::messages::{json_results, results, summarised, warning};
 use crate::residual_tests;
 use crate::table_run::{self, Simulated, Wanted};
 
-/// Runs the command.
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     let mut rows = Rows::open(&arguments.data, &arguments.columns.reading.reading())?;

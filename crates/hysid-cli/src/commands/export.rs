@@ -20,7 +20,6 @@ use crate::files;
 use crate::messages::{Usage, json_results, note};
 use crate::progress::while_working;
 
-/// Runs the command.
 pub fn run(arguments: &Export) -> Result<Outcome> {
     let model = read_model(&arguments.model)?;
     let name = match &arguments.name {

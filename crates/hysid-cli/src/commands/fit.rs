@@ -29,7 +29,6 @@ use crate::identification::{self, Work, identify, report_path};
 use crate::interrupt;
 use crate::messages::{Usage, json_results, note, results, warning};
 
-/// Runs the command.
 pub fn run(arguments: &Fit) -> Result<Outcome> {
     let force = arguments.overwriting.force;
     let model = Destination::new(out(arguments)?, Kind::Model, force);
@@ -145,7 +144,6 @@ fn check_checkpoints(request: &FitSpec) -> Result<()> {
     Err(Usage(format!("{what} has no checkpoints: {advice}")).into())
 }
 
-/// Warns of options that the model ignores.
 pub fn warn_of_ignored(chosen: &NamedOptions) {
     for Ignored { option, by } in chosen.ignored() {
         warning(format_args!("{by} ignores --{}", flag(option)));

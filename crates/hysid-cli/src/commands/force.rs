@@ -13,7 +13,6 @@ use crate::help;
 use crate::messages::{json_results, note_labelled, raw_results, results, warning};
 use crate::motion::{MeasuredMotion, Printed, Written, summary, understood, warnings};
 
-/// Runs the command.
 pub fn run(arguments: &Force) -> Result<Outcome> {
     let path = arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.data, ".force.csv"));
     let to_stdout = path == Path::new("-");

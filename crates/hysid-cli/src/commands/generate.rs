@@ -15,7 +15,6 @@ use crate::arguments::Generate;
 use crate::files::{self, check_outputs};
 use crate::messages::{Usage, json_results, note, raw_results, results};
 
-/// Runs the command.
 pub fn run(arguments: &Generate) -> Result<Outcome> {
     match arguments.specimen {
         Some(specimen) => generate(specimen, arguments)?,
@@ -89,7 +88,6 @@ impl Set {
     }
 }
 
-/// What to type next.
 fn next(train: Option<&Path>, test: Option<&Path>) -> String {
     let shown = |path: Option<&Path>, unknown: &str| path.map_or_else(|| unknown.into(), files::shown);
     let model = train.map(|train| train.with_extension("json"));

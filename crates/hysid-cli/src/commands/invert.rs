@@ -25,7 +25,6 @@ use crate::inversion::{self, Bounds, Inverted, Wanted};
 use crate::messages::{json_results, note_labelled, raw_results, results, warning};
 use crate::terminal::clipped;
 
-/// Runs the command.
 pub fn run(arguments: &Invert) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     arguments.band.map_or(Ok(()), |_| check_band(&model, &arguments.model))?;

@@ -19,7 +19,6 @@ use crate::messages::{Usage, json_results, note, raw_results, results, warning};
 /// Lines about the data as a whole that are shown below the tables.
 const OF_THE_DATA: [&str; 3] = ["samples", "guessed", "turning"];
 
-/// Runs the command.
 pub fn run(arguments: &Look) -> Result<Outcome> {
     let to_stdout = arguments.out.as_deref() == Some(Path::new("-"));
     if arguments.json && to_stdout {

@@ -15,7 +15,6 @@ use crate::messages::note;
 /// Begins every page, so that Hysid knows its own again. It is a comment of roff.
 const MARK: &str = ".\\\" Written by hysid man.\n";
 
-/// Runs the command.
 pub fn run(arguments: &arguments::Man) -> Result<Outcome> {
     let pages = pages()?;
     files::make_folder(&arguments.out)?;

@@ -10,7 +10,6 @@ use crate::files;
 use crate::inspection::Inspected;
 use crate::messages::{json_results, results};
 
-/// Runs the command.
 pub fn run(arguments: &Models) -> Result<Outcome> {
     match &arguments.model {
         None => {

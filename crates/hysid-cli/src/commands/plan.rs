@@ -16,7 +16,6 @@ use crate::files::{self, check_outputs};
 use crate::messages::{Usage, json_results, note_labelled, raw_results, results};
 use crate::planning::{self, Planned};
 
-/// Runs the command.
 pub fn run(arguments: &arguments::Plan) -> Result<Outcome> {
     match (&arguments.kind, arguments.like.is_empty()) {
         (Some(kind), _) => of_kind(arguments, kind),

@@ -19,7 +19,6 @@ use crate::messages::{Usage, summarised, warning};
 use crate::plotting::{self, Format, Style, Subject};
 use crate::table_run::{self, Wanted};
 
-/// Runs the command.
 pub fn run(arguments: &Plot) -> Result<Outcome> {
     let (model, tables) = given(arguments)?;
     let kind = arguments.kind;

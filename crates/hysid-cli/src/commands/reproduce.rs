@@ -8,7 +8,6 @@ use crate::arguments::Reproduce;
 use crate::reproduction::{self, Outputs};
 use crate::{files, interrupt};
 
-/// Runs the command.
 pub fn run(arguments: &Reproduce) -> Result<Outcome> {
     files::make_folder(&arguments.out)?;
     interrupt::listen("stopping; what is finished is kept")?;

@@ -22,7 +22,6 @@ use crate::{Outcome, interrupt};
 /// Bytes that are written together. A table with an error in its first rows leaves nothing on stdout.
 const BUFFERED: usize = 1 << 20;
 
-/// Runs the command.
 pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     let reading = arguments.columns.reading.reading();

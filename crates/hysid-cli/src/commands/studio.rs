@@ -20,7 +20,6 @@ const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
 /// Time that answers on their way get when the studio ends.
 const LONGEST_END: Duration = Duration::from_secs(5);
 
-/// Runs the command.
 pub fn run(arguments: &Studio) -> Result<Outcome> {
     let studio = Arc::new(Opened::open(Folder::open(arguments.project.as_deref())?)?);
     for file in &arguments.data {

@@ -33,7 +33,6 @@ struct Validated {
     errors: CrossValidation,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Validate) -> Result<Outcome> {
     let tables = read_tables(&arguments.data, &arguments.columns.reading)?;
     let file = tables[0].file.clone();

@@ -14,7 +14,6 @@ const MOST_RECORDS: usize = 200;
 /// Models whose loops are drawn over each other.
 const OVERLAID: usize = 3;
 
-/// The whole page.
 pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) -> Result<Page> {
     let labels: Vec<String> = rows.iter().map(Row::label).collect();
     let fitted: Vec<(&str, &Fitted)> = rows

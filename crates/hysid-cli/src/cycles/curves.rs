@@ -56,7 +56,6 @@ pub fn summary(cycles: &Cycles, curves: &ReversalCurves, number: impl Fn(f64) ->
     )
 }
 
-/// The node with the largest density.
 fn largest(curves: &ReversalCurves) -> Option<&ReversalNode> {
     let known = curves.nodes.iter().filter(|node| node.density.is_some());
     known.max_by(|a, b| a.density.unwrap_or(0.0).total_cmp(&b.density.unwrap_or(0.0)))

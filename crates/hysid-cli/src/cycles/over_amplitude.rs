@@ -8,7 +8,6 @@ use super::Cycles;
 use super::pictures::MOST_CURVES;
 use super::text::present;
 
-/// Dots of a chart at most.
 const MOST_DOTS: usize = 600;
 
 /// Frequencies that differ by more than this factor are drawn.
@@ -19,9 +18,7 @@ const MOST_AMPLITUDES: usize = hysid_document::chart::SERIES;
 
 /// Cycles, and how they are drawn beside others.
 pub struct Shown<'a> {
-    /// The cycles.
     pub cycles: &'a Cycles<'a>,
-    /// Their colour.
     pub colour: Colour,
     /// Radius of their dots, in pixels.
     pub radius: f64,

@@ -12,7 +12,6 @@ const AT_EACH_END: usize = 100;
 /// Figures that the page leaves to the file: when and where a cycle is, and the deviation of its energy.
 const PLACES: [&str; 4] = ["start_time", "input_min", "input_max", "energy_deviation"];
 
-/// The page of the cycles.
 pub fn page(cycles: &Cycles) -> Page {
     let lead = match cycles.of_model {
         true => {

@@ -8,7 +8,6 @@ use hysid_document::{Chart, Colour, Curve, unit};
 use super::Cycles;
 use super::over_amplitude::backbone;
 
-/// Points of all loops together.
 const LOOP_POINTS: usize = 6000;
 
 /// Records and reversal curves that are drawn at most.
@@ -53,7 +52,6 @@ pub fn path(x: &[f64], y: &[f64], most: usize) -> Vec<Point> {
     thin_path(&[x, y], most).into_iter().map(point).collect()
 }
 
-/// The reversal curves.
 pub fn reversal_curves(cycles: &Cycles, curves: &ReversalCurves) -> Chart {
     let every = curves.curves.len().div_ceil(MOST_CURVES).max(1);
     let line = |points: &Vec<Point>| Curve::new(thin(points, 400), Colour::Simulated, 1.0);

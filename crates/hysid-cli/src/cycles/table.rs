@@ -90,7 +90,6 @@ pub fn shown(
     table
 }
 
-/// Notes, each with the cycles that it is of.
 pub fn notes(cycles: &Cycles) -> Vec<String> {
     let mut all: Vec<(&str, Vec<String>)> = Vec::new();
     for row in &cycles.table.cycles {

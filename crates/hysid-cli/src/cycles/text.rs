@@ -15,7 +15,6 @@ const AT_EACH_END: usize = 8;
 /// Cycles that are said of the losses at most.
 const MOST_LOSSES: usize = 12;
 
-/// The main figures of a field.
 fn main_figures(field: Field) -> &'static [&'static str] {
     match field {
         Field::Structure => &[
@@ -61,7 +60,6 @@ fn lines(text: &str) -> String {
     wrapped(text, WIDTH).join("\n") + "\n"
 }
 
-/// Where cycles begin, in words.
 pub fn begin(cycles: &Cycles) -> &'static str {
     use hysid::diagnosis::cycles::Division;
     match cycles.table.division {
@@ -79,7 +77,6 @@ pub fn present(cycles: &Cycles, names: &[&str]) -> Vec<&'static Figure> {
     names.iter().filter_map(find).filter(has).collect()
 }
 
-/// Places of the rows at both ends.
 pub fn both_ends(rows: usize, at_each_end: usize) -> impl Iterator<Item = usize> {
     // Leaving out a single one saves nothing.
     (0..rows).filter(move |place| {

@@ -17,10 +17,8 @@ const MOST_RECORDS: usize = 6;
 /// Points of each kind of curve in all records together.
 const POINTS: usize = 4000;
 
-/// Points of the loops.
 const LOOP_POINTS: usize = 6000;
 
-/// The whole page.
 pub fn page(
     model: &Model,
     wanted: &Wanted,

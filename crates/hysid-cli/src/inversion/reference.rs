@@ -10,25 +10,18 @@ use hysid_tables::{CellReader, DecimalSign, Table};
 
 /// The wanted outputs of a table, in the units of the model.
 pub struct Wanted {
-    /// The file.
     pub file: String,
-    /// Line of each row.
     pub lines: Vec<u64>,
-    /// The records.
     pub records: Vec<WantedRecord>,
     /// How the numbers of the table are written.
     pub sign: DecimalSign,
 }
 
-/// The wanted outputs of a record.
 pub struct WantedRecord {
-    /// Its name.
     pub name: String,
-    /// Its rows in the table.
     pub rows: Range<usize>,
     /// The wanted output of each row.
     pub wanted: Vec<f64>,
-    /// Time of each row.
     pub time: Option<Vec<f64>>,
     others: Vec<Vec<f64>>,
 }

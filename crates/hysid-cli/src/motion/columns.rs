@@ -44,24 +44,19 @@ const ACCELERATION: [&str; 6] = ["acc", "beschl", "accél", "aceler", "уско�
 /// The value of `--applied-force` for none.
 const NONE: &str = "none";
 
-/// The columns of a motion, by name.
 #[derive(Debug, Clone)]
 pub struct MotionColumns {
     /// Tells the records apart.
     pub record: Option<String>,
-    /// Time stamps.
     pub time: String,
     /// Displacement relative to the base.
     pub displacement: String,
     /// Velocity relative to the base.
     pub velocity: Option<String>,
-    /// Acceleration of the mass.
     pub acceleration: Option<String>,
     /// The acceleration is absolute, not relative to the base.
     pub is_absolute: bool,
-    /// Acceleration of the base.
     pub base_acceleration: Option<String>,
-    /// Applied force.
     pub applied_force: Option<String>,
     /// Columns that are copied.
     pub keep: Vec<String>,
@@ -132,7 +127,6 @@ impl MotionColumns {
         })
     }
 
-    /// The name of a column.
     pub fn name_of(&self, column: MotionColumn) -> Option<&str> {
         match column {
             MotionColumn::Time => Some(&self.time),

@@ -15,15 +15,11 @@ use super::units::named;
 pub struct Written {
     /// Record, if the table has such a column.
     pub record: Option<String>,
-    /// Time.
     pub time: String,
-    /// Displacement.
     pub displacement: String,
-    /// Velocity.
     pub velocity: String,
     /// Columns that are copied.
     pub keep: Vec<String>,
-    /// Restoring force.
     pub force: String,
     delimiter: u8,
 }

@@ -79,7 +79,6 @@ fn acceleration(motion: &MeasuredMotion, found: &RestoringForce) -> (&'static st
     }
 }
 
-/// How a derivative was computed.
 fn by(derivative: &str, column: &str, filter: Option<Filter>, motion: &MeasuredMotion) -> String {
     let what = format!("{derivative} of {}", clipped(column));
     let Some(filter) = filter else { return what };
@@ -201,7 +200,6 @@ pub struct Printed<'a> {
     rows_with_force: usize,
     /// Lowest and highest restoring force.
     force_range: (f64, f64),
-    /// Its unit, if it is known.
     force_unit: Option<&'a str>,
     standard_deviation: f64,
     /// Standard deviation of the noise of the force, in its unit and in percent of the standard deviation.
@@ -222,7 +220,6 @@ struct PrintedFilter {
 }
 
 impl<'a> Printed<'a> {
-    /// Of a force that was written to a table.
     pub fn of(motion: &'a MeasuredMotion, found: &RestoringForce, table: Option<&Path>) -> Self {
         let forces = || found.records.iter().flat_map(|record| &record.force).filter(|force| !force.is_nan());
         let filter = |filter: Filter| PrintedFilter { degree: filter.degree, window: filter.window() };

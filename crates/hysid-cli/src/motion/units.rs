@@ -89,13 +89,11 @@ impl Units {
         Some(unit::quotient(above, below))
     }
 
-    /// The units that are known.
     pub fn known(&self) -> Vec<&str> {
         self.columns.iter().filter_map(|(_, _, unit)| unit.as_deref()).collect()
     }
 }
 
-/// The SI unit of a column.
 fn in_si(column: MotionColumn) -> &'static str {
     match column {
         MotionColumn::Time => "s",

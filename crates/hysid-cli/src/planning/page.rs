@@ -8,7 +8,6 @@ use super::{Planned, headline, segments};
 /// Points of the drive at most.
 const POINTS: usize = 6000;
 
-/// The whole page.
 pub fn page(planned: &Planned<'_>) -> Page {
     let plan = planned.plan;
     let mut parts = vec![Part::Lead((headline(plan) + ".").into())];

@@ -12,7 +12,6 @@ const POINTS: usize = 12_000;
 /// Height of a chart of loops over its width.
 const SHAPE: f64 = 0.75;
 
-/// All loops in one chart.
 pub fn loops(subject: &Subject, width: f64) -> Chart {
     let most = (POINTS / subject.data.records().len()).max(100);
     let (mut back, mut front) = (Vec::new(), Vec::new());
@@ -52,5 +51,4 @@ pub fn alone(subject: &Subject) -> Colour {
     if subject.predicted.is_some() { Colour::Simulated } else { Colour::Series(0) }
 }
 
-/// Colours and widths of measured data and a model.
 pub const BOTH: [(Colour, f64); 2] = [(Colour::Measured, MEASURED_WIDTH), (Colour::Simulated, MODEL_WIDTH)];

@@ -14,16 +14,12 @@ use resvg::usvg::{Options, Tree};
 use super::fonts;
 use crate::messages::Usage;
 
-/// Points of a PDF in a pixel.
 const POINTS_PER_PIXEL: f32 = 72.0 / 96.0;
 
-/// Pixels of a drawing in an inch.
 const PIXELS_PER_INCH: f64 = 96.0;
 
-/// Most dots of a PNG.
 const MOST_DOTS: f64 = 2e8;
 
-/// The format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Scalable vector graphics.
@@ -56,7 +52,6 @@ impl Format {
 /// How a figure looks on paper.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
-    /// Width, in millimetres.
     pub width: f64,
     /// Height, in millimetres; `None` for that of the charts.
     pub height: Option<f64>,
@@ -64,12 +59,10 @@ pub struct Style {
     pub font: String,
     /// Size of the text, in points.
     pub points: f64,
-    /// Dots in an inch of a PNG.
     pub dots_per_inch: f64,
 }
 
 impl Style {
-    /// The width in pixels.
     pub fn pixels(&self) -> f64 {
         self.width * PIXELS_PER_MILLIMETRE
     }

@@ -17,10 +17,8 @@ use crate::messages::{Usage, note};
 /// Most records that are drawn over time.
 const MOST_RECORDS: usize = 4;
 
-/// Points of a curve.
 const POINTS: usize = 4000;
 
-/// Most inputs that are drawn.
 const MOST_INPUTS: usize = 4;
 
 /// Heights of charts over their width: of the output, of input and error over time, and of the error over the input.
@@ -95,7 +93,6 @@ pub fn errors(subject: &Subject, width: f64) -> Result<Vec<Chart>> {
     Ok(charts.into_iter().map(|chart| wide(chart, width)).collect())
 }
 
-/// The records that are drawn one by one.
 fn drawn(subject: &Subject) -> impl Iterator<Item = (&Record, Option<&Prediction>)> {
     let count = subject.data.records().len();
     if count > MOST_RECORDS {

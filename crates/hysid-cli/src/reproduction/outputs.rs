@@ -10,24 +10,20 @@ use super::rendering::CSV_HEADER;
 /// The folder that files go to.
 #[derive(Debug, Clone, Copy)]
 pub struct Outputs<'a> {
-    /// The folder.
     pub folder: &'a Path,
     /// Files that Hysid did not write are replaced too.
     pub force: bool,
 }
 
 impl Outputs<'_> {
-    /// The page.
     pub fn page(&self, name: &str) -> Destination {
         self.destination(&format!("{name}.html"), Kind::Page)
     }
 
-    /// The same as Markdown.
     pub fn markdown(&self, name: &str) -> Destination {
         self.destination(&format!("{name}.md"), Kind::Marked("# ", "Made by hysid ".into()))
     }
 
-    /// The tables.
     pub fn tables(&self, name: &str) -> Destination {
         self.destination(&format!("{name}.csv"), Kind::Beginning(CSV_HEADER.into()))
     }
@@ -43,7 +39,6 @@ impl Outputs<'_> {
         Some(self.further_file(file))
     }
 
-    /// All files of an experiment.
     pub fn of(&self, experiment: Experiment) -> Vec<Destination> {
         let name = experiment.name();
         let further = experiment.further_files();

@@ -112,7 +112,6 @@ fn finished(experiments: &[Experiment], settings: Settings) -> Result<Vec<(Exper
     Ok(experiments.iter().zip(places).filter_map(|(&experiment, one)| Some((experiment, one?))).collect())
 }
 
-/// When, by what and how these were made.
 fn made(finished: &[Finished], settings: Settings, further: &str) -> Text {
     let dates = || finished.iter().map(|one| one.date.as_str());
     let (first, last) = (dates().min().unwrap_or_default(), dates().max().unwrap_or_default());

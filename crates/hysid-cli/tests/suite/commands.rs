@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 use crate::workbench::{ROWS, Ran, Workbench, csv, json, must_contain, rows, table, with_cell};
 use serde_json::Value;
 
-/// The keys of an object, in order.
 fn keys(object: &Value) -> String {
     let mut keys: Vec<&str> = object.as_object().unwrap().keys().map(String::as_str).collect();
     keys.sort_unstable();

@@ -3,7 +3,6 @@
 
 use crate::workbench::{Ran, Workbench, cases};
 
-/// Rows of a table.
 const ROWS: usize = 1200;
 
 /// A motion of 2 t on a spring of 800 kN/m beside a damper of 4 kN s/m: time in s, displacement in m, velocity, acceleration,

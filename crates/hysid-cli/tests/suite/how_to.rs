@@ -10,7 +10,6 @@ use crate::workbench::Workbench;
 /// How the lines begin that are run.
 const PROGRAMS: [&str; 3] = ["hysid ", "cc ", "./"];
 
-/// The commands of a page.
 fn commands(page: &str) -> Vec<&str> {
     let mut inside = false;
     let mut commands = Vec::new();
@@ -84,7 +83,6 @@ fn follow(path: &str) {
 
 macro_rules! pages {
     ($($test:ident: $path:literal),* $(,)?) => {
-        /// The pages that are followed.
         const PAGES: &[&str] = &[$($path),*];
 
         $(#[test]

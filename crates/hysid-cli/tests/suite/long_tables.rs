@@ -8,7 +8,6 @@ use crate::workbench::{Workbench, table};
 /// Rows of more than two blocks, in records of very different length.
 const LENGTHS: [usize; 5] = [1, 9000, 3, 4096, 2];
 
-/// The numbers of a row of a record.
 fn numbers(record: usize, row: usize) -> [f64; 3] {
     let time = 0.1 * row as f64 + 0.01 * (row as f64).sin();
     let x = (0.3 * row as f64 + record as f64).sin() * 0.9;

@@ -41,7 +41,6 @@ fn data(bench: &Workbench, rows: usize, inputs: usize) -> Dataset {
     Dataset::new(ColumnNames::plain(inputs), vec![record]).unwrap()
 }
 
-/// Names all inputs.
 fn named(inputs: usize) -> String {
     (0..inputs).map(|c| format!(" --input x{c}")).collect()
 }

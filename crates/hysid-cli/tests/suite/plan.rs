@@ -22,7 +22,6 @@ fn bench() -> Workbench {
     bench
 }
 
-/// The columns of a drive.
 fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
     let mut lines = text.lines();
     let header = lines.next().unwrap().split(',').map(str::to_owned).collect::<Vec<_>>();

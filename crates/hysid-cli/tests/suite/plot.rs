@@ -44,13 +44,11 @@ fn with_member() -> Workbench {
     bench
 }
 
-/// True if a drawing has this text.
 fn has_text(drawing: &str, text: &str) -> bool {
     let texts = drawing.split("<text ").skip(1).filter_map(|rest| rest.split_once('>')?.1.split('<').next());
     texts.map(str::trim).any(|found| found == text)
 }
 
-/// Centres of all dots of a colour.
 fn dots(drawing: &str, colour: &str) -> Vec<(f64, f64)> {
     let number = |circle: &str, name: &str| -> f64 {
         let rest = circle.split(&format!("{name}=\"")).nth(1).unwrap();

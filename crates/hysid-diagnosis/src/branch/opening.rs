@@ -20,9 +20,7 @@ pub(crate) struct Opening {
     pub deviation: f64,
     /// Range of the inputs of both.
     pub swing: f64,
-    /// Range of their outputs.
     pub height: f64,
-    /// Speed of the input.
     pub speed: Option<f64>,
 }
 
@@ -32,17 +30,14 @@ impl Opening {
         self.area / (self.swing * self.height).max(f64::MIN_POSITIVE)
     }
 
-    /// The rows of both branches.
     pub fn pieces(&self, survey: &BranchSet) -> Vec<Piece> {
         vec![survey.piece(&survey.branches[self.branch]), survey.piece(&survey.branches[self.branch + 1])]
     }
 
-    /// Rows of both branches together.
     pub fn rows(&self, survey: &BranchSet) -> usize {
         survey.branches[self.branch..self.branch + 2].iter().map(|branch| branch.rows.len()).sum()
     }
 
-    /// Both branches for a picture.
     pub fn curves(&self, survey: &BranchSet) -> Vec<PictureCurve> {
         let curve = |label, index: usize| survey.curve(label, &survey.branches[index]);
         vec![curve("there", self.branch), curve("back", self.branch + 1)]
@@ -54,7 +49,6 @@ pub(crate) fn openings(branches: &[Branch], output_noise: &Noise) -> Vec<Opening
     (1..branches.len()).filter_map(|next| opening(branches, next - 1, output_noise)).collect()
 }
 
-/// The opening between a branch and the next.
 fn opening(branches: &[Branch], branch: usize, output_noise: &Noise) -> Option<Opening> {
     let (out, back) = (&branches[branch], &branches[branch + 1]);
     if out.record != back.record || out.curve.is_empty() || back.curve.is_empty() {

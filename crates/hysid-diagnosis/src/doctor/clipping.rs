@@ -24,7 +24,6 @@ const RESOLUTIONS: f64 = 20.0;
 /// Rows over which that slope is taken.
 const BEFORE: usize = 4;
 
-/// Runs that are shown.
 const SHOWN: usize = 3;
 
 /// An output that goes there and back while the input stands, as a share of its range.
@@ -120,7 +119,6 @@ fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<Clipped> {
     (!runs.is_empty()).then_some(Clipped { runs, value: extreme })
 }
 
-/// The smallest difference of two outputs.
 fn resolution(survey: &BranchSet) -> f64 {
     let outputs = survey.data.records().iter().flat_map(Record::output);
     let mut sorted: Vec<f64> = outputs.copied().filter(|y| !y.is_nan()).collect();

@@ -18,7 +18,6 @@ const STEEPEST: f64 = 30.0;
 /// A creep goes on: no quarter of the hold has more than this share of it.
 const GOES_ON: f64 = 0.8;
 
-/// Holds that are shown.
 const SHOWN: usize = 3;
 
 /// A hold of the input during which the output moves.

@@ -15,7 +15,6 @@ const LINE: f64 = 0.5;
 /// Periods around the one that is known roughly: to either side by this share.
 const AROUND: f64 = 0.15;
 
-/// Most rows that are looked at.
 const MOST_ROWS: usize = 8192;
 
 pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {

@@ -17,7 +17,6 @@ use crate::minimum::lowest;
 /// Shares of the shorter branch that are taken around a turning point, the narrowest first.
 const SHARES: [f64; 7] = [0.025, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2];
 
-/// Those of a first search.
 const FIRST: [f64; 2] = [0.1, 0.3];
 
 /// Turning points at least, and at most for one speed.
@@ -69,7 +68,6 @@ const FREE: usize = 7;
 const SAME: f64 = 0.1;
 const CONFIRMS: f64 = 0.25;
 
-/// The lag at one speed.
 #[derive(Debug, Clone, PartialEq)]
 struct Lag {
     /// By which the output comes after the input, in the unit of time; negative if before.
@@ -86,7 +84,6 @@ struct Lag {
 }
 
 impl Lag {
-    /// True if there is one.
     fn is_clear(&self) -> bool {
         self.time.abs() > (CLEAR * self.deviation).max(SHORTEST_STEP * self.step) && self.margin > LIKELIER
     }
@@ -261,7 +258,6 @@ fn turns<'d>(survey: &BranchSet<'d>) -> Vec<Turn<'d>> {
     turns
 }
 
-/// Those of each speed.
 fn speeds<'t, 'd>(turns: &'t [Turn<'d>]) -> Vec<&'t [Turn<'d>]> {
     let mut speeds = Vec::new();
     let mut rest = turns;

@@ -77,7 +77,6 @@ pub(super) fn complaints(data: &Dataset) -> Vec<DataIssue> {
     inputs.chain([output]).flat_map(|column| column.complaints(data)).collect()
 }
 
-/// What stands apart.
 struct Apart {
     /// From this value on, away from the others.
     low: f64,

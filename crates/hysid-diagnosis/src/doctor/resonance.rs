@@ -5,7 +5,6 @@ use crate::branch::BranchSet;
 use crate::resonance::{Compared, Resonance};
 use hysid_core::significant::Significant;
 
-/// Records that are shown.
 const SHOWN: usize = 3;
 
 pub(super) fn complaint(survey: &BranchSet, found: &Resonance) -> DataIssue {

@@ -15,7 +15,6 @@ const FEWEST_ROWS: usize = 10;
 /// Branches longer than this share of the range of the input are counted.
 const LONG: f64 = 0.2;
 
-/// Turning points.
 const FEWEST_TURNS: usize = 4;
 
 pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {

@@ -18,7 +18,6 @@ const HIGH: f64 = 0.02;
 /// Beyond this share of the rows they are no spikes.
 const MOST: f64 = 0.01;
 
-/// Rows that are shown.
 const SHOWN: usize = 3;
 
 /// Spikes, as numbers of records and of their rows.

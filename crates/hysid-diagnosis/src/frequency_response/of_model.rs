@@ -84,7 +84,6 @@ impl ModelResponses {
     }
 }
 
-/// Free runs of a model.
 struct Run {
     factor: f64,
     /// Input and output of each stretch.
@@ -129,7 +128,6 @@ impl Run {
     }
 }
 
-/// Standard deviation of values, each about the mean of its record.
 fn deviation<'c>(inputs: impl Iterator<Item = &'c [f64]> + Clone) -> f64 {
     let rows: usize = inputs.clone().map(<[f64]>::len).sum();
     let square = |input: &[f64]| {

@@ -160,7 +160,6 @@ impl Segments {
     }
 }
 
-/// Neighbouring lines.
 struct Group {
     lowest: f64,
     lines: usize,
@@ -245,7 +244,6 @@ fn beginnings(output: &[f64], length: usize, window: Window) -> Vec<usize> {
     all.filter(|begin| sound_from[begin + length - 1] <= *begin).collect()
 }
 
-/// True if there are values that are not NaN, and all are equal.
 fn is_constant<'c>(columns: impl Iterator<Item = &'c [f64]>) -> bool {
     let mut values = columns.flatten().filter(|value| !value.is_nan());
     values.next().is_some_and(|first| values.all(|value| value == first))

@@ -14,9 +14,7 @@ pub(super) const FEWEST_ROWS: usize = 64;
 /// The first rows of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stretch {
-    /// Number of the record.
     pub record: usize,
-    /// How many rows.
     pub rows: usize,
 }
 

@@ -21,7 +21,6 @@ const AMPLITUDES: usize = 8;
 /// Cycles of each amplitude.
 const REPEATS: usize = 2;
 
-/// Cycles at each speed.
 const AT_A_SPEED: usize = 3;
 
 /// Reversal inputs of the reversal curves.
@@ -128,7 +127,6 @@ fn begin(probe: &Probe) -> (f64, f64) {
     if high.abs() >= low.abs() { (-1.0, 2.0) } else { (1.0, -2.0) }
 }
 
-/// Turning points of growing cycles.
 fn growing(probe: &Probe) -> Vec<f64> {
     let (begin, reach) = begin(probe);
     let mut turning = vec![begin];
@@ -141,7 +139,6 @@ fn growing(probe: &Probe) -> Vec<f64> {
     turning
 }
 
-/// Turning points of cycles over the whole range.
 fn whole(probe: &Probe) -> Vec<f64> {
     let (begin, reach) = begin(probe);
     let (away, back) = (begin + reach, if begin == 0.0 { -1.0 } else { begin });

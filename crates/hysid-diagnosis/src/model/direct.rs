@@ -21,7 +21,6 @@ const LOOPS: [f64; 11] = [0.0, 1.0, -1.0, 1.0, -1.0, 0.5, -0.5, 0.8, -0.2, 1.0, 
 /// Branches until the virgin state is forgotten.
 const FORGOTTEN: usize = 2;
 
-/// Excursions in a row.
 const EXCURSIONS: usize = 20;
 
 fn drawn(label: String, record: &Record, from: usize) -> PictureCurve {
@@ -91,11 +90,8 @@ struct Mirrored {
     rows: (usize, usize),
 }
 
-/// The input mirrored about the model's origin, where the trained range allows it, and about the middle of the
-/// range. One is enough.
-///
-/// # Errors
-/// A rate that cannot be computed.
+/// The input mirrored about the model's origin, where the trained range allows it, and about the middle of the range.
+/// One is enough.
 pub(super) fn odd_symmetry(probe: &Probe) -> Result<Finding> {
     let Probe { centre, half, .. } = *probe;
     let middle = mirrored(probe, centre, half)?;

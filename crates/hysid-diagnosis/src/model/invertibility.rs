@@ -128,8 +128,6 @@ pub struct Invertibility {
 }
 
 impl Invertibility {
-    /// # Errors
-    /// A rate that cannot be computed.
     pub(super) fn of(probe: &Probe) -> Result<Self> {
         Ok(Judgement::of(&Examination::of(probe)?).invertibility(probe))
     }

@@ -42,8 +42,6 @@ pub struct WidthAtSpeed {
 }
 
 impl LoopWidths {
-    /// # Errors
-    /// A rate that cannot be computed.
     pub(super) fn of(probe: &Probe) -> Result<Self> {
         let mut speeds = vec![probe.speeds.vanishing];
         if probe.speeds.matter() {

@@ -149,8 +149,6 @@ fn median_relaxation_time(model: &Model) -> Option<f64> {
 }
 
 impl<'m> Probe<'m> {
-    /// # Errors
-    /// A model whose trained range is none.
     pub fn new(model: &'m Model) -> Result<Self> {
         let ranges = &model.trained_ranges().inputs;
         let middle = |(low, high): &(f64, f64)| 0.5 * low + 0.5 * high;
@@ -172,7 +170,6 @@ impl<'m> Probe<'m> {
         })
     }
 
-    /// What it drives with, for the reader.
     pub fn description(&self) -> Probing {
         Probing {
             input: (self.centre - self.half, self.centre + self.half),
@@ -203,11 +200,8 @@ impl<'m> Probe<'m> {
         path(self.centre, self.half, turning, self.steps)
     }
 
-    /// Drives the model from its virgin state along a path at one speed. The record has the first input,
-    /// time stamps and the model's output.
-    ///
-    /// # Errors
-    /// A rate that cannot be computed.
+    /// Drives the model from its virgin state along a path at one speed. The record has the first input, time stamps
+    /// and the model's output.
     pub fn run(&self, name: &str, x: &[f64], speed: f64) -> Result<Record> {
         let driven = self.record(name, x, &times(x, speed))?;
         let y = self.model.simulate(&driven)?;
@@ -216,18 +210,12 @@ impl<'m> Probe<'m> {
     }
 
     /// [`Probe::run`] at a vanishing speed, without the time stamps, which say nothing then.
-    ///
-    /// # Errors
-    /// As there.
     pub fn run_slowly(&self, name: &str, x: &[f64]) -> Result<Record> {
         let record = self.run(name, x, self.speeds.vanishing)?;
         Record::new(name, vec![x.to_vec()], record.output().to_vec())
     }
 
     /// What the model is driven with: all inputs, time, the rate where it has to be given. No output.
-    ///
-    /// # Errors
-    /// A rate that cannot be computed.
     pub fn record(&self, name: &str, x: &[f64], time: &[f64]) -> Result<Record> {
         let mut inputs = vec![x.to_vec()];
         inputs.extend(self.held.iter().map(|&value| vec![value; x.len()]));
@@ -289,14 +277,10 @@ pub(super) fn times(x: &[f64], speed: f64) -> Vec<f64> {
 }
 
 /// Records of a model's first input and output as data.
-///
-/// # Errors
-/// Records with and without time.
 pub(super) fn data(records: Vec<Record>) -> Result<Dataset> {
     Dataset::new(ColumnNames::plain(1), records)
 }
 
-/// Largest less smallest of some values.
 pub(super) fn extent(values: &[f64]) -> f64 {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low

@@ -41,12 +41,10 @@ const FASTER: &str =
 
 const LARGER: &str = "fit the model to a record with loops over a larger range of the input";
 
-/// Looks through a model's own data.
 pub(super) fn survey(data: &Dataset) -> BranchSet<'_> {
     BranchSet { turns_on_rows: true, ..BranchSet::new(data, &EXACT) }
 }
 
-/// The whole loop repeated, for wear.
 pub(super) fn repeated_loops() -> Vec<f64> {
     let mut turning = vec![0.0];
     turning.extend([1.0, -1.0].repeat(REPEATS));

@@ -24,7 +24,6 @@ pub struct StructuralProperty {
     pub agrees: Option<bool>,
 }
 
-/// All that is promised, with what was found.
 pub(super) fn promises(probe: &Probe, findings: &[Finding]) -> Vec<StructuralProperty> {
     let of_model = of_model(probe.model, about_origin(probe));
     let promise = |(property, holds): (Property, bool)| {

@@ -53,7 +53,6 @@ const SMALLEST: f64 = 1e-3;
 /// Successive values of a channel.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Run<'a> {
-    /// The values.
     pub values: &'a [f64],
     /// Those of the channel that they follow, row by row: where they move together, and not evenly, neither of them is
     /// noise. Empty if it is not known.

@@ -26,7 +26,6 @@ const PARTS: usize = 6;
 const SLOW_AND_FAST: [usize; 2] = [1, 4];
 const OF_BRANCHES: usize = 5;
 
-/// Rows that are fitted at most.
 const MOST_ROWS: usize = 5_000;
 
 /// Columns of every law: 1, u, u², u³ and the drift; stops and inputs that fade with the path; their products with u.
@@ -64,11 +63,9 @@ pub(super) struct Remainders {
     pub with_more_stops: f64,
     /// Of those without the rate, with the lag of a few rows that suits them best.
     pub with_a_lag: f64,
-    /// Of laws with the rate.
     pub with_rate: f64,
     /// True if the rate helps in every part.
     pub everywhere: bool,
-    /// Deviation of the noise.
     pub noise: f64,
 }
 

@@ -17,7 +17,6 @@ use super::rows::{AFTER_A_TURN, Row, Rows};
 use crate::distribution::f_tail;
 use crate::serial::{SerialSum, correlation_lag};
 
-/// Fewest rows of a group.
 const FEWEST_ROWS: usize = 20;
 
 /// Least ratio of the upper to the lower decile of a quantity that is divided into classes.

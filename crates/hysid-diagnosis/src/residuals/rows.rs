@@ -10,7 +10,6 @@ pub(super) const AFTER_A_TURN: f64 = 0.25;
 /// Rows of a stretch, where long data are tested in stretches.
 const STRETCH: usize = 20_000;
 
-/// A scored row.
 #[derive(Debug, Clone)]
 pub(super) struct Row {
     /// Measured less simulated output.
@@ -89,7 +88,6 @@ impl Rows {
         Self { records, inputs, speeds: self.speeds }
     }
 
-    /// The residuals of each record.
     pub fn residual(&self) -> Vec<Vec<f64>> {
         self.records.iter().map(|rows| rows.iter().map(|row| row.residual).collect()).collect()
     }

@@ -14,7 +14,6 @@ use serde::Serialize;
 use crate::distribution::chi_square_tail;
 use crate::serial::autocorrelations;
 
-/// Most lags.
 const MOST_LAGS: usize = 50;
 
 /// Normal quantile of a two-sided 95 % bound.
@@ -38,7 +37,6 @@ pub struct Whiteness {
 }
 
 impl Whiteness {
-    /// Of the residuals of records.
     pub(super) fn of(residual: &[Vec<f64>]) -> Self {
         let rows: usize = residual.iter().map(Vec::len).sum();
         let n = rows as f64;

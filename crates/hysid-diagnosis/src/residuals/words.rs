@@ -115,7 +115,6 @@ struct Teller<'a> {
 }
 
 impl Teller<'_> {
-    /// A value of the output, with its unit.
     fn value(&self, value: f64) -> String {
         format!("{:.3}{}", Significant(value), suffix(self.unit))
     }
@@ -336,7 +335,6 @@ fn is_found(p: Option<f64>) -> bool {
     p.is_some_and(|p| p < LEVEL)
 }
 
-/// A p-value in words.
 fn words(p: Option<f64>) -> String {
     match p {
         None => "not testable".into(),

@@ -42,13 +42,10 @@ impl Compared {
 /// Evenly spaced rows of a record. Input and output are scaled to their middle and half their range over all excerpts.
 #[derive(Debug)]
 pub(super) struct Excerpt {
-    /// Number of the record.
     pub record: usize,
-    /// Its rows.
     pub rows: Range<usize>,
     /// Time between rows.
     pub step: f64,
-    /// The input, scaled.
     pub input: Vec<f64>,
     /// 1 in a row with an output, otherwise 0.
     scored: Vec<f64>,
@@ -59,7 +56,6 @@ pub(super) struct Excerpt {
 }
 
 impl Excerpt {
-    /// Time from the first row to the last.
     pub fn duration(&self) -> f64 {
         self.step * (self.rows.len() - 1) as f64
     }
@@ -89,7 +85,6 @@ impl Scale {
 /// Excerpts of all records, and how they are scaled.
 #[derive(Debug)]
 pub(super) struct Excerpts {
-    /// What is compared of each.
     pub compared: Compared,
     pub parts: Vec<Excerpt>,
     pub input: Scale,

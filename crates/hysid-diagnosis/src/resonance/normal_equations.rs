@@ -18,7 +18,6 @@ pub(super) struct NormalEquations<const N: usize> {
 }
 
 impl<const N: usize> NormalEquations<N> {
-    /// Of no rows.
     pub fn empty() -> Self {
         Self { products: [[0.0; N]; N], squares: [0.0; N] }
     }
@@ -35,7 +34,6 @@ impl<const N: usize> NormalEquations<N> {
         equations
     }
 
-    /// Adds the rows of another record.
     pub fn add(&mut self, other: &Self) {
         let sums = self.products.as_flattened_mut().iter_mut().chain(&mut self.squares);
         let terms = other.products.as_flattened().iter().chain(&other.squares);

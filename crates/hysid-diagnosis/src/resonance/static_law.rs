@@ -10,7 +10,6 @@ use super::normal_equations::NormalEquations;
 /// Columns of two free motions, which belong to one excerpt alone.
 const FREE: usize = 2;
 
-/// Stops.
 const STOPS: usize = 10;
 
 /// All of them: with a constant, three powers and the rate, and the output.

@@ -16,7 +16,6 @@ const SAME: f64 = 0.002;
 pub(super) struct Candidate {
     /// True if the input rises along them.
     pub rising: bool,
-    /// The input at which all of them end.
     pub end: f64,
     /// Numbers of the branches, from the reversal input next to the end to the furthest.
     pub branches: Vec<usize>,

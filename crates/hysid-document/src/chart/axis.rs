@@ -84,7 +84,6 @@ impl Axis {
             .collect()
     }
 
-    /// What is written at a tick.
     pub(super) fn text(&self, tick: f64) -> String {
         let largest = self.low.abs().max(self.high.abs());
         let text = if self.logarithmic {

@@ -32,7 +32,6 @@ const LEGEND_EDGE: f64 = 40.0;
 
 /// What is around the curves.
 pub(super) struct Frame {
-    /// Its markup.
     pub markup: String,
     /// Left, top, width and height of the place of the curves, in units of the drawing.
     pub place: [i32; 4],
@@ -189,7 +188,6 @@ pub(super) fn legend_lines<'c>(chart: &'c Chart, appearance: &Appearance) -> Vec
     lines
 }
 
-/// Width of a line of the legend.
 fn width_of(line: &[&(Colour, String)], appearance: &Appearance) -> f64 {
     line.iter().map(|(_, name)| entry_width(name, appearance)).sum()
 }

@@ -51,7 +51,6 @@ impl Line {
         fitting.unwrap_or_else(|| percent.chars().take(columns).collect()).trim_end().to_string()
     }
 
-    /// All words.
     fn longest(&self) -> String {
         let fold = self.fold.map(|(place, of)| format!("fold {place} of {of}"));
         let error = self.error.as_ref().map(|error| format!("error {error} % of std"));

@@ -68,7 +68,6 @@ pub(super) fn disagreement(
     builder.value(0.5 * (high - low))
 }
 
-/// Members with their weights in the whole.
 fn weights_in_whole(
     builder: &mut Builder,
     group: &Group,
@@ -90,7 +89,6 @@ fn weights_in_whole(
     }
 }
 
-/// The weights of a group's nodes.
 fn node_weights(builder: &mut Builder, group: &Group, outside: &Real) -> Array {
     let count = group.nodes.len();
     let weights = builder.scratch("median_weight", count);

@@ -120,7 +120,6 @@ fn stops(
     });
 }
 
-/// A play of threshold 1.
 fn follow(builder: &mut Builder, play: &Real, v: &Real) -> Real {
     let lower = builder.value(v - 1.0);
     let upper = builder.value(v + 1.0);

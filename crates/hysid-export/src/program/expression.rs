@@ -93,7 +93,6 @@ pub(crate) enum Whole {
     OfReal(Box<Real>),
 }
 
-/// A condition.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Truth {
     /// A comparison of real numbers, false for NaN.
@@ -329,7 +328,6 @@ impl Real {
         self.below(&low).choose(low, self.above(&high).choose(high, self))
     }
 
-    /// The number as a whole one, which it is.
     pub fn to_whole(&self) -> Whole {
         Whole::OfReal(Box::new(self.clone()))
     }

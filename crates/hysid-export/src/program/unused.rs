@@ -17,7 +17,6 @@ pub fn without_unused(program: &Program) -> Program {
     }
 }
 
-/// The arrays that occur in a program.
 pub fn used_arrays(program: &Program) -> BTreeSet<Array> {
     let mut arrays = Uses::of(&[program]).arrays;
     every(&program.body, &mut |statement| {

@@ -13,7 +13,6 @@ pub(crate) struct Uses {
     pub arrays: BTreeSet<Array>,
     pub unary: BTreeSet<Unary>,
     pub binary: BTreeSet<Binary>,
-    /// There is an infinite constant.
     pub infinity: bool,
 }
 
@@ -27,7 +26,6 @@ impl Uses {
         uses
     }
 
-    /// Those of an expression.
     pub fn of_real(value: &Real) -> Self {
         let mut uses = Self::default();
         uses.real(value);

@@ -31,7 +31,6 @@ pub(super) fn test(subject: &Subject<'_>) -> File {
     File::new(format!("{}_test.c", subject.name()), self_test::self_test(subject))
 }
 
-/// The headers and the source files.
 pub(super) fn sources(subject: &Subject<'_>) -> Vec<File> {
     let name = subject.name();
     let mut files = vec![

@@ -333,7 +333,6 @@ impl Matlab {
         format!("{kind}_{}", declaration.name)
     }
 
-    /// A column of numbers.
     fn column(&self, values: &[f64], indent: &str) -> String {
         const IN_A_LINE: usize = 4;
         let numbers: Vec<String> = values.iter().map(|value| self.number(*value)).collect();

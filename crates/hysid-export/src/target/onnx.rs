@@ -78,7 +78,6 @@ A trial is a step whose `next_state` is not used, a commit one whose `next_state
     )
 }
 
-/// A record as a scan of steps.
 fn record(program: &Program, arguments: &[String], mut step: Graph) -> Graph {
     // A scan gives states first.
     step.outputs.rotate_right(1);

@@ -43,7 +43,6 @@ impl Changes {
         entry.file_name() == self.waiting.path().file_name().unwrap_or_default()
     }
 
-    /// A file that is to be there.
     pub fn add(&mut self, name: &str, content: &[u8], is_kept: bool) -> io::Result<()> {
         temporary::write_synced(&self.waiting.path().join("new").join(name), content)?;
         self.changes.push(Change { name: name.into(), is_new: true, is_kept });

@@ -33,7 +33,6 @@ pub fn cards(findings: &[Finding], quantities: &Quantities, place: impl Fn(&Find
         .collect()
 }
 
-/// The card of a property, with its charts.
 pub fn card(finding: &Finding, charts: Vec<Chart>, place: &str) -> Card {
     let mut parts = vec![Part::note(format!("Yes means: {}.", meaning(finding.property)))];
     parts.extend(charts.into_iter().map(Part::chart));
@@ -77,7 +76,6 @@ fn numbers(finding: &Finding) -> String {
     if numbers.is_empty() { String::new() } else { capitalised(&numbers.join(", ")) + "." }
 }
 
-/// A statement as a sentence.
 pub fn sentence(text: &str) -> String {
     let text = capitalised(text);
     if text.ends_with(['.', '!', '?']) { text } else { text + "." }

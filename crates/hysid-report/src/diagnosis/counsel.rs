@@ -67,7 +67,6 @@ pub fn verdict(advice: &Advice) -> [Part; 2] {
     [Part::Lead(first.into()), Part::note(rest.join(" "))]
 }
 
-/// The complaints on a page.
 pub fn doctor_section(complaints: &[DataIssue]) -> Part {
     let item = |complaint: &DataIssue| Item {
         text: sentence(&labelled(complaint)).into(),

@@ -66,7 +66,6 @@ pub fn shown(percent: f64) -> String {
     }
 }
 
-/// What a property says of that which has it.
 pub fn meaning(property: Property) -> &'static str {
     match property {
         Property::StaticHysteresis => "there is a loop however slowly the input changes",

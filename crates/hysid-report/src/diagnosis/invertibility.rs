@@ -13,7 +13,6 @@ const SIZE: (f64, f64) = (460.0, 320.0);
 /// A scan narrower than this share of the range gets a chart of its own.
 const NARROW: f64 = 0.5;
 
-/// The card, with its charts.
 pub fn card(found: &Invertibility, quantities: &Quantities) -> Card {
     let mut charts = vec![overview(found, quantities)];
     let narrow = found.drawing.worst.as_ref().filter(|worst| width(worst) < NARROW * whole(found));
@@ -67,7 +66,6 @@ fn chart(description: &str, curves: Vec<Curve>, quantities: &Quantities) -> Char
     Chart::new(description, &next(&quantities.input), &next(&quantities.output), curves).sized(SIZE.0, SIZE.1)
 }
 
-/// What is marked.
 fn mark(place: Option<&Place>) -> &'static str {
     match place.map(|place| place.kind) {
         Some(PlaceKind::Jump) => "jump",
@@ -75,7 +73,6 @@ fn mark(place: Option<&Place>) -> &'static str {
     }
 }
 
-/// A scan with its worst place.
 fn marked(scan: &[Point], place: &Place) -> Vec<Curve> {
     let (from, to) = place.inputs;
     let ends = [(from, place.outputs.0), (to, place.outputs.1)];

@@ -31,13 +31,11 @@ const SHOWN: [&str; 11] = [
     "frequency",
 ];
 
-/// The figures that any of the cycles has.
 fn known(table: &CycleTable) -> Vec<&'static Figure> {
     let has = |figure: &&Figure| table.complete().any(|row| (figure.of)(row).is_some());
     FIGURES.iter().filter(|figure| SHOWN.contains(&figure.name)).filter(has).collect()
 }
 
-/// The name of a figure with its unit.
 fn name(figure: &Figure, quantities: &Quantities) -> String {
     let of_both = if figure.name == "width" { "width along the output" } else { figure.label };
     quantities.as_figure(of_both, figure.quantity)

@@ -8,10 +8,8 @@ use hysid_document::{Chart, Colour, Curve, Part, count, unit};
 use crate::quantities::Quantities;
 use crate::time_label;
 
-/// Points of all loops together.
 const LOOP_POINTS: usize = 8000;
 
-/// Points of the way of an input.
 const WAY_POINTS: usize = 3000;
 
 /// Most turning points that are marked, and most records that are drawn.

@@ -22,13 +22,11 @@ use crate::project::{ChosenColumns, Project, ProjectFile, Use};
 use crate::view::read;
 use crate::words::said;
 
-/// Most files of a project.
 const MOST_FILES: usize = 200;
 
 /// What may be wrong with data.
 #[derive(Debug, Serialize)]
 pub struct Findings {
-    /// What a fit warns of.
     warnings: Vec<String>,
     /// What the diagnosis finds, with the rows that show it.
     issues: Vec<DataIssue>,

@@ -87,7 +87,6 @@ impl Studio {
         begun.map(|()| id)
     }
 
-    /// What a request asks for.
     fn spec(&self, request: &FitRequest, data: &Data) -> Result<FitSpec> {
         let chosen = NamedOptions::of(request.options.clone()).map_err(|error| Usage(error.to_string()))?;
         request.rate(&self.project().understanding)?.request(&chosen, &data.set)

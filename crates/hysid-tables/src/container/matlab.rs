@@ -126,7 +126,6 @@ fn columns_of(variable: &Variable) -> Vec<(String, &Vec<f64>)> {
     }
 }
 
-/// Numbers that a group counts as.
 const NUMBERS_PER_GROUP: u64 = 1000;
 
 fn of_hdf5(bytes: Vec<u8>, budget: Budget) -> Result<Vec<Variable>, String> {

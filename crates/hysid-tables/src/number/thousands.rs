@@ -21,7 +21,6 @@ pub struct ThousandsWatch {
 }
 
 impl ThousandsWatch {
-    /// Takes the next cell.
     pub fn take(&mut self, cell: &str, line: u64) {
         if self.is_over {
             return;

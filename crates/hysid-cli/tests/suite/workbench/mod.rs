@@ -15,14 +15,11 @@ pub struct Workbench {
 pub struct Ran {
     /// Exit status; `None` if a signal ended it.
     pub status: Option<i32>,
-    /// All of stdout.
     pub stdout: String,
-    /// All of stderr.
     pub stderr: String,
 }
 
 impl Ran {
-    /// The last line of stderr.
     pub fn last_line(&self) -> &str {
         self.stderr.lines().last().unwrap_or_default()
     }
@@ -143,7 +140,6 @@ impl Workbench {
     }
 }
 
-/// Compares a text with words that it must contain.
 #[track_caller]
 pub fn must_contain(text: &str, words: &[&str]) {
     for words in words {

@@ -40,9 +40,7 @@ pub(super) struct Turn<'d> {
     time: &'d [f64],
     x: &'d [f64],
     y: &'d [f64],
-    /// The row nearest to it.
     row: usize,
-    /// Rows of both branches.
     rows: Range<usize>,
     /// Its time and input, between rows.
     moment: f64,

@@ -20,10 +20,8 @@ const LEAST_POINTS: usize = 9;
 /// A window that leaves out less than this share of the trained range is whole.
 const WHOLE: f64 = 1e-9;
 
-/// A scan, and what it is one of.
 #[derive(Debug)]
 pub(super) struct Examined {
-    /// Number of the past.
     pub past: usize,
     /// Time to the next sample; `None` for a model without time, and before the first sample.
     pub time_step: Option<f64>,
@@ -51,8 +49,6 @@ struct Pace {
 }
 
 impl Examination {
-    /// # Errors
-    /// A rate that cannot be computed.
     pub fn of(probe: &Probe) -> Result<Self> {
         let protocol = probe.path(&PROTOCOL).x;
         let range = [probe.speeds.middle, probe.speeds.vanishing]

@@ -6,7 +6,6 @@ use hysid_core::model::Stepper;
 use crate::model::probe::{Probe, STEPS, times};
 use crate::model::properties::{PROTOCOL, SHIFTED, WHOLE_LOOPS, repeated_loops};
 
-/// Moments on a path.
 const MOMENTS: usize = 24;
 const LEAST_MOMENTS: usize = 4;
 
@@ -22,7 +21,6 @@ const DESCRIBED: usize = 2;
 /// A state of the model, with the path that led to it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Past {
-    /// Name of the path.
     pub path: &'static str,
     /// Row of the path that was the last sample, counted from 0; `None` before the first sample.
     pub row: Option<usize>,
@@ -65,9 +63,6 @@ fn random_reversals() -> Vec<f64> {
 }
 
 /// Drives the model along a path, from its initial state, and stops at moments. There `examine` may make trial steps.
-///
-/// # Errors
-/// Those of `examine`, and samples that the model refuses.
 pub(super) fn drive<'m>(
     probe: &Probe<'m>,
     stepper: &mut Stepper<'m>,

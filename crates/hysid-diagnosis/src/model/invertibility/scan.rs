@@ -40,11 +40,8 @@ impl Reversal {
 }
 
 impl Scan {
-    /// Scans `output` over a window, at `count` inputs. The last input is one of the points, because there the output may have a
-    /// kink. Differences below `least` are no jumps.
-    ///
-    /// # Errors
-    /// Those of `output`.
+    /// Scans `output` over a window, at `count` inputs. The last input is one of the points, because there the output
+    /// may have a kink. Differences below `least` are no jumps.
     pub fn of(
         window: (f64, f64),
         count: usize,

@@ -32,7 +32,6 @@ impl Words {
         format!("{}{}", span(inputs), self.input)
     }
 
-    /// All of it.
     pub fn statement(&self, found: &Invertibility) -> String {
         let tried = found.time_steps.first().map(|at| at.time_step);
         let goes = match found.direction {

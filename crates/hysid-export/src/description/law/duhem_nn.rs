@@ -90,7 +90,6 @@ fn moved(builder: &mut Builder, name: &str, x: &Real, step: &Real) -> (Real, Rea
     (moved.into(), elapsed.into())
 }
 
-/// The elongations of the stops.
 fn stops(
     builder: &mut Builder,
     name: &str,

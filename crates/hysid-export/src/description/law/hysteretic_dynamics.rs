@@ -51,7 +51,6 @@ struct Parts<'l> {
     elements: Option<Elements<'l>>,
 }
 
-/// The arrays of all elements.
 struct Elements<'l> {
     each: Vec<ElementParts<'l>>,
     /// For each mode the displacement under a unit force of each element, with its sign in the equation of motion.

@@ -40,7 +40,6 @@ pub fn data(inputs: usize) -> Dataset {
     Dataset::new(ColumnNames::plain(inputs), records.collect()).unwrap()
 }
 
-/// A model by its name and further options.
 fn fitted(name: &str, inputs: usize, options: &[(&str, Value)]) -> (String, Model) {
     let mut fit = Fit::new().model(name).seed(3);
     for (option, value) in options {

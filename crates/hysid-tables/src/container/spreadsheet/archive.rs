@@ -10,7 +10,6 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use super::super::budget::{Budget, DAMAGED, too_much};
 
-/// Most parts of an archive.
 const MOST_PARTS: usize = 10_000;
 
 /// Deepest nesting of elements.
@@ -20,7 +19,6 @@ const DEEPEST: usize = 200;
 const MOST_ROWS: u64 = 1 << 20;
 const MOST_COLUMNS: u64 = 1 << 14;
 
-/// A kind of spreadsheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Excel's, `.xlsx`.

@@ -17,7 +17,6 @@ const END: u32 = 0xffff_fffe;
 /// Bytes of an entry of the directory.
 const ENTRY: usize = 128;
 
-/// Most sheets of a workbook.
 const MOST_SHEETS: usize = 256;
 
 /// Refuses a file that asks for more than it holds.

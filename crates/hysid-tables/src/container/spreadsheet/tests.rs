@@ -45,7 +45,6 @@ fn excel(sheet: &str, strings: &str) -> Vec<u8> {
     ])
 }
 
-/// An OpenDocument with this table.
 fn open_document(table: &str) -> Vec<u8> {
     let content =
         format!("<d><office:body><table:table table:name=\"S\">{table}</table:table></office:body></d>");

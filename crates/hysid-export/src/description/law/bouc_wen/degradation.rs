@@ -49,7 +49,6 @@ struct Steady {
     exists: Real,
 }
 
-/// A degrading element.
 pub(super) struct Element<'a> {
     pub degradation: &'a Degradation,
     pub n: f64,

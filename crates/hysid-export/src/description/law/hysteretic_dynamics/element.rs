@@ -47,7 +47,6 @@ impl StopParts {
     }
 }
 
-/// The arrays of an element.
 pub(super) struct ElementParts<'l> {
     element: &'l Element,
     shape: Shape,
