@@ -76,9 +76,6 @@ const NUMBERS: [&str; 13] = [
 
 impl Arguments {
     /// What was typed.
-    ///
-    /// # Errors
-    /// A command line that cannot be obeyed, and requests for help.
     pub fn typed() -> Result<Self, clap::Error> {
         // What begins with a minus sign is the value of an option that takes a number, so that it is the option that
         // says what is wrong with it. Of other options, only a plain number is: a column may have that name.
@@ -241,9 +238,6 @@ pub struct BeginningOptions {
 
 impl BeginningOptions {
     /// The model with this initial state.
-    ///
-    /// # Errors
-    /// None for a state that the command line takes.
     pub fn of(&self, model: Model) -> hysid::Result<Model> {
         match self.initial_state {
             Some(state) => model.with_initial_state(state),

@@ -51,9 +51,6 @@ impl Gatherer {
     }
 
     /// All records, with these names of the columns.
-    ///
-    /// # Errors
-    /// No rows.
     pub fn gathered(self, names: ColumnNames) -> hysid::Result<Gathered> {
         let (mut records, mut all) = (Vec::new(), Vec::new());
         for rows in self.records.into_iter().filter(|rows| !rows.measured.is_empty()) {

@@ -43,9 +43,6 @@ pub fn stored_errors(provenance: &Provenance) -> Vec<(&'static str, &Errors)> {
 
 impl<'m> Inspected<'m> {
     /// The model that was read from the content of a file.
-    ///
-    /// # Errors
-    /// A content that is no model file.
     pub fn of(path: &Path, content: &[u8], model: &'m Model) -> Result<Self> {
         let header = serde_json::from_slice(content)?;
         Ok(Self { file: path.display().to_string(), bytes: content.len(), header, model })

@@ -30,9 +30,6 @@ pub struct Bounds {
 
 impl Bounds {
     /// True if the rows of a reference for this model need a time.
-    ///
-    /// # Errors
-    /// Bounds that cannot be used.
     pub fn need_time(&self, model: &Model) -> Result<bool> {
         let inverse = inverse(model, self)?;
         Ok(match self.preview {

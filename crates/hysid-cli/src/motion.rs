@@ -51,9 +51,6 @@ impl MotionRecord {
 
 impl MeasuredMotion {
     /// Reads the columns of a motion.
-    ///
-    /// # Errors
-    /// Columns that are not found, units of another quantity, a cell that is no number, with its line.
     pub fn of(table: &Table, arguments: &Force) -> Result<Self> {
         let names = MotionColumns::find(table, &arguments.columns)?;
         let units = Units::of(&table.file, &names, &arguments.mass, arguments.columns.same_units)?;
@@ -89,9 +86,6 @@ impl MeasuredMotion {
 
     /// The restoring force, in the unit of the result. `zero` is over how many rows at the beginning of each record it is
     /// to be zero in the mean.
-    ///
-    /// # Errors
-    /// A motion that has no restoring force, with its line.
     pub fn restoring_force(
         &self,
         mass: &Mass,

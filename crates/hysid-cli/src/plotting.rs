@@ -50,9 +50,6 @@ impl Subject {
     }
 
     /// Only the records of these names; all if there are none.
-    ///
-    /// # Errors
-    /// A name that no record has.
     pub fn only(self, names: &[String]) -> Result<Self> {
         if names.is_empty() {
             return Ok(self);
@@ -77,9 +74,6 @@ impl Subject {
 }
 
 /// The charts of a kind of figure, in a width in pixels.
-///
-/// # Errors
-/// Data that do not have what the kind shows.
 pub fn charts(subject: &Subject, kind: PlotKind, options: &CycleOptions, width: f64) -> Result<Vec<Chart>> {
     match kind {
         PlotKind::Loops => Ok(vec![curves::loops(subject, width)]),

@@ -13,9 +13,6 @@ use crate::gathered::{Gathered, Gatherer};
 const INDENT: usize = 4;
 
 /// The tests of a run that was gathered; `warnings` tell whether the model was trained on the data.
-///
-/// # Errors
-/// Too few scored rows.
 pub fn tests(
     gatherer: Gatherer,
     model: &Model,

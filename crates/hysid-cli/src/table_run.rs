@@ -90,9 +90,6 @@ impl Drive {
 pub type Take<'t> = dyn FnMut(&Simulated<'_>) -> Result<ControlFlow<()>> + 't;
 
 /// Runs a model over all rows of a table. Gives what to warn of; `None` if the run was ended before its end.
-///
-/// # Errors
-/// A row that cannot be read or simulated, with its line.
 pub fn run(
     model: &Model,
     rows: &mut Rows,

@@ -6,9 +6,6 @@ use crate::visible::is_hidden;
 
 /// JSON that a terminal can show: characters that serde leaves as they are, such as those that turn the direction of
 /// the text, are escaped too.
-///
-/// # Errors
-/// A value that is none of JSON.
 pub fn json(value: &impl Serialize) -> serde_json::Result<String> {
     let text = serde_json::to_string_pretty(value)?;
     let mut shown = String::with_capacity(text.len() + 1);

@@ -53,9 +53,6 @@ impl Destination {
 
     /// Refuses, before any work, a place that cannot be written to or that holds a file of somebody else. Removes the
     /// temporary files that killed processes left for this destination.
-    ///
-    /// # Errors
-    /// As named.
     pub fn check(&self) -> Result<(), Failure> {
         let target = match self.target()? {
             Target::File(target) => target,
@@ -67,17 +64,11 @@ impl Destination {
     }
 
     /// Begins a new file there. The old one stays until [`NewFile::commit`].
-    ///
-    /// # Errors
-    /// As [`Destination::check`].
     pub fn create(&self) -> Result<NewFile<'_>, Failure> {
         NewFile::begin(self, self.target()?)
     }
 
     /// Writes a whole file there; gives the copy of the file that was replaced, if one is kept.
-    ///
-    /// # Errors
-    /// As [`Destination::check`], and what fails while writing.
     pub fn write(&self, content: &[u8]) -> Result<Option<PathBuf>, Failure> {
         let mut file = self.create()?;
         file.write_all(content).map_err(Failure::refused(&self.path))?;

@@ -7,9 +7,6 @@ use std::path::Path;
 use crate::failure::reason;
 
 /// A file, to be read.
-///
-/// # Errors
-/// Why it cannot be read, with its name.
 pub fn open(path: &Path) -> Result<File, String> {
     let name = path.display().to_string();
     match File::open(path) {
@@ -32,9 +29,6 @@ pub fn read(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 /// As [`read`], from what is open under this name.
-///
-/// # Errors
-/// As [`read`].
 pub fn read_from(name: &str, from: impl Read) -> Result<Vec<u8>, String> {
     let mut content = Vec::new();
     from.take(LARGEST + 1).read_to_end(&mut content).map_err(|error| unreadable(name, &error))?;

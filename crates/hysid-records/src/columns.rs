@@ -78,9 +78,6 @@ impl Default for RateOption {
 
 impl RateOption {
     /// The method that it means for a model and data; `None` for no rate.
-    ///
-    /// # Errors
-    /// A method that needs a time column, without one.
     pub fn method(&self, data: &Dataset, model: ModelName) -> Result<Option<RateMethod>> {
         Ok(match self {
             Self::Column(_) => Some(RateMethod::Given),
@@ -95,9 +92,6 @@ impl RateOption {
     }
 
     /// What options of a fit ask for, with these data.
-    ///
-    /// # Errors
-    /// As [`RateOption::method`].
     pub fn request(&self, chosen: &NamedOptions, data: &Dataset) -> Result<FitSpec> {
         let is_decided = !matches!(self, Self::Choice(RateChoice::Auto | RateChoice::None));
         Ok(chosen.request(self.method(data, chosen.model())?, is_decided))
@@ -353,9 +347,6 @@ impl Roles {
 }
 
 /// The column that is named like time. Of one that falls as a field or a temperature does, only the user can say it.
-///
-/// # Errors
-/// A column named like time that falls.
 fn time_by_name(table: &Table, free: &[&String], records: &[Range<usize>]) -> Result<Option<String>> {
     for name in free.iter().filter(|name| unit::is_time(name)) {
         let running = numbers(table, name).map(|values| Seen::of(&values, records).running);

@@ -9,9 +9,6 @@ use hysid_tables::{Delimiter, shortest};
 
 /// The data with a header line. Column `record` tells several records apart, a blank output is an empty
 /// cell, and every number reads back as the same number.
-///
-/// # Errors
-/// None that is known: the text is written to memory.
 pub fn csv_text(data: &Dataset) -> Result<String> {
     let names = data.names();
     let several = data.records().len() > 1;
@@ -33,9 +30,6 @@ pub fn csv_text(data: &Dataset) -> Result<String> {
 
 /// A header line that reads back as these names. All are quoted where the line would be taken for a comment, or another
 /// character for the delimiter.
-///
-/// # Errors
-/// As of [`csv_text`].
 pub fn header_line<'n>(delimiter: u8, names: impl Iterator<Item = &'n str> + Clone) -> Result<Vec<u8>> {
     let is_comment = names.clone().next().is_some_and(|name| name.trim_start().starts_with('#'));
     let divides = |letter: char| {

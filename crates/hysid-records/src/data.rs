@@ -51,9 +51,6 @@ pub struct Place {
 
 impl Data {
     /// The data in tables whose roles a choice and the names tell. `zero` is as in [`Data::new`].
-    ///
-    /// # Errors
-    /// Tables whose columns or numbers cannot be used.
     pub fn of_tables(tables: Vec<Table>, columns: &ColumnChoice, zero: Option<usize>) -> Result<Self> {
         let roles = Roles::detect(&tables[0], columns)?;
         Self::new(tables, roles, zero)
@@ -61,9 +58,6 @@ impl Data {
 
     /// Takes records from tables. `zero` is over how many rows at the beginning of each record the first input and the
     /// output are to be zero in the mean.
-    ///
-    /// # Errors
-    /// Tables whose columns or numbers cannot be used.
     pub fn new(tables: Vec<Table>, roles: Roles, zero: Option<usize>) -> Result<Self> {
         let names = roles.names();
         Self::converted(tables, roles, names, None, zero)
@@ -105,9 +99,6 @@ impl Data {
     }
 
     /// Takes records from tables for a model: its columns, in its units. `zero` is as in [`Data::new`].
-    ///
-    /// # Errors
-    /// As [`Roles::of_model`], [`Factors::of`] and [`Data::new`].
     pub fn of_model(
         tables: Vec<Table>,
         model: &Model,
@@ -252,9 +243,6 @@ fn column(channel: Channel, roles: &Roles) -> Option<&str> {
 }
 
 /// The data in a table of this text, its columns told by their names: the way of every file that is read.
-///
-/// # Errors
-/// As for a file: one line that says what is wrong and where.
 pub fn data_of_text(text: &[u8]) -> Result<Dataset> {
     let table = Table::from_bytes(Path::new("text"), text.to_vec(), &Reading::default())?;
     Ok(Data::of_tables(vec![table], &ColumnChoice::default(), None)?.set)

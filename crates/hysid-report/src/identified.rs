@@ -111,9 +111,6 @@ impl Identified {
     }
 
     /// The report on the model, whose file is at `path`, with some data: those called "training" are what it was fitted to.
-    ///
-    /// # Errors
-    /// Data that the model cannot run on.
     pub fn page(&self, path: &Path, sets: &[(&str, &Dataset)]) -> Result<Page> {
         let mut residuals = Vec::new();
         let mut intervals = None;

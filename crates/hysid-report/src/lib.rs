@@ -86,9 +86,6 @@ pub struct ReportSet<'a> {
 
 impl<'a> ReportSet<'a> {
     /// What a model makes of some data, in a free run.
-    ///
-    /// # Errors
-    /// Data that the model cannot run on, and no measured output.
     pub fn of(model: &Model, name: &str, data: &'a Dataset) -> Result<Self> {
         let predict = |record: &Record| model.predict(&record.excitation(), BAND);
         let predicted = model.band().map(|_| data.records().iter().map(predict).collect());

@@ -17,9 +17,6 @@ pub struct Path {
 
 impl Path {
     /// Takes columns one after the other: time, if the model needs it, and its inputs.
-    ///
-    /// # Errors
-    /// A number of values that is not that of the columns, or too many.
     pub fn of(model: &Model, values: &[f64], rows: usize) -> Result<Self> {
         let needs_time = needs_time(model);
         let columns = model.names().inputs.len() + usize::from(needs_time);
@@ -35,9 +32,6 @@ impl Path {
     }
 
     /// What a model makes of it: outputs, and the edges of the band if there is one.
-    ///
-    /// # Errors
-    /// Values that are not finite, or time that does not grow.
     pub fn run(&self, model: &Model) -> Result<Prediction> {
         if model.rate() == Some(RateMethod::Given) {
             bail!("this model needs a measured rate; it cannot be simulated here");

@@ -135,9 +135,6 @@ impl Folder {
     }
 
     /// A name, made of the one that it is given, that no file of this folder has.
-    ///
-    /// # Errors
-    /// A folder that is a link or cannot be read.
     pub fn free_name(&self, inner: Inner, given: &str) -> Result<String> {
         let folder = self.root.join(inner.name());
         check_folder(&folder)?;
@@ -148,9 +145,6 @@ impl Folder {
     }
 
     /// The content of a file of the project.
-    ///
-    /// # Errors
-    /// A link or a device in its place, and a file that cannot be read.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
         self.check_file(path)?;
         hysid_files::read(path).map_err(anyhow::Error::msg)
@@ -187,9 +181,6 @@ impl Folder {
     }
 
     /// What was chosen and made, if anything.
-    ///
-    /// # Errors
-    /// A file that cannot be read.
     pub fn read_project(&self) -> Result<Option<String>> {
         let path = self.root.join(PROJECT);
         if fs::symlink_metadata(&path).is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {

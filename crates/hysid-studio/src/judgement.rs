@@ -54,9 +54,6 @@ struct ResidualTest {
 
 impl Run {
     /// Runs a model. Data that it was fitted to begin as they did then.
-    ///
-    /// # Errors
-    /// Data that the model cannot run on, or without a measured output.
     pub fn of(model: &Model, data: Dataset) -> Result<Self> {
         let is_training = data.records().iter().any(|record| model.was_trained_on(&record.fingerprint()));
         let data = if is_training { model.as_trained(&data)?.into_owned() } else { data };
@@ -71,9 +68,6 @@ impl Run {
     }
 
     /// What is told of it.
-    ///
-    /// # Errors
-    /// Data that the model cannot run on.
     pub fn judgement(&self, model: &Model) -> Result<Judgement> {
         let pairs = || self.data.records().iter().zip(&self.predicted);
         let has_band = self.predicted.iter().all(|run| !run.low.is_empty());
@@ -133,9 +127,6 @@ pub fn columns(predicted: &[Prediction]) -> Vec<(&'static str, Vec<f64>)> {
 }
 
 /// The output of each member of an ensemble for the data of a run.
-///
-/// # Errors
-/// Data that the model cannot run on.
 pub fn members(model: &Model, data: &Dataset) -> Result<Vec<(String, Vec<f64>)>> {
     let Some(ensemble) = model.ensemble() else { return Ok(Vec::new()) };
     let run = |(number, member): (usize, &Model)| {
@@ -159,9 +150,6 @@ pub struct Runs {
 
 impl Runs {
     /// The run of a model over a file; it is made if it is not kept.
-    ///
-    /// # Errors
-    /// As [`Run::of`], and as `make` has.
     pub fn of(&self, model: u64, file: u64, make: impl FnOnce() -> Result<Run>) -> Result<Arc<Run>> {
         let key = (model, file);
         let kept = || self.kept.lock().unwrap_or_else(|poisoned| poisoned.into_inner());

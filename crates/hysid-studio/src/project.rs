@@ -216,17 +216,11 @@ impl Project {
     }
 
     /// The file of this number.
-    ///
-    /// # Errors
-    /// There is none.
     pub fn file(&self, id: u64) -> Result<&ProjectFile> {
         self.files.iter().find(|file| file.id == id).ok_or_else(|| anyhow!("there is no file {id}"))
     }
 
     /// The model of this number.
-    ///
-    /// # Errors
-    /// There is none.
     pub fn model(&self, id: u64) -> Result<&ProjectModel> {
         self.models.iter().find(|model| model.begun.id == id).ok_or_else(|| anyhow!("there is no model {id}"))
     }
@@ -250,9 +244,6 @@ impl Understanding {
 
 impl FitRequest {
     /// The same with values in place of their texts, as a form gives them.
-    ///
-    /// # Errors
-    /// A text that is no value of its option.
     pub fn with_values(mut self) -> Result<Self, Usage> {
         for (name, value) in &mut self.options {
             let Some(option) = OPTIONS.iter().find(|option| option.name == name) else { continue };
@@ -267,9 +258,6 @@ impl FitRequest {
     }
 
     /// Where the rate comes from, in a project with this understanding of its files.
-    ///
-    /// # Errors
-    /// No method of this name.
     pub fn rate(&self, understanding: &Understanding) -> Result<RateOption> {
         if let Some(column) = understanding.columns.as_ref().and_then(|columns| columns.rate.clone()) {
             return Ok(RateOption::Column(column));

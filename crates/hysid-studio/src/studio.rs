@@ -52,9 +52,6 @@ pub struct News {
 impl Studio {
     /// Opens the project of a folder. A fit that did not come to its end leaves its best model so far. No file with data
     /// is read before that is needed.
-    ///
-    /// # Errors
-    /// A project that cannot be read.
     pub fn open(folder: Folder) -> Result<Self> {
         let project = Project::of(&folder)?;
         let studio = Self {

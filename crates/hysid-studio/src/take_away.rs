@@ -18,9 +18,6 @@ use crate::choices::flag;
 use crate::project::{Begun, ProjectModel};
 
 /// A model for a target, as one archive; and its name.
-///
-/// # Errors
-/// No target of this name; a model that cannot be exported there.
 pub fn archive(model: &Model, stored: &ProjectModel, target: &str) -> Result<(String, Vec<u8>)> {
     let to = Target::named(target).ok_or_else(|| anyhow!("there is no target \"{target}\""))?;
     let name = identifier(&stored.file);

@@ -156,17 +156,11 @@ impl View {
     }
 
     /// A file as it is read.
-    ///
-    /// # Errors
-    /// There is none of this number.
     pub fn file(&self, id: u64) -> Result<&Arc<FileView>> {
         self.files.iter().find(|file| file.id == id).ok_or_else(|| anyhow!("there is no file {id}"))
     }
 
     /// The data of a file.
-    ///
-    /// # Errors
-    /// There is none of this number, or it cannot be used.
     pub fn data(&self, id: u64) -> Result<Arc<Data>> {
         let file = self.file(id)?;
         let problem = file.problem.as_ref().or(self.problem.as_ref());
@@ -176,9 +170,6 @@ impl View {
     }
 
     /// The training files of the project that this is a view of, as one set of data.
-    ///
-    /// # Errors
-    /// No training file, or files that cannot be used.
     pub fn training(&self, project: &Project, folder: &Folder) -> Result<Arc<Data>> {
         let files: Vec<&ProjectFile> = project.files_for(Use::Training).collect();
         match (files.as_slice(), self.together.get()) {
@@ -229,9 +220,6 @@ impl FileView {
 }
 
 /// The table of a file, whose name errors have.
-///
-/// # Errors
-/// A file that cannot be read or is no table, or that killed the studio before.
 pub fn read(file: &ProjectFile, folder: &Folder, reading: &Reading) -> Result<Table> {
     let name = &file.name;
     folder.read_data(file.id, name, |content| Table::from_bytes(Path::new(name), content, reading))

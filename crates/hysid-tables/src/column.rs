@@ -34,9 +34,6 @@ impl ColumnReader {
 
     /// The number in a cell, NaN for a missing value; dates and clocks are seconds since the first one. `cells` reads all
     /// columns of the file.
-    ///
-    /// # Errors
-    /// What is wrong with the cell, in words.
     pub fn number(
         &mut self,
         head: &Head,

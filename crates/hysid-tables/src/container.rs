@@ -34,9 +34,6 @@ pub struct Text {
 
 impl Text {
     /// Opens a file; standard input for `-`.
-    ///
-    /// # Errors
-    /// A file that cannot be read or has no table.
     pub fn open(path: &Path, reading: &Reading) -> Result<Self> {
         if path == Path::new("-") {
             return Self::new("standard input".into(), Box::new(io::stdin()), reading);
@@ -47,9 +44,6 @@ impl Text {
     }
 
     /// The text that a reader gives, of a file of this name.
-    ///
-    /// # Errors
-    /// As of [`Text::open`].
     pub fn new(file: String, reader: Box<dyn Read>, reading: &Reading) -> Result<Self> {
         let (mut reader, mut first) = peeked(&file, reader)?;
         let mut packed = "";

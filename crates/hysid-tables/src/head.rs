@@ -94,9 +94,6 @@ impl Head {
     }
 
     /// Refuses a single column where more are needed: it is likely to be several, separated by something else.
-    ///
-    /// # Errors
-    /// The table has one column.
     pub fn require_columns(&self) -> Result<()> {
         if let [name] = self.header.as_slice() {
             bail!(
@@ -129,9 +126,6 @@ impl Head {
     }
 
     /// A cell without the unit that all numbers of its column have.
-    ///
-    /// # Errors
-    /// A number with another unit, in words.
     pub fn bare<'c>(&self, place: usize, cell: &'c str) -> Result<&'c str, String> {
         let Some(unit) = self.layout.cell_units.get(place).and_then(Option::as_deref) else {
             return Ok(cell);

@@ -64,9 +64,6 @@ const IS_EMPTY: &str = "is empty (expected a header line and rows of numbers)";
 
 impl Layout {
     /// The layout of a text of which the beginning is known; `is_all` if that is all.
-    ///
-    /// # Errors
-    /// An empty text, a line that the names do not fit.
     pub fn find(file: &str, text: &str, is_all: bool, reading: &Reading) -> Result<Self> {
         let lines = lines::lines(text, is_all, reading.skip);
         if lines.iter().all(Line::is_blank) {

@@ -174,9 +174,6 @@ const THOUSANDS: [char; 5] = [' ', '\u{a0}', '\u{202f}', '\'', '’'];
 /// The number of a text and the decimal sign that it shows, where `known` is that of the file. A sign that separates
 /// groups of three digits is taken for a thousands separator where the decimal sign is another: `1,234.5`, `1 234,5`,
 /// and `1,234` among numbers with points. An exponent may have the letter D.
-///
-/// # Errors
-/// No number, or one with another decimal sign.
 pub fn parsed(text: &str, known: Option<DecimalSign>) -> Result<(f64, Option<DecimalSign>), NumberProblem> {
     let text = text.trim();
     let (mantissa, exponent) = match text.find(['e', 'E', 'd', 'D']) {

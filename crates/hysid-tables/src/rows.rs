@@ -112,17 +112,11 @@ impl<'r> Row<'r> {
 
 impl Rows {
     /// Opens a file and finds the layout of its table.
-    ///
-    /// # Errors
-    /// A file that cannot be read, is no text, or has no table.
     pub fn open(path: &Path, reading: &Reading) -> Result<Self> {
         Self::of(Text::open(path, reading)?, reading)
     }
 
     /// Finds the layout of the table that a file with this content has.
-    ///
-    /// # Errors
-    /// As of [`Rows::open`].
     pub fn from_bytes(path: &Path, bytes: Vec<u8>, reading: &Reading) -> Result<Self> {
         let reader = Box::new(Cursor::new(bytes));
         Self::of(Text::new(path.display().to_string(), reader, reading)?, reading)
@@ -175,9 +169,6 @@ impl Rows {
     }
 
     /// As [`Rows::next_row`], with what is known of the table.
-    ///
-    /// # Errors
-    /// As of [`Rows::next_row`].
     pub fn next_row_of(&mut self) -> Result<Option<(&Head, Row<'_>)>> {
         let rows = self.head.reading.rows;
         loop {

@@ -47,17 +47,11 @@ impl Deref for Origin {
 
 impl Table {
     /// Reads a file.
-    ///
-    /// # Errors
-    /// A file that cannot be read, is no text, or is no table with a header and at least one row.
     pub fn read(path: &Path, reading: &Reading) -> Result<Self> {
         Self::of(Rows::open(path, reading)?)
     }
 
     /// The table that a file with this content holds.
-    ///
-    /// # Errors
-    /// As of [`Table::read`].
     pub fn from_bytes(path: &Path, bytes: Vec<u8>, reading: &Reading) -> Result<Self> {
         Self::of(Rows::from_bytes(path, bytes, reading)?)
     }

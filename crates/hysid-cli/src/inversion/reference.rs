@@ -40,9 +40,6 @@ impl WantedRecord {
 
 impl Wanted {
     /// Reads the columns of a table.
-    ///
-    /// # Errors
-    /// A cell that is no number, a blank wanted output, with its line.
     pub fn of(table: &Table, roles: &Roles, factors: &Factors) -> Result<Self> {
         let mut cells = CellReader::new(table.numbers());
         let mut read = |name: &String, factor: Option<f64>, kind: Kind| -> Result<Vec<f64>> {

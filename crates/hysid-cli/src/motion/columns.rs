@@ -68,9 +68,6 @@ pub struct MotionColumns {
 
 impl MotionColumns {
     /// The columns that options name, and those that are found.
-    ///
-    /// # Errors
-    /// A column that is not there or named twice; none or several that may be meant.
     pub fn find(table: &Table, options: &MotionOptions) -> Result<Self> {
         table.require_columns()?;
         let named = Named::of(table, options)?;

@@ -26,9 +26,6 @@ pub struct Written {
 
 impl Written {
     /// The names of the columns for a motion from a table.
-    ///
-    /// # Errors
-    /// A column that is copied and has the name of another.
     pub fn of(table: &Table, motion: &MeasuredMotion) -> Result<Self> {
         let (names, units) = (&motion.names, &motion.units);
         // A name that does not say that it is time would have to be named again.
@@ -63,17 +60,11 @@ impl Written {
     }
 
     /// The line of the header.
-    ///
-    /// # Errors
-    /// None that is known.
     pub fn header(&self) -> Result<Vec<u8>> {
         header_line(self.delimiter, self.all().map(String::as_str))
     }
 
     /// The rows. With `zero`, the displacement of each record has its mean over so many rows subtracted.
-    ///
-    /// # Errors
-    /// None that is known.
     pub fn rows(
         &self,
         table: &Table,

@@ -39,9 +39,6 @@ pub struct Units {
 
 impl Units {
     /// The units in the names of columns.
-    ///
-    /// # Errors
-    /// A unit of another quantity than that of the column.
     pub fn of(file: &str, names: &MotionColumns, mass: &Mass, is_same: bool) -> Result<Self> {
         if is_same {
             let force_unit = names.applied_force.as_deref().and_then(unit::of_column);

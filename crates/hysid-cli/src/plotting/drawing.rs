@@ -32,9 +32,6 @@ pub enum Format {
 
 impl Format {
     /// That which the ending of a name tells.
-    ///
-    /// # Errors
-    /// Another ending, or none.
     pub fn of(path: &Path) -> Result<Self> {
         match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("svg") => Ok(Self::Svg),

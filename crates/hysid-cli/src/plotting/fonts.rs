@@ -31,9 +31,6 @@ pub fn as_style(name: &str) -> String {
 }
 
 /// All fonts of this machine, and the family in which text is drawn.
-///
-/// # Errors
-/// A machine without fonts.
 pub fn found(name: &str) -> Result<(Arc<Database>, String)> {
     let mut fonts = Database::new();
     fonts.load_system_fonts();

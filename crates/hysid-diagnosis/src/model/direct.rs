@@ -34,9 +34,6 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// The same rows at several speeds, theory.md (10.31).
-///
-/// # Errors
-/// A rate that cannot be computed.
 pub(super) fn rate_dependence(probe: &Probe) -> Result<Finding> {
     let path = probe.path(&LOOPS);
     let speeds = probe.speeds.tried();
@@ -160,9 +157,6 @@ fn mirrored(probe: &Probe, centre: f64, half: f64) -> Result<Mirrored> {
 }
 
 /// Return-point memory after excursions in a row, theory.md (10.33): a gap too small to matter may add up.
-///
-/// # Errors
-/// A rate that cannot be computed.
 pub(super) fn with_accumulated_gap(probe: &Probe, finding: Finding, height: f64) -> Result<Finding> {
     let mut turning = vec![0.0, 1.0, -1.0];
     let mut arrivals = Vec::new();

@@ -21,9 +21,6 @@ impl Folder {
     }
 
     /// Writes the file that opens the page in a browser. Only the user can read it.
-    ///
-    /// # Errors
-    /// A file of others in its place; a folder that cannot be written to.
     pub fn write_entrance(&self, body: &str) -> Result<()> {
         let path = self.entrance();
         let stored = |error: std::io::Error| {

@@ -33,9 +33,6 @@ impl Readings {
 impl Folder {
     /// The content of a file of data, which `read` takes apart. If that ends the process, the file is held back at the
     /// next start.
-    ///
-    /// # Errors
-    /// A file that is held back or cannot be read, and what `read` finds.
     pub fn read_data<T>(&self, id: u64, name: &str, read: impl FnOnce(Vec<u8>) -> Result<T>) -> Result<T> {
         let (path, mark) = (self.data(name), self.mark_of_reading(id));
         self.check_file(&path)?;

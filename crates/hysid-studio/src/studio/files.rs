@@ -42,9 +42,6 @@ fn check_room(project: &Project) -> Result<()> {
 
 impl Studio {
     /// Where a file with this name that comes in is put, before it is [taken](Self::take_file).
-    ///
-    /// # Errors
-    /// A project with as many files as it may have.
     pub fn place_for_upload(&self) -> Result<PathBuf> {
         check_room(&self.project())?;
         let mut random = [0; 8];
@@ -54,9 +51,6 @@ impl Studio {
 
     /// Takes a file that lies at a place of an upload. It is read before it is in the project: one that kills the studio
     /// is in none.
-    ///
-    /// # Errors
-    /// A folder that cannot be written to; a project with as many files as it may have.
     pub fn take_file(&self, given: &str, place: &Path, usage: Use) -> Result<u64> {
         let reading = self.project().understanding.reading.clone();
         let name = self.folder.free_name(Inner::Data, given)?;
@@ -84,9 +78,6 @@ impl Studio {
     }
 
     /// Takes a file with this content.
-    ///
-    /// # Errors
-    /// A folder that cannot be written to.
     pub fn take_content(&self, given: &str, content: &[u8], usage: Use) -> Result<u64> {
         let place = self.place_for_upload()?;
         let stored = fs::write(&place, content)
@@ -99,9 +90,6 @@ impl Studio {
     }
 
     /// Takes a copy of a file of the user, unless the project has the same already.
-    ///
-    /// # Errors
-    /// A file that cannot be read.
     pub fn take_path(&self, path: &Path) -> Result<()> {
         let content = fs::read(path).map_err(|error| cannot_read(path, &error))?;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -122,9 +110,6 @@ impl Studio {
     }
 
     /// Removes a file.
-    ///
-    /// # Errors
-    /// There is none of this number.
     pub fn remove_file(&self, id: u64) -> Result<()> {
         let removed = self.change(|project| {
             let removed = project.file(id)?.clone();
@@ -142,9 +127,6 @@ impl Studio {
     }
 
     /// Reads a file that was not read because that killed the studio before.
-    ///
-    /// # Errors
-    /// There is none of this number.
     pub fn read_again(&self, id: u64) -> Result<()> {
         self.project().file(id)?;
         self.folder.release(id);
@@ -154,9 +136,6 @@ impl Studio {
     }
 
     /// Says what a file is for.
-    ///
-    /// # Errors
-    /// There is none of this number.
     pub fn use_file(&self, id: u64, usage: Use) -> Result<()> {
         self.change(|project| {
             project.file(id)?;
@@ -168,9 +147,6 @@ impl Studio {
     }
 
     /// Takes the training and the test data of a specimen.
-    ///
-    /// # Errors
-    /// No specimen of this name; a noise that is none.
     pub fn take_specimen(&self, name: &str, seed: u64, noise_percent: f64) -> Result<Vec<u64>> {
         let specimen = Specimen::named(name).ok_or_else(|| anyhow!("there is no specimen \"{name}\""))?;
         // As of `hysid generate`: test data have a noise of their own.
@@ -186,9 +162,6 @@ impl Studio {
     }
 
     /// Says how tables are read.
-    ///
-    /// # Errors
-    /// A value that is not valid.
     pub fn read_as(&self, reading: ReadingChoice) -> Result<()> {
         reading.reading()?;
         self.change(|project| {
@@ -241,9 +214,6 @@ impl Studio {
     }
 
     /// The data of a file.
-    ///
-    /// # Errors
-    /// A file that cannot be used.
     pub fn data_of(&self, id: u64) -> Result<Arc<Data>> {
         let view = self.view();
         let is_read_as = view.is_read_as(&self.project().understanding);
@@ -255,18 +225,12 @@ impl Studio {
     }
 
     /// All training data, as a fit takes them.
-    ///
-    /// # Errors
-    /// No training file, or files that cannot be used.
     pub fn training_data(&self) -> Result<Arc<Data>> {
         let (project, view) = self.current();
         view.training(&project, &self.folder)
     }
 
     /// What may be wrong with the training data: what a fit warns of, and what the diagnosis finds.
-    ///
-    /// # Errors
-    /// As [`Studio::training_data`].
     pub fn findings(&self) -> Result<Findings> {
         let data = self.training_data()?;
         let warnings = summarised(&Summary::of(&data.set).warnings(&data.set));
@@ -279,9 +243,6 @@ impl Studio {
     }
 
     /// The diagnosis of the training data, as HTML. It is made once, also if who asked for it does not wait.
-    ///
-    /// # Errors
-    /// As [`Studio::training_data`]; data that cannot be diagnosed.
     pub fn diagnosis(&self) -> Result<String> {
         let (project, view) = self.current();
         let made = || view.training(&project, &self.folder).and_then(|data| diagnosis_of(&data));

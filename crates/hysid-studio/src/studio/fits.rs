@@ -135,9 +135,6 @@ impl Studio {
     }
 
     /// Stores the model that could not be stored at the end of its fit.
-    ///
-    /// # Errors
-    /// It still cannot be stored.
     pub fn save_again(&self) -> Result<()> {
         let mut unsaved = self.unsaved();
         let Some(found) = &*unsaved else { return Ok(()) };
@@ -150,9 +147,6 @@ impl Studio {
     }
 
     /// Name and text of the model that could not be stored.
-    ///
-    /// # Errors
-    /// There is none.
     pub fn unsaved_model(&self) -> Result<(String, String)> {
         let unsaved = self.unsaved();
         let found = unsaved.as_ref().ok_or_else(|| anyhow!("all models are stored"))?;

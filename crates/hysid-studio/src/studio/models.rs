@@ -20,9 +20,6 @@ const MOST_MODELS: usize = 200;
 
 impl Studio {
     /// The model of this number.
-    ///
-    /// # Errors
-    /// There is none, or its file cannot be read.
     pub fn model(&self, id: u64) -> Result<Arc<Model>> {
         let kept = || self.models.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(known) = kept().get(&id) {
@@ -41,25 +38,16 @@ impl Studio {
     }
 
     /// What is stored of a model.
-    ///
-    /// # Errors
-    /// There is none of this number.
     pub fn stored_model(&self, id: u64) -> Result<ProjectModel> {
         self.project().model(id).cloned()
     }
 
     /// Where the file of a model is.
-    ///
-    /// # Errors
-    /// There is none of this number.
     pub fn model_file(&self, id: u64) -> Result<PathBuf> {
         Ok(self.folder.models(&self.project().model(id)?.file))
     }
 
     /// The text of a model's report.
-    ///
-    /// # Errors
-    /// There is none.
     pub fn report(&self, id: u64) -> Result<String> {
         let report = self.project().model(id)?.report.clone();
         let report = report.ok_or_else(|| {
@@ -74,9 +62,6 @@ impl Studio {
     }
 
     /// Removes a model.
-    ///
-    /// # Errors
-    /// There is none of this number.
     pub fn remove_model(&self, id: u64) -> Result<()> {
         let removed = self.change(|project| {
             let removed = project.model(id)?.clone();
@@ -92,9 +77,6 @@ impl Studio {
     }
 
     /// The free run of a model over a file.
-    ///
-    /// # Errors
-    /// A file that the model cannot run on.
     pub fn run(&self, model: u64, file: u64) -> Result<Arc<Run>> {
         self.runs.of(model, file, || {
             let (stored, file, reading) = {
@@ -113,9 +95,6 @@ impl Studio {
     }
 
     /// What is known of a model, as HTML.
-    ///
-    /// # Errors
-    /// A model that cannot be diagnosed.
     pub fn facts(&self, id: u64) -> Result<String> {
         let (model, path) = (self.model(id)?, self.model_file(id)?);
         let file = PathBuf::from(path.file_name().unwrap_or_default());
@@ -124,9 +103,6 @@ impl Studio {
     }
 
     /// The lines that make a model without the studio.
-    ///
-    /// # Errors
-    /// There is none of this number.
     pub fn lines(&self, id: u64) -> Result<Lines> {
         Ok(Lines::of(&self.stored_model(id)?, &*self.model(id)?, self.folder.root()))
     }

@@ -58,9 +58,6 @@ impl Budget {
     }
 
     /// Unpacks as a whole.
-    ///
-    /// # Errors
-    /// More than the budget; damaged content.
     pub fn unpacked(self, reader: impl Read) -> Result<Vec<u8>, String> {
         let mut bytes = Vec::new();
         let most = self.bytes();

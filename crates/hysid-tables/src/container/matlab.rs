@@ -45,9 +45,6 @@ impl Variable {
 
 /// The variables of a MATLAB file as text, and what kind of file it is. Without a choice, all numeric variables of the
 /// most common length are the columns.
-///
-/// # Errors
-/// No file that can be read, no numbers in it, no such variable, in words.
 pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<(String, String), String> {
     let budget = Budget::of(bytes.len());
     budget.run(move || text_within(budget, bytes, chosen.as_deref()))

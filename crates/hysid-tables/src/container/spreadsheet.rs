@@ -21,9 +21,6 @@ const ENCRYPTED_PART: &[u8] = b"E\0n\0c\0r\0y\0p\0t\0e\0d\0P\0a\0c\0k\0a\0g\0e\0
 const ENCRYPTED: &str = "it is encrypted: save it without a password";
 
 /// The text of a sheet, its name, and the names of the others; the first that is not empty if none is chosen. Line `n` is row `n` of the sheet.
-///
-/// # Errors
-/// No spreadsheet, no such sheet, in words.
 pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<Sheet, String> {
     let budget = Budget::of(bytes.len());
     budget.run(move || {

@@ -24,9 +24,6 @@ const NUMBERS: std::ops::RangeInclusive<u32> = 6..=15;
 const COMPLEX: u32 = 1 << 11;
 
 /// All numeric variables of a file.
-///
-/// # Errors
-/// A file that is damaged, in words.
 pub fn variables(bytes: &[u8], budget: Budget) -> Result<Vec<Variable>, String> {
     let order = match bytes.get(126..HEADER) {
         Some(b"IM") => Order::Little,

@@ -98,9 +98,6 @@ fn packed(parts: &[(String, Vec<u8>)]) -> Result<Vec<u8>, String> {
 }
 
 /// Calls for each element that begins, with its name and attributes, for each text, and for each element that ends.
-///
-/// # Errors
-/// Text that is not well-formed; those of the call.
 fn each(content: &[u8], mut call: impl FnMut(&Piece<'_>) -> Result<(), String>) -> Result<(), String> {
     let text = std::str::from_utf8(content).map_err(|_| DAMAGED)?;
     let mut reader = Reader::from_str(text.trim_start_matches('\u{feff}'));
@@ -310,9 +307,6 @@ pub struct Within {
 
 impl Within {
     /// Adds a cell, whose row and column count from 1.
-    ///
-    /// # Errors
-    /// A place that no sheet has.
     pub fn add(&mut self, row: u64, column: u64) -> Result<(), String> {
         if row == 0 || column == 0 || row > MOST_ROWS || column > MOST_COLUMNS {
             return Err(format!("it has a cell in row {row}, column {column}, which no sheet has"));

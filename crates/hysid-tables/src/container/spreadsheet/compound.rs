@@ -20,9 +20,6 @@ const ENTRY: usize = 128;
 const MOST_SHEETS: usize = 256;
 
 /// Refuses a file that asks for more than it holds.
-///
-/// # Errors
-/// As named.
 pub fn check(bytes: &[u8]) -> Result<(), String> {
     let file = Compound::of(bytes)?;
     let directory = file.chain(file.number(48)?)?;
