@@ -19,13 +19,10 @@ use thin::Point;
 /// What a curve shows, which determines its colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colour {
-    /// A measurement.
     Measured,
     /// The output of a model.
     Simulated,
-    /// The input.
     Input,
-    /// The error of a model.
     Error,
     /// A curve for comparison only.
     Faint,
@@ -56,7 +53,6 @@ pub const SERIES: usize = 6;
 pub struct Curve {
     /// Its points, in the units of the axes; one that is not finite leaves a gap.
     pub points: Vec<Point>,
-    /// Its colour.
     pub colour: Colour,
     /// Width of the line, or radius of the dots, in pixels.
     pub width: f64,
@@ -78,32 +74,25 @@ pub struct Track {
 /// Text to the right of a point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
-    /// The point.
     pub point: Point,
     /// Height of the text above the point, in pixels.
     pub rise: f64,
-    /// The text.
     pub text: String,
 }
 
-/// A chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
     /// Description for readers who cannot see it.
     pub description: String,
-    /// Title above it; may be empty.
     pub title: String,
     /// Width and height in pixels.
     pub size: (f64, f64),
-    /// Horizontal axis.
     pub x: Axis,
-    /// Vertical axis.
     pub y: Axis,
     /// Curves, from the back to the front.
     pub curves: Vec<Curve>,
     /// Text beside points.
     pub labels: Vec<Label>,
-    /// Legend: colours and names.
     pub legend: Vec<(Colour, String)>,
 }
 
@@ -117,7 +106,6 @@ const SMALL: (f64, f64) = (400.0, 290.0);
 const LARGEST: f64 = 4000.0;
 
 impl Curve {
-    /// A line through these points.
     pub fn new(points: Vec<Point>, colour: Colour, width: f64) -> Self {
         Self { points, colour, width, track: None }
     }
@@ -127,7 +115,6 @@ impl Curve {
         Self { track: Some(track), ..self }
     }
 
-    /// The points as dots.
     pub fn dots(points: impl IntoIterator<Item = Point>, colour: Colour, radius: f64) -> Self {
         // A gap after each point makes dots of them.
         let points = points.into_iter().flat_map(|point| [point, (f64::NAN, f64::NAN)]).collect();
@@ -171,7 +158,6 @@ impl Chart {
         self.size.0 >= WIDE.0
     }
 
-    /// The chart with a legend.
     pub fn with_legend<N: Into<String>>(self, entries: impl IntoIterator<Item = (Colour, N)>) -> Self {
         let legend = entries.into_iter().map(|(colour, name)| (colour, name.into())).collect();
         Self { legend, ..self }

@@ -4,7 +4,6 @@ use crate::part::{Card, Page, Part, anchor};
 use crate::table::{Cell, Table};
 use crate::text::{Piece, Text};
 
-/// The whole page.
 pub fn page(page: &Page) -> String {
     let text = format!("# {}\n\n{}", page.title, parts(&page.parts));
     without_tags(&text).trim_end().to_string() + "\n"

@@ -4,16 +4,12 @@ use crate::chart::Chart;
 use crate::table::Table;
 use crate::text::Text;
 
-/// A document.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
-    /// Its headline.
     pub title: String,
-    /// Its parts, in order.
     pub parts: Vec<Part>,
 }
 
-/// A part of a document.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Part {
     /// The main message, in one sentence.
@@ -22,36 +18,26 @@ pub enum Part {
     Section(String, Vec<Part>),
     /// A table of contents: the headings of these sections of the page, each a link to it.
     Contents(Vec<String>),
-    /// A heading within a section.
     Heading(Text),
-    /// A paragraph.
     Paragraph(Text),
     /// A remark in smaller type.
     Note(Text),
-    /// A command to be typed.
     Command(String),
-    /// A list.
     List(Vec<Item>),
     /// A list of results, each a badge, a link and a sentence.
     Verdicts(Vec<Text>),
-    /// Names and their definitions.
     Definitions(Vec<(String, String)>),
-    /// A table.
     Table(Table),
-    /// A chart by itself.
     Chart(Box<Chart>),
     /// Small charts side by side.
     Charts(Vec<Chart>),
-    /// Cards side by side.
     Cards(Vec<Card>),
     /// Parts that are hidden until the reader opens them, below a summary.
     Folded(String, Vec<Part>),
 }
 
-/// An item of a list.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Item {
-    /// Its text.
     pub text: Text,
     /// True for an item that is shown as a warning.
     pub is_warning: bool,
@@ -62,9 +48,7 @@ pub struct Item {
 pub struct Card {
     /// Name of the card as the target of links.
     pub anchor: String,
-    /// Its heading.
     pub heading: Text,
-    /// Its parts, in order.
     pub parts: Vec<Part>,
 }
 
@@ -80,32 +64,26 @@ pub(crate) fn anchor(heading: &str) -> String {
 }
 
 impl Part {
-    /// A section of these parts.
     pub fn section(heading: impl Into<String>, parts: impl Into<Vec<Part>>) -> Self {
         Part::Section(heading.into(), parts.into())
     }
 
-    /// A heading within a section.
     pub fn heading(text: impl Into<Text>) -> Self {
         Part::Heading(text.into())
     }
 
-    /// A paragraph.
     pub fn paragraph(text: impl Into<Text>) -> Self {
         Part::Paragraph(text.into())
     }
 
-    /// A remark.
     pub fn note(text: impl Into<Text>) -> Self {
         Part::Note(text.into())
     }
 
-    /// A chart by itself.
     pub fn chart(chart: Chart) -> Self {
         Part::Chart(Box::new(chart))
     }
 
-    /// A list of warnings.
     pub fn warnings(warnings: &[String]) -> Self {
         let item = |warning: &String| Item { text: warning.as_str().into(), is_warning: true };
         Part::List(warnings.iter().map(item).collect())
@@ -133,7 +111,6 @@ impl Part {
         }
     }
 
-    /// The charts in it.
     pub fn charts(&self) -> Vec<&Chart> {
         match self {
             Part::Chart(chart) => vec![chart.as_ref()],
@@ -142,7 +119,6 @@ impl Part {
         }
     }
 
-    /// The tables in it.
     pub fn tables(&self) -> Vec<&Table> {
         match self {
             Part::Table(table) => vec![table],

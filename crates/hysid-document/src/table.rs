@@ -11,22 +11,17 @@ const DIGITS: u8 = 3;
 pub struct Table {
     /// Heading without a full stop; may be empty.
     pub heading: String,
-    /// Headings of the columns.
     pub columns: Vec<String>,
-    /// Rows of cells.
     pub rows: Vec<Vec<Cell>>,
 }
 
-/// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
     /// A finite number and its number of significant digits.
     Number(f64, u8),
     /// A number with a percent sign, and its number of significant digits.
     Percent(f64, u8),
-    /// Text.
     Text(String),
-    /// A missing number.
     Missing,
 }
 
@@ -41,12 +36,10 @@ impl Table {
         Self { heading: heading.into(), ..self }
     }
 
-    /// The table with these rows.
     pub fn with_rows(self, rows: impl IntoIterator<Item = Vec<Cell>>) -> Self {
         Self { rows: rows.into_iter().collect(), ..self }
     }
 
-    /// Adds a row.
     pub fn push(&mut self, row: impl IntoIterator<Item = Cell>) {
         self.rows.push(row.into_iter().collect());
     }

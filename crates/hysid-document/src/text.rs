@@ -7,7 +7,6 @@ pub struct Text(pub Vec<Piece>);
 /// A piece of text in one style.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Piece {
-    /// Plain text.
     Plain(String),
     /// Code: input or content of a file.
     Code(String),
@@ -17,9 +16,7 @@ pub enum Piece {
     Aside(String),
     /// A link to a [`Card`](crate::Card) of the same page.
     Link {
-        /// Anchor of the card.
         anchor: String,
-        /// What is shown.
         text: String,
     },
     /// A word in a coloured frame.
@@ -29,16 +26,12 @@ pub enum Piece {
 /// Meaning of a badge, which determines its colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Badge {
-    /// Yes.
     Yes,
-    /// No.
     No,
-    /// Unknown.
     Unknown,
 }
 
 impl Text {
-    /// The text with a piece appended.
     pub fn with(mut self, piece: Piece) -> Self {
         self.0.push(piece);
         self
@@ -56,7 +49,6 @@ impl Text {
 }
 
 impl Piece {
-    /// What is shown.
     pub fn text(&self) -> &str {
         match self {
             Piece::Plain(text) | Piece::Code(text) | Piece::Strong(text) | Piece::Aside(text) => text,

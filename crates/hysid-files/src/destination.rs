@@ -13,7 +13,6 @@ use crate::target::Target;
 use crate::{backup, leftovers, temporary};
 pub use new_file::NewFile;
 
-/// A path and what goes there.
 #[derive(Debug, Clone)]
 pub struct Destination {
     path: PathBuf,

@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 pub enum Failure {
     /// A file is there already that Hysid did not write.
     NotOurs {
-        /// The file.
         path: PathBuf,
         /// What was expected there, such as "model of Hysid".
         expected: &'static str,
@@ -18,20 +17,14 @@ pub enum Failure {
     Changed(PathBuf),
     /// A link, a device or a folder is in the place of a file.
     NotPlain(PathBuf),
-    /// A folder has an input in it.
     HoldsInput {
-        /// The folder.
         folder: PathBuf,
-        /// The input.
         input: PathBuf,
     },
     /// Another process holds the lock of the file.
     InUse(PathBuf),
-    /// The system refused.
     Refused {
-        /// The file.
         path: PathBuf,
-        /// What it said.
         error: io::Error,
     },
 }

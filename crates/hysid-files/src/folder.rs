@@ -18,15 +18,12 @@ pub type Listed = Vec<(String, String)>;
 /// A folder whose files are written together. One of them, the manifest, lists the others with their checksums.
 #[derive(Debug)]
 pub struct Folder<'a> {
-    /// Where it is to be.
     pub path: &'a Path,
     /// What it is, such as `export of Hysid`.
     pub what: &'static str,
-    /// Name of the manifest.
     pub manifest: &'static str,
     /// The files that the text of a manifest lists, with their checksums; `None` if Hysid did not write the text.
     pub listed: fn(&str) -> Option<Listed>,
-    /// The checksum of a file.
     pub checksum: fn(&[u8]) -> String,
     /// Files that the content is made from. A folder with one of them in it is not written to.
     pub inputs: &'a [&'a Path],

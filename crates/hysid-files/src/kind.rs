@@ -29,16 +29,13 @@ const LONGEST_BEGINNING: u64 = 1 << 16;
 pub enum Kind {
     /// A model file. One that is replaced is kept as `NAME.bak`.
     Model,
-    /// A checkpoint of a fit.
     Checkpoint,
-    /// A page of HTML.
     Page,
     /// A drawing, as SVG, PDF or PNG. One that is replaced is kept as `NAME.bak`, since it may have been edited.
     Drawing,
     /// A table, or another text, that begins with this line. One that is replaced is kept as `NAME.bak`: a table of the
     /// user's may have the same header.
     Beginning(Vec<u8>),
-    /// A project of the studio.
     Project,
     /// A text that begins with the first of these and contains the second soon after.
     Marked(&'static str, String),
@@ -59,7 +56,6 @@ impl Kind {
         }
     }
 
-    /// True if a replaced file is kept.
     pub(crate) fn is_kept(&self) -> bool {
         // Pages carry a checksum; checkpoints and projects are the program's own state.
         !matches!(self, Self::Page | Self::Checkpoint | Self::Project | Self::Content(_))

@@ -8,6 +8,9 @@
 //!
 //! A [`Destination`] is a path together with the [`Kind`] of file that goes there.
 
+// Only the crates of Hysid use this one: what a name says needs no comment.
+#![allow(missing_docs)]
+
 mod available_memory;
 mod backup;
 mod destination;

@@ -6,7 +6,6 @@ use std::path::Path;
 
 use crate::failure::reason;
 
-/// A file, to be read.
 pub fn open(path: &Path) -> Result<File, String> {
     let name = path.display().to_string();
     match File::open(path) {

@@ -33,9 +33,7 @@ pub struct ColumnChoice {
     pub record: Option<String>,
     /// Time stamps; [`NO_TIME`] if no column has them.
     pub time: Option<String>,
-    /// Inputs.
     pub input: Vec<String>,
-    /// The output.
     pub output: Option<String>,
     /// Rate of the first input.
     pub rate: RateOption,
@@ -66,7 +64,6 @@ impl ColumnChoice {
 pub enum RateOption {
     /// None, computed from the time stamps, or as suits the model.
     Choice(RateChoice),
-    /// A column of this name.
     Column(String),
 }
 
@@ -103,13 +100,10 @@ impl RateOption {
 pub struct Roles {
     /// Tells the records apart.
     pub record: Option<String>,
-    /// Time stamps.
     pub time: Option<String>,
-    /// Inputs.
     pub inputs: Vec<String>,
     /// Given rate of the first input.
     pub rate: Option<String>,
-    /// The output.
     pub output: String,
     /// What no option decided, in words; `None` if nothing.
     pub guessed: Option<&'static str>,
@@ -319,7 +313,6 @@ impl Roles {
         })
     }
 
-    /// The names as the library keeps them.
     pub fn names(&self) -> ColumnNames {
         ColumnNames {
             time: self.time.clone(),

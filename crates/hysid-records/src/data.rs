@@ -24,7 +24,6 @@ use hysid_document::visible::{clipped, listed};
 pub struct Data {
     /// The data as the library takes them.
     pub set: Dataset,
-    /// What the columns are.
     pub roles: Roles,
     /// Where each record stands.
     pub source: Source,
@@ -41,11 +40,9 @@ pub struct Source {
 
 /// Where a record stands.
 pub struct Place {
-    /// Name of the record.
     pub record: String,
     /// Place of its table among all.
     pub table: usize,
-    /// Its rows in the table.
     pub rows: Range<usize>,
 }
 
@@ -338,7 +335,6 @@ fn ends_by_time(time: &[f64], rows: usize) -> Vec<usize> {
     ends
 }
 
-/// Place of a column.
 pub fn place_of(table: &Head, name: &str) -> Result<usize> {
     table.column(name).ok_or_else(|| anyhow!("{}: there is no column \"{}\"", table.file, clipped(name)))
 }
@@ -425,9 +421,7 @@ impl Kind {
         if_blank: "only the output may be blank; choose rows with --rows",
         if_no_number: Some("not an input? name the inputs with --input"),
     };
-    /// A measured output.
     pub const OUTPUT: Self = Self::Optional;
-    /// A wanted output.
     pub const WANTED: Self =
         Self::Required { if_blank: "every row needs a wanted output", if_no_number: None };
 }

@@ -1,6 +1,9 @@
 //! From tables to data: which column is what, where records begin, which units columns have, and what the tables
 //! were understood as. Errors name file, line and column, and the option that helps, by its name on the command line.
 
+// Only the crates of Hysid use this one: what a name says needs no comment.
+#![allow(missing_docs)]
+
 mod columns;
 mod csv_text;
 mod data;

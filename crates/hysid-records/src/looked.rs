@@ -32,19 +32,15 @@ pub struct Looked {
     left_out: Option<String>,
     #[serde(skip)]
     read_as: String,
-    /// Its columns.
     pub columns: Vec<Column>,
 }
 
-/// A column as it is read.
 #[derive(Debug, Clone, Serialize)]
 pub struct Column {
-    /// Its name, with its unit.
     pub name: String,
     /// `time`, `input`, `output`, `rate`, `record`, `unused`; none if the roles are unclear.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub role: Option<&'static str>,
-    /// Its unit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
     /// The smallest number.
@@ -169,7 +165,6 @@ fn role(roles: &Roles, name: &String) -> &'static str {
     }
 }
 
-/// Why a column has no role.
 fn reason(roles: &Roles, name: &String) -> Option<String> {
     let (_, reason) = roles.set_aside.iter().find(|(other, _)| other == name)?;
     Some(reason.clone())

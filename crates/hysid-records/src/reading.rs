@@ -5,14 +5,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::usage::Usage;
 
-/// An option that tells how tables are read.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct ReadingOption {
     /// Its name, in words joined by underscores; the command line joins them by hyphens.
     pub name: &'static str,
     /// Its effect, in a sentence without a full stop.
     pub meaning: &'static str,
-    /// Its valid values.
     pub values: ReadingValues,
 }
 
@@ -20,15 +18,12 @@ pub struct ReadingOption {
 #[derive(Debug, Clone, Copy, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind", content = "names")]
 pub enum ReadingValues {
-    /// One of these names.
     Names(&'static [&'static str]),
-    /// A text.
     Text,
     /// Several texts.
     List,
     /// A whole number.
     Count,
-    /// Given or not.
     Flag,
 }
 

@@ -6,7 +6,6 @@ use anyhow::{Result, bail};
 
 use hysid_document::visible::clipped;
 
-/// The names of the records so far.
 #[derive(Debug, Default)]
 pub struct RecordNames {
     begun: HashSet<String>,

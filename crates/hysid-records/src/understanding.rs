@@ -44,7 +44,6 @@ pub fn understanding(
     lines
 }
 
-/// What was understood of the data.
 pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
     let mut lines: Vec<(String, String)> = Vec::new();
     let mut say = |label: &str, text: String| lines.push((label.to_string(), text));
@@ -124,7 +123,6 @@ pub fn choice(options: &AutoOptions) -> String {
     }
 }
 
-/// The parts of a network in words.
 pub fn parts(architecture: &Architecture) -> String {
     let deteriorating = if architecture.deterioration { "deteriorating " } else { "" };
     let mut parts = vec![format!("{} {deteriorating}stops", architecture.stops)];

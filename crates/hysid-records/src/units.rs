@@ -12,13 +12,9 @@ use hysid_document::visible::clipped;
 /// What the numbers of each column are multiplied by to be in the model's units; `None` for as they are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Factors {
-    /// Of time stamps.
     pub time: Option<f64>,
-    /// Of each input.
     pub inputs: Vec<Option<f64>>,
-    /// Of the given rate.
     pub rate: Option<f64>,
-    /// Of the output.
     pub output: Option<f64>,
     /// What is converted, in words, column by column.
     pub conversions: Vec<String>,

@@ -7,7 +7,6 @@ use hysid::significant::Significant;
 /// Share of the measured outputs that lie within a band.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct BandCoverage {
-    /// What was asked for.
     pub probability: f64,
     /// Data sets of ten in which the band is to contain that share; left out for five, on average.
     #[serde(skip_serializing_if = "is_average")]
@@ -38,7 +37,6 @@ impl BandCoverage {
         Self::of((covered, samples), probability)
     }
 
-    /// In words.
     pub fn words(&self) -> String {
         let widened = match self.of_ten {
             of_ten if is_average(&of_ten) => String::new(),

@@ -4,7 +4,6 @@ use hysid::fit::network::Progress;
 use hysid::model::history::Phase;
 use hysid::options::network::Method;
 
-/// The course of a fit.
 #[derive(Debug, Clone, Copy)]
 pub struct Course {
     starts: usize,

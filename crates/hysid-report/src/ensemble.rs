@@ -150,7 +150,6 @@ fn held_out(selection: &Selection) -> Part {
     )
 }
 
-/// The places of a candidate's members.
 fn members_of(group: &Group, candidate: &CandidateResult) -> Vec<usize> {
     let of_node = |node: &Node| match &node.kind {
         NodeKind::Group(group) if group.name == candidate.name => {

@@ -49,12 +49,10 @@ pub fn loops_section(set: &ReportSet) -> Part {
     Part::section(format!("Loops: {} data", set.name), parts)
 }
 
-/// All records of a set in one chart.
 pub fn loops(set: &ReportSet) -> Chart {
     loop_chart(set, &shown(set), "", LOOP_POINTS)
 }
 
-/// All records of a set in one small chart.
 pub fn small_loops(set: &ReportSet, title: &str) -> Chart {
     loop_chart(set, &shown(set), title, LOOP_POINTS / 2)
 }

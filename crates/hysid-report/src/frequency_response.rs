@@ -45,12 +45,10 @@ pub fn section(report: &Report) -> Option<Part> {
     Some(Part::section("Frequency response", parts))
 }
 
-/// A curve of the section.
 struct Line<'a> {
     name: String,
     colour: Colour,
     width: f64,
-    /// Standard deviation of the input, in its unit.
     input_deviation: Option<f64>,
     response: &'a FrequencyResponse,
 }

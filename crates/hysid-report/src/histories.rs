@@ -17,7 +17,6 @@ const POINTS: usize = 4000;
 
 const MOST_INPUTS: usize = 4;
 
-/// The histories of a set.
 pub fn section(set: &ReportSet) -> Part {
     let (shown, all) = (shown_records(set), set.data.records().len());
     let mut parts = Vec::new();
@@ -95,7 +94,6 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
     parts
 }
 
-/// Label of the axis of errors of this output.
 pub fn error_label(output: &str) -> String {
     match unit::split(output).1 {
         Some(unit) => format!("error ({unit})"),
@@ -107,20 +105,15 @@ pub fn error_label(output: &str) -> String {
 pub struct Panel<'a> {
     /// Times of the rows, or their numbers.
     pub time: &'a [f64],
-    /// Label of the axis of time.
     pub time_label: String,
-    /// Name of the record.
     pub record: &'a str,
-    /// Points of each curve, at most.
     pub points: usize,
-    /// Probability of the band.
     pub band: f64,
     /// What ties the charts of the record together.
     pub track: Track,
 }
 
 impl Panel<'_> {
-    /// The area between two curves.
     pub fn area(&self, low: &[f64], high: &[f64]) -> Curve {
         Curve::new(outline(self.time, low, high, self.points), Colour::Band, 0.0)
     }

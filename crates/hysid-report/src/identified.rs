@@ -23,7 +23,6 @@ use crate::{Report, ReportSet, loops, page};
 pub struct Beforehand {
     /// What was understood of data and request, label and text.
     pub understood: Vec<(String, String)>,
-    /// What to be aware of.
     pub warnings: Vec<String>,
 }
 
@@ -65,13 +64,10 @@ pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
 /// A model and what was told and spent on the way to it.
 #[derive(Debug)]
 pub struct Identified {
-    /// The model.
     pub model: Model,
-    /// Evaluations of the objective.
     pub evaluations: usize,
     /// Rows that were held out in turn, and what was predicted for them.
     pub held_out: Option<HeldOutRows>,
-    /// Seconds of training.
     pub seconds: f64,
     /// What was told before.
     pub beforehand: Beforehand,

@@ -1,6 +1,9 @@
 //! What Hysid tells of data and models: the report of a fit ([`page`], [`Identified`]), the [`diagnosis`] of data and of
 //! models, and how a page was made ([`origin`]).
 
+// Only the crates of Hysid use this one: what a name says needs no comment.
+#![allow(missing_docs)]
+
 mod band;
 mod band_coverage;
 mod course;
@@ -44,11 +47,8 @@ pub use tracks::Tracks;
 /// Probability of the band that is drawn and judged.
 pub const BAND: f64 = 0.9;
 
-/// What is reported.
 pub struct Report<'a> {
-    /// Headline.
     pub title: String,
-    /// The fitted model.
     pub model: &'a Model,
     /// Data that it was run on, the training data first.
     pub sets: Vec<ReportSet<'a>>,
@@ -58,11 +58,9 @@ pub struct Report<'a> {
     pub intervals: Option<&'a ParameterIntervals>,
     /// Frequency responses on the training data, of a model with inertia; or why the data have none.
     pub frequency_response: Option<std::result::Result<ModelResponses, NoResponse>>,
-    /// What to be aware of.
     pub warnings: &'a [String],
     /// What was understood of the data: a question and its answer.
     pub understood: &'a [(String, String)],
-    /// Name of the model file.
     pub model_file: String,
     /// How long the fit took.
     pub seconds: f64,
@@ -72,13 +70,11 @@ pub struct Report<'a> {
 pub struct ReportSet<'a> {
     /// What the data are: "training", "unseen".
     pub name: String,
-    /// The data.
     pub data: &'a Dataset,
     /// Free run over each record.
     pub simulated: Vec<Vec<f64>>,
     /// The same with the band of probability [`BAND`], if the model has one.
     pub predicted: Option<Vec<Prediction>>,
-    /// Errors of these.
     pub errors: Errors,
     /// What ties the curves of its records together.
     pub tracks: Tracks,
@@ -109,7 +105,6 @@ pub fn page_text(page: &Page) -> String {
     with_page_sum(&html::page(page, &format!("{PAGE_MARK}{}\">", env!("CARGO_PKG_VERSION"))))
 }
 
-/// The whole page.
 pub fn page(report: &Report) -> Page {
     let mut parts = vec![errors::verdict(report)];
     parts.extend(report.sets.iter().map(figures::loops_section));

@@ -8,7 +8,6 @@ use hysid::options::table::OPTIONS;
 use hysid_document::plain::{aligned, indented};
 use serde::Serialize;
 
-/// A model in the list.
 #[derive(Debug, Serialize)]
 pub struct Listed {
     /// Its name, as `--model` takes it.
@@ -49,7 +48,6 @@ pub fn text(models: &[Listed]) -> String {
 }
 
 impl Listed {
-    /// Of a model.
     pub fn of(model: ModelName) -> Self {
         let (kind, identified_by) = match model {
             ModelName::Auto(_) => ("ensemble", "cross-validation"),

@@ -10,13 +10,11 @@ use hysid_document::{Part, count, number};
 
 use crate::{Report, seen_label};
 
-/// What was understood of the data.
 pub fn understood(report: &Report) -> Option<Part> {
     let parts = [Part::Definitions(report.understood.to_vec())];
     (!report.understood.is_empty()).then(|| Part::section("How the data were read", parts))
 }
 
-/// The warnings, or that there is none.
 pub fn warnings(report: &Report) -> Part {
     let warnings = match report.warnings {
         [] => Part::paragraph("None."),

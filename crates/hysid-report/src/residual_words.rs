@@ -11,7 +11,6 @@ pub fn name(finding: &ResidualFinding) -> String {
     }
 }
 
-/// A verdict in words.
 pub fn verdict(verdict: ResidualVerdict) -> &'static str {
     match verdict {
         ResidualVerdict::Found => "found",
@@ -20,7 +19,6 @@ pub fn verdict(verdict: ResidualVerdict) -> &'static str {
     }
 }
 
-/// The corrected p-value.
 pub fn p_value(finding: &ResidualFinding) -> String {
     match finding.adjusted_p_value {
         None => "-".into(),

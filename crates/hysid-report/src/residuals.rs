@@ -21,7 +21,6 @@ pub fn section(report: &Report) -> Option<Part> {
     Some(Part::section("What the model leaves unexplained", parts))
 }
 
-/// The findings on some data.
 fn of_data(data: &str, residuals: &Residuals) -> Vec<Part> {
     let mut table = Table::new(["test of the residual", "structure", "p"]);
     for finding in &residuals.findings {

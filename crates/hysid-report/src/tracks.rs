@@ -28,12 +28,10 @@ pub struct Tracks {
 }
 
 impl Tracks {
-    /// Those of a set of this name.
     pub fn of(set: &str, data: &Dataset) -> Self {
         Self { set: set.into(), cycles: cycles(data) }
     }
 
-    /// Those of a curve over time.
     pub fn over_time(&self, record: &str) -> Track {
         Track { record: self.name(record), times: None, cycles: Vec::new() }
     }

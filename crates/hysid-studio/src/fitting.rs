@@ -32,7 +32,6 @@ pub struct Fits {
 /// What a fit does when it has news.
 pub type Tell = Arc<dyn Fn() + Send + Sync>;
 
-/// A fit that was begun.
 struct Running {
     course: Arc<Course>,
     thread: Option<JoinHandle<()>>,
@@ -47,7 +46,6 @@ pub struct Course {
 }
 
 pub struct Work {
-    /// Number of the fit.
     pub id: u64,
     pub request: FitSpec,
     pub data: Arc<Data>,

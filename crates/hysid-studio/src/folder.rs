@@ -104,22 +104,18 @@ impl Folder {
         }
     }
 
-    /// Its path.
     pub fn root(&self) -> &Path {
         &self.root
     }
 
-    /// Its name.
     pub fn name(&self) -> String {
         self.root.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// The path of a file of data.
     pub fn data(&self, file: &str) -> PathBuf {
         self.root.join(Inner::Data.name()).join(plain(file))
     }
 
-    /// The path of a file of a model.
     pub fn models(&self, file: &str) -> PathBuf {
         self.root.join(Inner::Models.name()).join(plain(file))
     }

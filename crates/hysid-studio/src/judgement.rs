@@ -26,7 +26,6 @@ pub struct Run {
     errors: Errors,
 }
 
-/// What is told of a run.
 #[derive(Debug, Serialize)]
 pub struct Judgement {
     errors: Errors,
@@ -67,7 +66,6 @@ impl Run {
         Ok(Self { data, is_training, predicted, errors })
     }
 
-    /// What is told of it.
     pub fn judgement(&self, model: &Model) -> Result<Judgement> {
         let pairs = || self.data.records().iter().zip(&self.predicted);
         let has_band = self.predicted.iter().all(|run| !run.low.is_empty());

@@ -4,6 +4,9 @@
 //! way. A [`Server`] answers the page of this studio on the loopback address of this machine, and nobody else. The page is
 //! part of the program, so that it needs no internet.
 
+// Only the crates of Hysid use this one: what a name says needs no comment.
+#![allow(missing_docs)]
+
 mod choices;
 mod drive;
 mod fitting;

@@ -81,7 +81,6 @@ impl ChosenColumns {
 #[serde(deny_unknown_fields)]
 pub struct ProjectFile {
     pub id: u64,
-    /// Its name in the folder of data.
     pub name: String,
     pub bytes: u64,
     #[serde(rename = "use")]
@@ -215,12 +214,10 @@ impl Project {
         self.next - 1
     }
 
-    /// The file of this number.
     pub fn file(&self, id: u64) -> Result<&ProjectFile> {
         self.files.iter().find(|file| file.id == id).ok_or_else(|| anyhow!("there is no file {id}"))
     }
 
-    /// The model of this number.
     pub fn model(&self, id: u64) -> Result<&ProjectModel> {
         self.models.iter().find(|model| model.begun.id == id).ok_or_else(|| anyhow!("there is no model {id}"))
     }

@@ -57,7 +57,6 @@ struct Shared {
     is_over: watch::Receiver<bool>,
 }
 
-/// Ends a server.
 #[derive(Clone)]
 pub struct Ending {
     is_over: watch::Sender<bool>,

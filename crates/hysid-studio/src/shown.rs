@@ -16,7 +16,6 @@ use crate::folder::Folder;
 use crate::project::{ChosenColumns, Project, ProjectFile, ProjectModel, Use};
 use crate::view::{FileView, View};
 
-/// The state of a studio.
 #[derive(Debug, Serialize)]
 pub struct Shown {
     version: u64,
@@ -31,7 +30,6 @@ pub struct Shown {
     labels: Option<Names>,
     /// Unit of the output, if its name tells.
     output_unit: Option<String>,
-    /// Label of the rate of the first input.
     rate_label: Option<String>,
     /// True as long as not all files are read.
     is_reading: bool,
@@ -39,7 +37,6 @@ pub struct Shown {
     fit: Option<FitState>,
 }
 
-/// Names or labels of columns.
 #[derive(Debug, Serialize)]
 struct Names {
     time: Option<String>,

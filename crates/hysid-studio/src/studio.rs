@@ -22,7 +22,6 @@ use crate::shown::Shown;
 use crate::view::{AtHand, View};
 use fits::Found;
 
-/// A studio.
 pub struct Studio {
     folder: Folder,
     /// Held for moments: no table is read and nothing is computed meanwhile.
@@ -71,12 +70,10 @@ impl Studio {
         Ok(studio)
     }
 
-    /// The folder of the project.
     pub fn folder(&self) -> &Folder {
         &self.folder
     }
 
-    /// Subscribes to changes.
     pub fn news(&self) -> watch::Receiver<News> {
         self.news.subscribe()
     }

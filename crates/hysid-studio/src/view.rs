@@ -24,7 +24,6 @@ pub struct View {
     of: Vec<ProjectFile>,
     /// The file that tells the columns, if they are guessed.
     first: Option<u64>,
-    /// Each file, in the order of the project.
     pub files: Vec<Arc<FileView>>,
     /// Which column is what; `None` without a file, or with [`View::problem`].
     pub roles: Option<Roles>,
@@ -155,12 +154,10 @@ impl View {
         self.understanding == *understanding
     }
 
-    /// A file as it is read.
     pub fn file(&self, id: u64) -> Result<&Arc<FileView>> {
         self.files.iter().find(|file| file.id == id).ok_or_else(|| anyhow!("there is no file {id}"))
     }
 
-    /// The data of a file.
     pub fn data(&self, id: u64) -> Result<Arc<Data>> {
         let file = self.file(id)?;
         let problem = file.problem.as_ref().or(self.problem.as_ref());

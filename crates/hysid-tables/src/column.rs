@@ -16,7 +16,6 @@ pub struct ColumnReader {
 }
 
 impl ColumnReader {
-    /// A reader of the column at this place.
     pub fn new(head: &Head, place: usize) -> Self {
         let stamps = head.has_stamps(place).then(StampReader::default);
         Self { place, stamps, thousands: ThousandsWatch::default() }
@@ -27,7 +26,6 @@ impl ColumnReader {
         self.stamps.is_some()
     }
 
-    /// Place of the column.
     pub fn place(&self) -> usize {
         self.place
     }

@@ -28,7 +28,6 @@ pub struct Text {
     pub reader: Box<dyn Read>,
     /// How it is stored, in words, such as `text, UTF-8`.
     pub stored: String,
-    /// Sheets of a spreadsheet that were not chosen.
     pub other_sheets: Vec<String>,
 }
 

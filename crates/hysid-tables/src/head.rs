@@ -17,7 +17,6 @@ pub struct Head {
     pub file: String,
     /// How the file is stored, in words, such as `text, UTF-8`.
     pub stored: String,
-    /// Sheets of a spreadsheet that were not chosen.
     pub other_sheets: Vec<String>,
     /// Names of the columns, without surrounding blanks.
     pub header: Vec<String>,
@@ -29,7 +28,6 @@ pub struct Head {
 }
 
 impl Head {
-    /// Of a table with this layout.
     pub fn new(file: String, stored: String, layout: Layout, reading: Reading) -> Self {
         let header = layout.names.clone();
         let places = header.iter().enumerate().map(|(place, name)| (name.clone(), place)).collect();
@@ -42,12 +40,10 @@ impl Head {
         self
     }
 
-    /// What separates the cells.
     pub fn delimiter(&self) -> Delimiter {
         self.layout.delimiter
     }
 
-    /// How the numbers are written.
     pub fn numbers(&self) -> &NumberFormat {
         &self.layout.numbers
     }
@@ -120,7 +116,6 @@ impl Head {
         })
     }
 
-    /// The full name of a column.
     pub fn full_name(&self, name: &str) -> Option<&str> {
         self.column(name).map(|place| self.header[place].as_str())
     }

@@ -34,15 +34,12 @@ const FEWEST_ROWS: usize = 3;
 /// What a table looks like.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
-    /// What separates the cells.
     pub delimiter: Delimiter,
-    /// How the numbers are written.
     pub numbers: NumberFormat,
     /// Names of the columns, with the units that stand in a line of their own or in the cells.
     pub names: Vec<String>,
     /// Lines with the names; none for a table without names.
     pub header_lines: Vec<u64>,
-    /// The line with the units, if there is one.
     pub units_line: Option<u64>,
     /// Lines before the header.
     pub preamble: usize,

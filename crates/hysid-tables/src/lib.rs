@@ -9,6 +9,9 @@
 //! units of the columns, and how numbers are written. Rows are read one after another, so that memory does not grow
 //! with the file. [`Reading`] says what a user knows better.
 
+// Only the crates of Hysid use this one: what a name says needs no comment.
+#![allow(missing_docs)]
+
 mod blanks;
 mod column;
 mod container;

@@ -10,13 +10,10 @@ pub use thousands::ThousandsWatch;
 /// What stands before the decimals of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DecimalSign {
-    /// As in 1.5.
     Point,
-    /// As in 1,5.
     Comma,
 }
 
-/// How the numbers of a file are written.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NumberFormat {
     /// The decimal sign; `None` if the beginning of the file has only whole numbers.

@@ -7,9 +7,7 @@ use crate::number::DecimalSign;
 /// How a table is to be read. The default is to find everything out from the file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reading {
-    /// What separates the cells.
     pub delimiter: Option<Delimiter>,
-    /// The decimal sign of the numbers.
     pub decimal: Option<DecimalSign>,
     /// Lines before the table.
     pub skip: usize,
@@ -19,20 +17,16 @@ pub struct Reading {
     pub units_row: bool,
     /// Cells that stand for a missing value.
     pub missing: Vec<String>,
-    /// Encoding of the text.
     pub encoding: Option<Encoding>,
     /// Sheet of a spreadsheet or variable of a MATLAB file: its name, or its number from 1.
     pub sheet: Option<String>,
-    /// Rows of the table that are used.
     pub rows: RowSelection,
 }
 
 /// Rows of a table that are used, counted from 1 behind the header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RowSelection {
-    /// The first row.
     pub first: u64,
-    /// The last row.
     pub last: Option<u64>,
     /// One row of so many is used.
     pub every: u64,
@@ -45,7 +39,6 @@ impl Default for RowSelection {
 }
 
 impl RowSelection {
-    /// True for a row that is used.
     pub fn has(&self, row: u64) -> bool {
         row >= self.first
             && self.last.is_none_or(|last| row <= last)
@@ -57,7 +50,6 @@ impl RowSelection {
         self.last.is_some_and(|last| row > last)
     }
 
-    /// True for all rows.
     pub fn is_all(&self) -> bool {
         *self == Self::default()
     }
@@ -93,14 +85,12 @@ pub enum Delimiter {
 }
 
 impl Delimiter {
-    /// A comma.
     pub const COMMA: Self = Self::Character(b',');
 
     /// Those that are found in a file, where several are possible the first of them.
     pub const ALL: [Self; 5] =
         [Self::Character(b'\t'), Self::Character(b';'), Self::COMMA, Self::Character(b'|'), Self::Blanks];
 
-    /// Its name.
     pub fn name(self) -> String {
         match self {
             Self::Character(b',') => "comma".into(),
@@ -163,12 +153,10 @@ impl FromStr for DecimalSign {
     }
 }
 
-/// Encoding of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Encoding(pub(crate) &'static encoding_rs::Encoding);
 
 impl Encoding {
-    /// Its name.
     pub fn name(self) -> &'static str {
         self.0.name()
     }

@@ -29,7 +29,6 @@ const MOST_COLUMNS: usize = 20_000;
 /// Bytes at the end of a file that are looked through for rows, if they begin like none.
 const LONGEST_END: usize = 1 << 16;
 
-/// Reads the rows of a table.
 pub struct Rows {
     /// File, layout and names of the columns.
     pub head: Head,
@@ -74,7 +73,6 @@ impl LeftOut {
     }
 }
 
-/// A row of a table.
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'r> {
     /// Its line in the file, counted from 1.
@@ -89,13 +87,11 @@ impl<'r> Row<'r> {
         self.ends.len()
     }
 
-    /// A cell, verbatim.
     pub fn cell(&self, column: usize) -> &'r str {
         let start = if column == 0 { 0 } else { self.ends[column - 1] };
         &self.text[start..self.ends[column]]
     }
 
-    /// All cells.
     pub fn cells(self) -> impl Iterator<Item = &'r str> {
         (0..self.width()).map(move |column| self.cell(column))
     }

@@ -23,7 +23,6 @@ const MONTHS: [&str; 12] = [
     "dec dez déc dic",
 ];
 
-/// A time stamp in a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamp {
     date: Option<Date>,

@@ -46,7 +46,6 @@ impl Deref for Origin {
 }
 
 impl Table {
-    /// Reads a file.
     pub fn read(path: &Path, reading: &Reading) -> Result<Self> {
         Self::of(Rows::open(path, reading)?)
     }
@@ -75,12 +74,10 @@ impl Table {
         self.origin
     }
 
-    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.lines.len()
     }
 
-    /// A cell, verbatim.
     pub fn cell(&self, row: usize, column: usize) -> &str {
         let index = row * self.header.len() + column;
         let start = if index == 0 { 0 } else { self.ends[index - 1] };

@@ -18,14 +18,12 @@ pub struct Appearance {
 /// Pixels in a millimetre, as in a style sheet: 96 in an inch.
 pub const PIXELS_PER_MILLIMETRE: f64 = 96.0 / 25.4;
 
-/// Pixels in a point: 72 in an inch.
 pub const PIXELS_PER_POINT: f64 = 96.0 / 72.0;
 
 /// Size of the text on a page, in pixels.
 const TEXT: f64 = 13.0;
 
 impl Appearance {
-    /// As on a page.
     pub fn of_page() -> Self {
         Self { text: TEXT, family: "system-ui".into(), lines: 1.0, fixed_colours: false, tick_letters: 0 }
     }

@@ -15,7 +15,6 @@ const MOST_DECADES: f64 = 9.0;
 /// Values further beyond the ends of an axis, in its lengths, have the place of this one.
 const MOST_BEYOND: f64 = 100.0;
 
-/// An axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// Label: the quantity with its unit.

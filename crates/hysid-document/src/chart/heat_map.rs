@@ -15,7 +15,6 @@ pub struct HeatCell {
     pub u: (f64, f64),
     /// From where to where along the second coordinate.
     pub v: (f64, f64),
-    /// The value.
     pub value: f64,
 }
 

@@ -45,7 +45,6 @@ impl<'d> NewFile<'d> {
         Ok(Self { destination, sink })
     }
 
-    /// Where it is to be.
     pub fn path(&self) -> &Path {
         self.destination.path()
     }

@@ -68,7 +68,6 @@ impl<'a> DataDiagnosis<'a> {
         )
     }
 
-    /// All of it as one JSON object.
     pub fn json(&self) -> Result<String> {
         let printed = Printed {
             input: &self.quantities.input,

@@ -95,7 +95,6 @@ impl<'a> DiagnosedModel<'a> {
         parts.join("\n")
     }
 
-    /// All of it as one JSON object.
     pub fn json(&self) -> Result<String> {
         let printed = Printed {
             input: &self.quantities.input,
@@ -106,7 +105,6 @@ impl<'a> DiagnosedModel<'a> {
         Ok(hysid_document::json(&printed)?)
     }
 
-    /// The page.
     pub fn page(&self) -> Page {
         let mut cards = cards(&self.diagnosis.properties, &self.quantities, |_: &Finding| String::new());
         cards.push(invertibility::card(&self.diagnosis.invertibility, &self.quantities));

@@ -31,7 +31,6 @@ impl<'a> Overview<'a> {
         Self { data, diagnosis, quantities }
     }
 
-    /// Loops and ways.
     pub fn section(&self) -> Part {
         let mut parts = vec![Part::chart(self.loops())];
         let records = self.data.records();

@@ -77,7 +77,6 @@ impl Studio {
         Ok(id)
     }
 
-    /// Takes a file with this content.
     pub fn take_content(&self, given: &str, content: &[u8], usage: Use) -> Result<u64> {
         let place = self.place_for_upload()?;
         let stored = fs::write(&place, content)
@@ -109,7 +108,6 @@ impl Studio {
         if self.project().models.is_empty() { Use::Training } else { Use::Unseen }
     }
 
-    /// Removes a file.
     pub fn remove_file(&self, id: u64) -> Result<()> {
         let removed = self.change(|project| {
             let removed = project.file(id)?.clone();
@@ -135,7 +133,6 @@ impl Studio {
         Ok(())
     }
 
-    /// Says what a file is for.
     pub fn use_file(&self, id: u64, usage: Use) -> Result<()> {
         self.change(|project| {
             project.file(id)?;
@@ -161,7 +158,6 @@ impl Studio {
         sets.into_iter().map(take).collect()
     }
 
-    /// Says how tables are read.
     pub fn read_as(&self, reading: ReadingChoice) -> Result<()> {
         reading.reading()?;
         self.change(|project| {
@@ -213,7 +209,6 @@ impl Studio {
         Ok(by_name)
     }
 
-    /// The data of a file.
     pub fn data_of(&self, id: u64) -> Result<Arc<Data>> {
         let view = self.view();
         let is_read_as = view.is_read_as(&self.project().understanding);

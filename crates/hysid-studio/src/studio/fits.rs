@@ -97,7 +97,6 @@ impl Studio {
         self.fits.stop();
     }
 
-    /// The fit.
     pub fn fit(&self) -> Option<FitState> {
         self.fits.state()
     }

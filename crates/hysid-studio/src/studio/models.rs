@@ -19,7 +19,6 @@ use crate::view::read;
 const MOST_MODELS: usize = 200;
 
 impl Studio {
-    /// The model of this number.
     pub fn model(&self, id: u64) -> Result<Arc<Model>> {
         let kept = || self.models.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(known) = kept().get(&id) {
@@ -37,12 +36,10 @@ impl Studio {
         Ok(model)
     }
 
-    /// What is stored of a model.
     pub fn stored_model(&self, id: u64) -> Result<ProjectModel> {
         self.project().model(id).cloned()
     }
 
-    /// Where the file of a model is.
     pub fn model_file(&self, id: u64) -> Result<PathBuf> {
         Ok(self.folder.models(&self.project().model(id)?.file))
     }
@@ -61,7 +58,6 @@ impl Studio {
         String::from_utf8(self.folder.read(path)?).map_err(|_| anyhow!("{}: is no text", path.display()))
     }
 
-    /// Removes a model.
     pub fn remove_model(&self, id: u64) -> Result<()> {
         let removed = self.change(|project| {
             let removed = project.model(id)?.clone();

@@ -57,7 +57,6 @@ impl Budget {
         FREE_TIME + TIME_PER_MEGABYTE * u32::try_from(self.length >> 20).unwrap_or(u32::MAX / 1000)
     }
 
-    /// Unpacks as a whole.
     pub fn unpacked(self, reader: impl Read) -> Result<Vec<u8>, String> {
         let mut bytes = Vec::new();
         let most = self.bytes();

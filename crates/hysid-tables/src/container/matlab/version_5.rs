@@ -78,7 +78,6 @@ struct Element<'b> {
     bytes: &'b [u8],
 }
 
-/// Elements one after another.
 struct Elements<'b> {
     bytes: &'b [u8],
     order: Order,
