@@ -199,6 +199,18 @@ impl ColumnOptions {
         let Self { record, time, input, output, rate, .. } = self.clone();
         ColumnChoice { record, time, input, output, rate }
     }
+
+    /// The options on columns that are given, and those of `further` that are, by their names.
+    pub fn given(&self, further: &[(&'static str, bool)]) -> Vec<&'static str> {
+        let own = [
+            ("--record", self.record.is_some()),
+            ("--time", self.time.is_some()),
+            ("--input", !self.input.is_empty()),
+            ("--output", self.output.is_some()),
+            ("--rate", self.rate != RateOption::default()),
+        ];
+        own.iter().chain(further).filter(|(_, is_given)| *is_given).map(|(option, _)| *option).collect()
+    }
 }
 
 /// In how many data sets a band is to contain its share of the rows.

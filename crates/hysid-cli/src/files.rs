@@ -7,7 +7,7 @@ use anyhow::{Error, Result, anyhow};
 use hysid_document::Page;
 pub use hysid_document::shell::shown;
 pub use hysid_files::reason;
-use hysid_files::{Destination, Failure};
+use hysid_files::{Destination, Failure, Kind};
 
 use hysid_report::{origin, page_text};
 
@@ -31,6 +31,11 @@ pub fn named_after(table: &Path, ending: &str) -> PathBuf {
     PathBuf::from(name)
 }
 
+/// The place of a page, unless none is to be written.
+pub fn page(no_report: bool, path: impl Into<PathBuf>, force: bool) -> Option<Destination> {
+    (!no_report).then(|| Destination::new(path, Kind::Page, force))
+}
+
 /// Writes a file; the old one survives any failure. Says so if a copy of the old one is kept.
 pub fn write(destination: &Destination, content: &[u8]) -> Result<()> {
     match destination.write(content) {
@@ -41,8 +46,9 @@ pub fn write(destination: &Destination, content: &[u8]) -> Result<()> {
 }
 
 /// Writes a page, as [`write`] does. Its last section says how it was made, from these files.
-pub fn write_page(destination: &Destination, mut page: Page, inputs: &[&Path]) -> Result<()> {
-    page.parts.push(origin::section(&command(), inputs));
+pub fn write_page(destination: &Destination, mut page: Page, inputs: &[impl AsRef<Path>]) -> Result<()> {
+    let inputs: Vec<&Path> = inputs.iter().map(AsRef::as_ref).collect();
+    page.parts.push(origin::section(&command(), &inputs));
     write(destination, page_text(&page).as_bytes())
 }
 
@@ -109,17 +115,24 @@ pub fn explained_folder(failure: Failure) -> anyhow::Error {
 }
 
 /// Refuses, before the work begins, files that cannot be written, that Hysid did not write, or that are read too.
-pub fn check_outputs(outputs: &[&Destination], inputs: &[&Path]) -> Result<()> {
-    for (place, output) in outputs.iter().enumerate() {
-        let others = outputs[..place].iter().map(|output| output.path());
-        if let Some(other) = inputs.iter().copied().chain(others).find(|other| same(output.path(), other)) {
+pub fn check_outputs<'d>(
+    outputs: impl IntoIterator<Item = &'d Destination>,
+    inputs: &[impl AsRef<Path>],
+) -> Result<()> {
+    let mut taken: Vec<&Path> = inputs.iter().map(AsRef::as_ref).collect();
+    for output in outputs {
+        if let Some(other) = taken.iter().find(|other| same(output.path(), other)) {
             let advice = "would be overwritten: name another file with --out";
             return Err(Usage(format!("{} {advice}", other.display())).into());
         }
         output.check().map_err(explained)?;
+        taken.push(output.path());
     }
     Ok(())
 }
+
+/// The inputs of a command that reads no files.
+pub const NO_INPUTS: [&Path; 0] = [];
 
 /// Makes a folder for results, if it is not there.
 pub fn make_folder(folder: &Path) -> Result<()> {

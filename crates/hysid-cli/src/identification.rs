@@ -94,7 +94,7 @@ pub fn write_report(
     page: &Destination,
     model: &Path,
     sets: &[(&str, &Dataset)],
-    inputs: &[&Path],
+    inputs: &[impl AsRef<Path>],
 ) -> Result<()> {
     write_page(page, identified.page(model, sets)?, inputs)
         .context("the model was written, but not its report")

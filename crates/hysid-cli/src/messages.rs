@@ -31,6 +31,15 @@ pub fn results(text: &str) -> Result<()> {
     raw_results(&lines.join("\n"))
 }
 
+/// Writes results to stdout: as one JSON value, or as text for a reader.
+pub fn told<T: Serialize>(
+    as_json: bool,
+    value: impl FnOnce() -> Result<T>,
+    text: impl FnOnce() -> String,
+) -> Result<()> {
+    if as_json { json_results(&value()?) } else { results(&text()) }
+}
+
 /// Writes results to stdout as one JSON value.
 pub fn json_results(value: &impl Serialize) -> Result<()> {
     raw_results(&terminal::json(value)?)

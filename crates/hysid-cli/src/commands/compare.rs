@@ -1,12 +1,11 @@
 //! `hysid compare`: every model on the same data.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use hysid::data::summary::Summary;
 use hysid::options::ModelName;
 use hysid::options::chosen::NamedOptions;
-use hysid_files::{Destination, Kind};
 use hysid_records::Roles;
 use hysid_report::data_warnings;
 
@@ -16,11 +15,12 @@ use crate::comparison::{self, Data as Compared};
 use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
 use crate::interrupt;
-use crate::messages::{json_results, note, results, summarised, warning};
+use crate::messages::{note, summarised, told, warning};
 
 pub fn run(arguments: &Compare) -> Result<Outcome> {
-    let page = (!arguments.no_report)
-        .then(|| Destination::new(page_path(arguments), Kind::Page, arguments.overwriting.force));
+    let path =
+        arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.train[0], "-compared.html"));
+    let page = files::page(arguments.no_report, path, arguments.overwriting.force);
     let tables = read_tables(&arguments.train, &arguments.columns.reading)?;
     let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let test = match &arguments.test {
@@ -34,10 +34,13 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
         }
         None => None,
     };
-    let inputs: Vec<&Path> = arguments.train.iter().chain(&arguments.test).map(PathBuf::as_path).collect();
-    check_outputs(&page.iter().collect::<Vec<_>>(), &inputs)?;
-    let models: Vec<ModelName> =
-        if arguments.models.is_empty() { every_model() } else { arguments.models.clone() };
+    let inputs: Vec<&PathBuf> = arguments.train.iter().chain(&arguments.test).collect();
+    check_outputs(&page, &inputs)?;
+    let models: Vec<ModelName> = match arguments.models.is_empty() {
+        // The automatic model takes longest and is begun first.
+        true => std::iter::once(ModelName::AUTO).chain(ModelName::all()).collect(),
+        false => arguments.models.clone(),
+    };
     let file = tables[0].file.clone();
     let train = data_with(tables, roles, arguments.columns.reading.zero)?;
     let mut requests = Vec::new();
@@ -54,10 +57,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     }
     interrupt::listen("stopping; the finished fits are compared")?;
     let rows = comparison::run(&Compared { train: &train, test: test.as_ref() }, &requests, arguments)?;
-    match arguments.json {
-        true => json_results(&comparison::printed(&rows))?,
-        false => results(&comparison::table(&rows, test.is_some()))?,
-    }
+    told(arguments.json, || Ok(comparison::printed(&rows)), || comparison::table(&rows, test.is_some()))?;
     if let Some(page) = &page {
         let title = format!("Models compared: {}", train.source.tables[0].file);
         let content = comparison::page(&title, &train.set, test.as_ref().map(|test| &test.set), &rows)?;
@@ -65,14 +65,4 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
         note(format_args!("page    {}", files::shown(page.path())));
     }
     Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
-}
-
-/// The automatic model, which takes longest and is begun first, and all others.
-fn every_model() -> Vec<ModelName> {
-    std::iter::once(ModelName::AUTO).chain(ModelName::all()).collect()
-}
-
-/// The page: as asked, or the first table's name in the present folder.
-fn page_path(arguments: &Compare) -> PathBuf {
-    arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.train[0], "-compared.html"))
 }

@@ -19,9 +19,9 @@ use crate::messages::{note_labelled, raw_results, results, warning};
 
 pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
     let outputs = Outputs::of(arguments)?;
-    let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
-    let contents: Vec<Vec<u8>> = inputs.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
-    check_outputs(&outputs.table.iter().chain(&outputs.page).collect::<Vec<_>>(), &inputs)?;
+    let contents: Vec<Vec<u8>> =
+        arguments.files.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
+    check_outputs(outputs.table.iter().chain(&outputs.page), &arguments.files)?;
     let (options, factor) = (arguments.options(), arguments.smoothing_factor);
     match Given::of(&arguments.files, contents, &arguments.columns.reading, "give it")? {
         Given::Model(content) => {
@@ -32,7 +32,7 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
             }
             let cycles = Cycles::of_model(path, &model, &options, factor)?;
             note_labelled(&cycles.understood);
-            tell(arguments, &outputs, &inputs, &cycles)
+            tell(arguments, &outputs, &cycles)
         }
         Given::Tables(tables) => {
             let data = data_of(tables, &arguments.columns)?;
@@ -43,7 +43,7 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
                 warning("cycles ignores --rate: it needs no rate");
             }
             let cycles = Cycles::of_data(&data, &options, &arguments.corrections(), (factor, understood))?;
-            tell(arguments, &outputs, &inputs, &cycles)
+            tell(arguments, &outputs, &cycles)
         }
     }
 }
@@ -68,10 +68,8 @@ impl Outputs {
         let begun = |path: PathBuf, beginning: &[u8]| {
             Destination::new(path, Kind::Beginning(beginning.to_vec()), force)
         };
-        let page =
-            (!arguments.no_report).then(|| Destination::new(path.with_extension("html"), Kind::Page, force));
         Ok(Self {
-            page,
+            page: files::page(arguments.no_report, path.with_extension("html"), force),
             curves: Some(begun(path.with_extension("forc.csv"), BEGINNING_OF_CURVES)),
             table: Some(begun(path, BEGINNING)),
         })
@@ -79,12 +77,7 @@ impl Outputs {
 }
 
 /// Prints and writes the results.
-fn tell(
-    arguments: &arguments::Cycles,
-    outputs: &Outputs,
-    inputs: &[&Path],
-    cycles: &Cycles,
-) -> Result<Outcome> {
+fn tell(arguments: &arguments::Cycles, outputs: &Outputs, cycles: &Cycles) -> Result<Outcome> {
     let table = cycles::csv(cycles)?;
     let Some(destination) = &outputs.table else {
         raw_results(&String::from_utf8(table)?)?;
@@ -92,14 +85,14 @@ fn tell(
     };
     let curves = cycles.curves.as_ref().zip(outputs.curves.as_ref());
     if let Some((_, destination)) = curves {
-        check_outputs(&[destination], inputs)?;
+        check_outputs([destination], &arguments.files)?;
     }
     files::write(destination, &table)?;
     if let Some((curves, destination)) = curves {
         files::write(destination, &cycles::curves_csv(cycles, curves)?)?;
     }
     if let Some(page) = &outputs.page {
-        files::write_page(page, cycles::page(cycles), inputs)?;
+        files::write_page(page, cycles::page(cycles), &arguments.files)?;
     }
     let path = |destination: &Destination| destination.path().to_path_buf();
     let written = Files {
@@ -118,17 +111,11 @@ fn tell(
 
 /// Options that were asked for and that concern data only.
 fn useless_for_models(arguments: &arguments::Cycles) -> Vec<&'static str> {
-    let (columns, defaults) = (&arguments.columns, CycleOptions::default());
-    let asked = [
-        ("--record", columns.record.is_some()),
-        ("--time", columns.time.is_some()),
-        ("--input", !columns.input.is_empty()),
-        ("--output", columns.output.is_some()),
-        ("--rate", columns.rate != RateOption::Choice(RateChoice::Auto)),
+    let further = [
         ("--smallest-reversal", arguments.smallest_reversal.is_some()),
         ("--subtract", !arguments.subtract.is_empty()),
         ("--center", arguments.center),
-        ("--smoothing", arguments.smoothing != defaults.smoothing),
+        ("--smoothing", arguments.smoothing != CycleOptions::default().smoothing),
     ];
-    asked.into_iter().filter(|(_, asked)| *asked).map(|(option, _)| option).collect()
+    arguments.columns.given(&further)
 }

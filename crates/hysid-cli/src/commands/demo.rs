@@ -15,7 +15,7 @@ use hysid_tables::{Reading, Table};
 use crate::Outcome;
 use crate::arguments::{Arguments, Command, Demo};
 use crate::data::data_of;
-use crate::files::{self, check_outputs};
+use crate::files::{self, NO_INPUTS, check_outputs};
 use crate::identification::{self, Work, identify, note_interrupted};
 use crate::interrupt;
 use crate::messages::{note, results};
@@ -34,7 +34,7 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
     let (test, test_text) = table("demo-test.csv", &ferromagnet.test())?;
     let (model, loops) = (place("demo.json", Kind::Model), place("demo-loops.svg", Kind::Drawing));
     let report = place("demo.html", Kind::Page);
-    check_outputs(&[&train, &test, &model, &loops, &report], &[])?;
+    check_outputs([&train, &test, &model, &loops, &report], &NO_INPUTS)?;
     note(format_args!("A ferromagnetic sheet, M330-50A: field H drives flux density B. Synthetic data."));
     note(format_args!(""));
     files::write(&train, &train_text)?;

@@ -1,13 +1,10 @@
 //! `hysid diagnose`: what kind of hysteresis measured data or a model have.
 
-use std::path::{Path, PathBuf};
-
 use anyhow::Result;
 use hysid::data::summary::Summary;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::options::chosen::RateChoice;
 use hysid_document::Page;
-use hysid_files::{Destination, Kind};
 use hysid_records::understanding;
 use hysid_report::diagnosis::{DataDiagnosis, DiagnosedModel};
 use hysid_tables::Table;
@@ -27,18 +24,19 @@ struct Told {
 }
 
 pub fn run(arguments: &Diagnose) -> Result<Outcome> {
-    let page = (!arguments.no_report)
-        .then(|| Destination::new(page_path(arguments), Kind::Page, arguments.overwriting.force));
-    let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
-    let contents: Vec<Vec<u8>> = inputs.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
-    check_outputs(&page.iter().collect::<Vec<_>>(), &inputs)?;
+    let path =
+        arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.files[0], ".diagnosis.html"));
+    let page = files::page(arguments.no_report, path, arguments.overwriting.force);
+    let contents: Vec<Vec<u8>> =
+        arguments.files.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
+    check_outputs(&page, &arguments.files)?;
     let told = match Given::of(&arguments.files, contents, &arguments.columns.reading, "diagnose it")? {
         Given::Model(content) => of_model(arguments, content)?,
         Given::Tables(tables) => of_data(arguments, tables)?,
     };
     results(&told.text)?;
     if let (Some(destination), Some(page)) = (&page, told.page) {
-        files::write_page(destination, page, &inputs)?;
+        files::write_page(destination, page, &arguments.files)?;
         note(format_args!("page    {}", files::shown(destination.path())));
     }
     Ok(Outcome::Done)
@@ -81,19 +79,8 @@ fn of_model(arguments: &Diagnose, content: Vec<u8>) -> Result<Told> {
 /// Options that were asked for and that concern data only.
 fn useless_for_models(columns: &ColumnOptions, options: &DiagnosisOptions) -> Vec<&'static str> {
     let defaults = DiagnosisOptions::default();
-    let asked = [
-        ("--record", columns.record.is_some()),
-        ("--time", columns.time.is_some()),
-        ("--input", !columns.input.is_empty()),
-        ("--output", columns.output.is_some()),
-        ("--rate", columns.rate != RateOption::Choice(RateChoice::Auto)),
+    columns.given(&[
         ("--smallest-reversal", options.smallest_reversal != defaults.smallest_reversal),
         ("--smoothing", options.smoothing != defaults.smoothing),
-    ];
-    asked.into_iter().filter(|(_, asked)| *asked).map(|(option, _)| option).collect()
-}
-
-/// The page: as asked, or the first file's name in the present folder.
-fn page_path(arguments: &Diagnose) -> PathBuf {
-    arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.files[0], ".diagnosis.html"))
+    ])
 }

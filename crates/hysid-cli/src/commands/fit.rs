@@ -27,19 +27,16 @@ use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
 use crate::identification::{self, Work, identify, report_path};
 use crate::interrupt;
-use crate::messages::{Usage, json_results, note, results, warning};
+use crate::messages::{Usage, note, told, warning};
 
 pub fn run(arguments: &Fit) -> Result<Outcome> {
     let force = arguments.overwriting.force;
     let model = Destination::new(out(arguments)?, Kind::Model, force);
-    let report =
-        (!arguments.no_report).then(|| Destination::new(report_path(model.path()), Kind::Page, force));
+    let report = files::page(arguments.no_report, report_path(model.path()), force);
     let tables = read_tables(&arguments.train, &arguments.columns.reading)?;
     let begun = arguments.resume.as_deref().map(checkpoint::read).transpose()?;
     let checkpoint = checkpoint_destination(arguments);
-    let outputs: Vec<&Destination> = std::iter::once(&model).chain(&report).chain(&checkpoint).collect();
-    let inputs: Vec<&Path> = arguments.train.iter().map(PathBuf::as_path).collect();
-    check_outputs(&outputs, &inputs)?;
+    check_outputs(std::iter::once(&model).chain(&report).chain(&checkpoint), &arguments.train)?;
     let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let chosen = &arguments.model.0;
     let file = tables[0].file.clone();
@@ -70,13 +67,11 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let sets = [("training", trained.as_ref())];
     let reported = report
         .as_ref()
-        .map_or(Ok(()), |page| identification::write_report(&identified, page, out, &sets, &inputs));
+        .map_or(Ok(()), |page| identification::write_report(&identified, page, out, &sets, &arguments.train));
     let mut written = vec![("model", out)];
     written.extend(report.iter().filter(|_| reported.is_ok()).map(|page| ("report", page.path())));
-    match arguments.json {
-        true => json_results(&Printed::of(&identified, out, &trained)?)?,
-        false => results(&(identification::printed(&identified, None, &written) + &next(out)))?,
-    }
+    let text = || identification::printed(&identified, None, &written) + &next(out);
+    told(arguments.json, || Printed::of(&identified, out, &trained), text)?;
     reported?;
     if interrupt::requested() {
         identification::note_interrupted(out);

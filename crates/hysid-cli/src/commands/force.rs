@@ -10,7 +10,7 @@ use crate::Outcome;
 use crate::arguments::Force;
 use crate::files::{self, check_outputs};
 use crate::help;
-use crate::messages::{json_results, note_labelled, raw_results, results, warning};
+use crate::messages::{note_labelled, raw_results, told, warning};
 use crate::motion::{MeasuredMotion, Printed, Written, summary, understood, warnings};
 
 pub fn run(arguments: &Force) -> Result<Outcome> {
@@ -23,7 +23,7 @@ pub fn run(arguments: &Force) -> Result<Outcome> {
     let header = written.header()?;
     let out = (!to_stdout)
         .then(|| Destination::new(path, Kind::Beginning(header.clone()), arguments.overwriting.force));
-    check_outputs(&out.iter().collect::<Vec<_>>(), &[&arguments.data])?;
+    check_outputs(&out, &[&arguments.data])?;
 
     let zero = arguments.reading.zero;
     let found = motion.restoring_force(&arguments.mass, arguments.window, zero)?;
@@ -35,11 +35,9 @@ pub fn run(arguments: &Force) -> Result<Outcome> {
         return Ok(Outcome::Done);
     };
     files::write(out, &text)?;
-    match arguments.json {
-        true => json_results(&Printed::of(&motion, &found, Some(out.path())))?,
-        false => results(&summary(&motion, &found, Some(out.path())))?,
-    }
-    files::say_written([("table", Some(out.path()))]);
+    let path = Some(out.path());
+    told(arguments.json, || Ok(Printed::of(&motion, &found, path)), || summary(&motion, &found, path))?;
+    files::say_written([("table", path)]);
     Ok(Outcome::Done)
 }
 

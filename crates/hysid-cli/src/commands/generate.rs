@@ -12,8 +12,8 @@ use hysid_records::csv_text;
 
 use crate::Outcome;
 use crate::arguments::Generate;
-use crate::files::{self, check_outputs};
-use crate::messages::{Usage, json_results, note, raw_results, results};
+use crate::files::{self, NO_INPUTS, check_outputs};
+use crate::messages::{Usage, note, raw_results, told};
 
 pub fn run(arguments: &Generate) -> Result<Outcome> {
     match arguments.specimen {
@@ -45,7 +45,7 @@ fn generate(specimen: &Specimen, arguments: &Generate) -> Result<()> {
     let test = set(test, "test", specimen.test_with_seed(seed), !seed)?;
     let file = |set: &'_ Option<Set>| set.as_ref().and_then(|set| set.destination.clone());
     let [train_file, test_file] = [&train, &test].map(file);
-    check_outputs(&train_file.iter().chain(&test_file).collect::<Vec<_>>(), &[])?;
+    check_outputs(train_file.iter().chain(&test_file), &NO_INPUTS)?;
 
     train.iter().chain(&test).try_for_each(Set::write)?;
     if train_file.is_some() || test_file.is_some() {
@@ -98,10 +98,8 @@ fn next(train: Option<&Path>, test: Option<&Path>) -> String {
 
 fn list(json: bool) -> Result<()> {
     let specimens = Specimen::all().iter().copied();
-    match json {
-        true => json_results(&specimens.map(Described::of).collect::<Vec<_>>()),
-        false => results(&specimens.map(description).collect::<Vec<_>>().join("\n")),
-    }
+    let described = || Ok(specimens.clone().map(Described::of).collect::<Vec<_>>());
+    told(json, described, || specimens.clone().map(description).collect::<Vec<_>>().join("\n"))
 }
 
 /// What `--list` prints of a specimen.

@@ -22,7 +22,7 @@ use crate::data::factors;
 use crate::errors_table::errors_table;
 use crate::files::{self, check_outputs};
 use crate::inversion::{self, Bounds, Inverted, Wanted};
-use crate::messages::{json_results, note_labelled, raw_results, results, warning};
+use crate::messages::{note_labelled, raw_results, told, warning};
 use crate::terminal::clipped;
 
 pub fn run(arguments: &Invert) -> Result<Outcome> {
@@ -38,8 +38,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     let drive = out.map(|out| Destination::new(out, Kind::Beginning(header.clone()), force));
     let page_path = out.filter(|_| !arguments.no_report).map(|out| out.with_extension("html"));
     let page = page_path.as_ref().map(|path| Destination::new(path.clone(), Kind::Page, force));
-    let destinations: Vec<&Destination> = drive.iter().chain(&page).collect();
-    check_outputs(&destinations, &[&arguments.reference, &arguments.model])?;
+    check_outputs(drive.iter().chain(&page), &[&arguments.reference, &arguments.model])?;
 
     let bounds = Bounds {
         limits: arguments.limits,
@@ -63,10 +62,8 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
         None => raw_results(&String::from_utf8(text)?)?,
         Some(drive) => {
             files::write(drive, &text)?;
-            match arguments.json {
-                true => json_results(&Printed::of(&model, drive.path(), page_path.as_deref(), &inverted))?,
-                false => results(&summary(&model, &inverted))?,
-            }
+            let printed = || Ok(Printed::of(&model, drive.path(), page_path.as_deref(), &inverted));
+            told(arguments.json, printed, || summary(&model, &inverted))?;
         }
     }
     if let Some(page) = &page {

@@ -99,8 +99,7 @@ fn write(out: &Path, data: &Data, arguments: &Look) -> Result<()> {
     let text = csv_text(&data.set)?;
     let header = text.lines().next().unwrap_or_default().as_bytes().to_vec();
     let out = Destination::new(out, Kind::Beginning(header), arguments.overwriting.force);
-    let inputs: Vec<&Path> = arguments.files.iter().map(|path| path.as_path()).collect();
-    check_outputs(&[&out], &inputs)?;
+    check_outputs([&out], &arguments.files)?;
     files::write(&out, text.as_bytes())?;
     note(format_args!("table   {}", files::shown(out.path())));
     Ok(())

@@ -9,7 +9,7 @@ use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::{self, Arguments};
-use crate::files::{self, check_outputs};
+use crate::files::{self, NO_INPUTS, check_outputs};
 use crate::messages::note;
 
 /// Begins every page, so that Hysid knows its own again. It is a comment of roff.
@@ -23,7 +23,7 @@ pub fn run(arguments: &arguments::Man) -> Result<Outcome> {
         Destination::new(arguments.out.join(name), kind, arguments.overwriting.force)
     };
     let destinations: Vec<Destination> = pages.iter().map(|(name, _)| destination(name)).collect();
-    check_outputs(&destinations.iter().collect::<Vec<_>>(), &[])?;
+    check_outputs(&destinations, &NO_INPUTS)?;
     for (destination, (_, page)) in destinations.iter().zip(&pages) {
         files::write(destination, page)?;
     }

@@ -8,25 +8,19 @@ use crate::arguments::Models;
 use crate::commands::model_from_bytes;
 use crate::files;
 use crate::inspection::Inspected;
-use crate::messages::{json_results, results};
+use crate::messages::told;
 
 pub fn run(arguments: &Models) -> Result<Outcome> {
     match &arguments.model {
         None => {
             let all = models::all();
-            match arguments.json {
-                true => json_results(&all)?,
-                false => results(&models::text(&all))?,
-            }
+            told(arguments.json, || Ok(&all), || models::text(&all))?;
         }
         Some(path) => {
             let content = files::read(path)?;
             let model = model_from_bytes(path, content.clone())?;
             let inspected = Inspected::of(path, &content, &model)?;
-            match arguments.json {
-                true => json_results(&inspected.printed())?,
-                false => results(&inspected.text())?,
-            }
+            told(arguments.json, || Ok(inspected.printed()), || inspected.text())?;
         }
     }
     Ok(Outcome::Done)

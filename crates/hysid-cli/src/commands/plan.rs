@@ -13,7 +13,7 @@ use crate::Outcome;
 use crate::arguments;
 use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
-use crate::messages::{Usage, json_results, note_labelled, raw_results, results};
+use crate::messages::{Usage, note_labelled, raw_results, told};
 use crate::planning::{self, Planned};
 
 pub fn run(arguments: &arguments::Plan) -> Result<Outcome> {
@@ -43,7 +43,6 @@ fn of_kind(arguments: &arguments::Plan, kind: &str) -> Result<Outcome> {
     let out =
         arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.drive.csv", protocol.name())));
     let outputs = Outputs::of(arguments, out, &plan.names)?;
-    outputs.check(&[])?;
     let planned = Planned {
         plan: &plan,
         title: format!("First test: {}", protocol.name()),
@@ -59,8 +58,6 @@ fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
     let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let out = arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.like[0], ".drive.csv"));
     let outputs = Outputs::of(arguments, out, &roles.names())?;
-    let inputs: Vec<&Path> = arguments.like.iter().map(PathBuf::as_path).collect();
-    outputs.check(&inputs)?;
     let data = data_with(tables, roles, arguments.columns.reading.zero)?;
     let count = data.roles.inputs.len();
     if count > 1 {
@@ -131,14 +128,10 @@ impl Outputs {
             return Err(Usage(format!("{}: {advice}", path.display())).into());
         }
         let force = arguments.overwriting.force;
-        let page =
-            (!arguments.no_report).then(|| Destination::new(path.with_extension("html"), Kind::Page, force));
+        let page = files::page(arguments.no_report, path.with_extension("html"), force);
         let table = Some(Destination::new(path, Kind::Beginning(header.clone()), force));
+        check_outputs(table.iter().chain(&page), &arguments.like)?;
         Ok(Self { header, table, page })
-    }
-
-    fn check(&self, inputs: &[&Path]) -> Result<()> {
-        check_outputs(&self.table.iter().chain(&self.page).collect::<Vec<_>>(), inputs)
     }
 }
 
@@ -151,14 +144,11 @@ fn tell(arguments: &arguments::Plan, outputs: &Outputs, planned: &Planned<'_>) -
     };
     files::write(destination, &table)?;
     if let Some(page) = &outputs.page {
-        let inputs: Vec<&Path> = arguments.like.iter().map(PathBuf::as_path).collect();
-        files::write_page(page, planning::page(planned), &inputs)?;
+        files::write_page(page, planning::page(planned), &arguments.like)?;
     }
     let page = outputs.page.as_ref().map(Destination::path);
-    match arguments.json {
-        true => json_results(&planning::Printed::of(planned.plan, destination.path(), page))?,
-        false => results(&planning::text(planned))?,
-    }
+    let printed = || Ok(planning::Printed::of(planned.plan, destination.path(), page));
+    told(arguments.json, printed, || planning::text(planned))?;
     files::say_written([("drive", Some(destination.path())), ("page", page)]);
     Ok(Outcome::Done)
 }

@@ -26,8 +26,7 @@ pub fn run(arguments: &Plot) -> Result<Outcome> {
     let out = arguments.out.clone().unwrap_or_else(|| files::named_after(&tables[0], &ending));
     let format = Format::of(&out)?;
     let destination = Destination::new(out, Kind::Drawing, arguments.overwriting.force);
-    let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
-    check_outputs(&[&destination], &inputs)?;
+    check_outputs([&destination], &arguments.files)?;
     let subject = match &model {
         Some(model) => simulated(arguments, model, tables)?,
         None => measured(arguments, tables)?,

@@ -46,7 +46,7 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let kind = Kind::Beginning(header.clone());
     let out = out.map(|out| Destination::new(out, kind, arguments.overwriting.force));
     if let Some(out) = &out {
-        check_outputs(&[out], &[&arguments.data, &arguments.model])?;
+        check_outputs([out], &[&arguments.data, &arguments.model])?;
         interrupt::listen_briefly("stopping before the end of the table")?;
     }
     let roles = Roles::of_model(&model, &rows.head, &arguments.columns.choice(), false)?;

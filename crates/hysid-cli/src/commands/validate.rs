@@ -9,15 +9,14 @@ use hysid::significant::Significant;
 use hysid::termination::Termination;
 use hysid::validation::{CrossValidation, CrossValidator, FoldErrors};
 use hysid_document::plain::{WIDTH, aligned, wrapped};
-use hysid_records::Roles;
 
 use crate::Outcome;
 use crate::arguments::Validate;
 use crate::commands::fit::warn_of_ignored;
-use crate::data::{data_with, read_tables};
+use crate::data::{data_of, read_tables};
 use crate::identification::{check_memory, say_beforehand, thread_pool};
 use crate::interrupt;
-use crate::messages::{insist, json_results, results};
+use crate::messages::{insist, told};
 use crate::progress::Follower;
 
 /// What came of the folds, and how it came about.
@@ -36,9 +35,8 @@ struct Validated {
 pub fn run(arguments: &Validate) -> Result<Outcome> {
     let tables = read_tables(&arguments.data, &arguments.columns.reading)?;
     let file = tables[0].file.clone();
-    let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let chosen = &arguments.model.0;
-    let data = data_with(tables, roles, arguments.columns.reading.zero)?;
+    let data = data_of(tables, &arguments.columns)?;
     let request = arguments.columns.rate.request(chosen, &data.set).with_context(|| file.clone())?;
     warn_of_ignored(chosen);
     let mut validator =
@@ -91,10 +89,7 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     };
     let model = request.model().name();
     let validated = Validated { model, folds_in_all: all, folds_stopped: stopped, seconds, errors };
-    match arguments.json {
-        true => json_results(&validated)?,
-        false => results(&validated.text())?,
-    }
+    told(arguments.json, || Ok(&validated), || validated.text())?;
     if interrupt::requested() {
         insist(format_args!("interrupted: {} of {all} folds are finished", validated.errors.folds.len()));
         return Ok(Outcome::Interrupted);

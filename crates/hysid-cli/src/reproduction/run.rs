@@ -34,7 +34,7 @@ pub fn run(experiments: &[Experiment], settings: Settings, outputs: Outputs) -> 
     let together = if everything { outputs.rendered(TOGETHER).to_vec() } else { Vec::new() };
     let mut destinations: Vec<_> = experiments.iter().flat_map(|&one| outputs.of(one)).collect();
     destinations.extend(together);
-    files::check_outputs(&destinations.iter().collect::<Vec<_>>(), &[])?;
+    files::check_outputs(&destinations, &files::NO_INPUTS)?;
     let finished = finished(&experiments, settings)?;
     for (experiment, one) in &finished {
         write_one(*experiment, one, settings, outputs)?;
