@@ -9,7 +9,7 @@ use crate::program::unused::used_arrays;
 use crate::program::{Declaration, Program, Storage};
 use crate::reserved;
 use crate::subject::{File, Subject};
-use crate::target::printer::{Binding, Language, Printer};
+use crate::target::printer::{Binding, Language, Printer, Syntax};
 use crate::target::{BackEnd, Written};
 use crate::vectors::Action;
 
@@ -343,6 +343,23 @@ impl Matlab {
 }
 
 impl Language for Matlab {
+    const SYNTAX: Syntax = Syntax {
+        // Not written: programs for MATLAB have no choices in expressions.
+        choice: |condition, yes, no| (format!("choose({condition}, {yes}, {no})"), Binding::Atom),
+        logic: ["&&", "||", "~"],
+        to_whole: |real| format!("fix({real})"),
+        to_real: |whole| whole.to_string(),
+        declare: |variable, value, _| format!("{variable} = {value};"),
+        declare_whole: |variable, value| format!("{variable} = {value};"),
+        assign: |to, value| format!("{to} = {value};"),
+        remark: |text| format!("% {text}"),
+        each: |variable, first, last| format!("for {variable} = {first}:{last} - 1"),
+        while_true: |condition| format!("while {condition}"),
+        when: |condition| format!("if {condition}"),
+        otherwise: "else",
+        end: Some("end"),
+    };
+
     fn number(&self, value: f64) -> String {
         match value.is_infinite() {
             true => if value < 0.0 { "-Inf" } else { "Inf" }.to_string(),
@@ -384,58 +401,5 @@ impl Language for Matlab {
             Binary::CopySign => Some("with_sign"),
             Binary::Hypotenuse => Some("hypot"),
         }
-    }
-
-    /// Not written: programs for MATLAB have no choices in expressions.
-    fn choice(&self, condition: &str, yes: &str, no: &str) -> (String, Binding) {
-        (format!("choose({condition}, {yes}, {no})"), Binding::Atom)
-    }
-
-    fn logic(&self) -> [&'static str; 3] {
-        ["&&", "||", "~"]
-    }
-
-    fn to_whole(&self, real: &str) -> String {
-        format!("fix({real})")
-    }
-
-    fn to_real(&self, whole: &str) -> String {
-        whole.to_string()
-    }
-
-    fn declare(&self, variable: &str, value: &str, _: bool) -> String {
-        self.assign(variable, value)
-    }
-
-    fn declare_whole(&self, variable: &str, value: &str) -> String {
-        self.assign(variable, value)
-    }
-
-    fn assign(&self, to: &str, value: &str) -> String {
-        format!("{to} = {value};")
-    }
-
-    fn remark(&self, text: &str) -> String {
-        format!("% {text}")
-    }
-
-    fn each(&self, variable: &str, first: &str, last: &str) -> String {
-        format!("for {variable} = {first}:{last} - 1")
-    }
-
-    fn while_true(&self, condition: &str) -> String {
-        format!("while {condition}")
-    }
-
-    fn when(&self, condition: &str) -> String {
-        format!("if {condition}")
-    }
-
-    fn otherwise(&self) -> &'static str {
-        "else"
-    }
-
-    fn end(&self) -> Option<&'static str> {
-        Some("end")
     }
 }

@@ -20,6 +20,7 @@ pub(crate) enum Binding {
 
 /// How a language writes what differs between languages.
 pub(crate) trait Language {
+    const SYNTAX: Syntax;
     fn number(&self, value: f64) -> String;
     /// An element of an array with this index, which counts from 0. A constant index of an argument is its number.
     fn element(&self, declaration: &Declaration, index: &str) -> String;
@@ -27,26 +28,31 @@ pub(crate) trait Language {
     fn unary(&self, function: Unary) -> Option<&'static str>;
     /// A function of two numbers; `None` for an infix operator. A quotient by a constant has its operator in any case.
     fn binary(&self, function: Binary) -> Option<&'static str>;
-    fn choice(&self, condition: &str, yes: &str, no: &str) -> (String, Binding);
+}
+
+/// How a language writes what is the same for all its programs.
+pub(crate) struct Syntax {
+    /// Of a condition and two numbers.
+    pub choice: fn(&str, &str, &str) -> (String, Binding),
     /// Both conditions, one or both, the opposite.
-    fn logic(&self) -> [&'static str; 3];
+    pub logic: [&'static str; 3],
     /// A real number as a whole one, as an atom.
-    fn to_whole(&self, real: &str) -> String;
+    pub to_whole: fn(&str) -> String,
     /// A whole number as a real one, as an atom.
-    fn to_real(&self, whole: &str) -> String;
-    fn declare(&self, variable: &str, value: &str, is_constant: bool) -> String;
-    /// Declares a variable with a whole number, which may be assigned.
-    fn declare_whole(&self, variable: &str, value: &str) -> String;
-    fn assign(&self, to: &str, value: &str) -> String;
-    fn remark(&self, text: &str) -> String;
-    /// First lines of a loop over numbers, a loop with a condition, a branch.
-    fn each(&self, variable: &str, first: &str, last: &str) -> String;
-    fn while_true(&self, condition: &str) -> String;
-    fn when(&self, condition: &str) -> String;
+    pub to_real: fn(&str) -> String,
+    /// Of a variable, its value, and whether it stays as it is.
+    pub declare: fn(&str, &str, bool) -> String,
+    pub declare_whole: fn(&str, &str) -> String,
+    pub assign: fn(&str, &str) -> String,
+    pub remark: fn(&str) -> String,
+    /// First line of a loop over numbers, of a variable, the first number, and the one behind the last.
+    pub each: fn(&str, &str, &str) -> String,
+    pub while_true: fn(&str) -> String,
+    pub when: fn(&str) -> String,
     /// Line between the two blocks of a branch.
-    fn otherwise(&self) -> &'static str;
+    pub otherwise: &'static str,
     /// Last line of a block; `None` if indentation ends it.
-    fn end(&self) -> Option<&'static str>;
+    pub end: Option<&'static str>,
 }
 
 pub(crate) struct Printer<'a, L> {
@@ -74,7 +80,7 @@ impl<'a, L: Language> Printer<'a, L> {
     }
 
     fn block(&self, statements: &[Statement], depth: usize, text: &mut String) {
-        let language = self.language;
+        let syntax = L::SYNTAX;
         let indent = "    ".repeat(depth);
         let line = |text: &mut String, content: &str| {
             *text += &indent;
@@ -83,52 +89,52 @@ impl<'a, L: Language> Printer<'a, L> {
         };
         for statement in statements {
             match statement {
-                Statement::Remark(remark) => line(text, &language.remark(remark)),
+                Statement::Remark(remark) => line(text, &(syntax.remark)(remark)),
                 Statement::ForSlope(_) => {}
                 Statement::Let(variable, value) => {
                     let value = self.real(value, Binding::Choice);
                     let is_constant = !self.assigned.contains(variable);
-                    line(text, &language.declare(&format!("v{}", variable.0), &value, is_constant));
+                    line(text, &(syntax.declare)(&format!("v{}", variable.0), &value, is_constant));
                 }
                 Statement::Assign(variable, value) => {
                     let value = self.real(value, Binding::Choice);
-                    line(text, &language.assign(&format!("v{}", variable.0), &value));
+                    line(text, &(syntax.assign)(&format!("v{}", variable.0), &value));
                 }
                 Statement::LetWhole(variable, value) => {
                     let value = self.whole(value, Binding::Sum);
-                    line(text, &language.declare_whole(&format!("k{}", variable.0), &value));
+                    line(text, &(syntax.declare_whole)(&format!("k{}", variable.0), &value));
                 }
                 Statement::AssignWhole(variable, value) => {
                     let value = self.whole(value, Binding::Sum);
-                    line(text, &language.assign(&format!("k{}", variable.0), &value));
+                    line(text, &(syntax.assign)(&format!("k{}", variable.0), &value));
                 }
                 Statement::Set(array, index, value) => {
                     let value = self.real(value, Binding::Choice);
-                    line(text, &language.assign(&self.element(*array, index), &value));
+                    line(text, &(syntax.assign)(&self.element(*array, index), &value));
                 }
                 Statement::Each(variable, first, last, body) => {
                     let (first, last) = (self.whole(first, Binding::Sum), self.whole(last, Binding::Sum));
-                    line(text, &language.each(&format!("k{}", variable.0), &first, &last));
+                    line(text, &(syntax.each)(&format!("k{}", variable.0), &first, &last));
                     self.block(body, depth + 1, text);
-                    language.end().into_iter().for_each(|end| line(text, end));
+                    syntax.end.into_iter().for_each(|end| line(text, end));
                 }
                 Statement::While(condition, body) => {
-                    line(text, &language.while_true(&self.truth(condition, Binding::Choice)));
+                    line(text, &(syntax.while_true)(&self.truth(condition, Binding::Choice)));
                     self.block(body, depth + 1, text);
-                    language.end().into_iter().for_each(|end| line(text, end));
+                    syntax.end.into_iter().for_each(|end| line(text, end));
                 }
                 Statement::If(condition, yes, no) => {
                     let (condition, yes, no) = match yes.is_empty() {
                         false => (condition.clone(), yes, no),
                         true => (condition.clone().negated(), no, yes),
                     };
-                    line(text, &language.when(&self.truth(&condition, Binding::Choice)));
+                    line(text, &(syntax.when)(&self.truth(&condition, Binding::Choice)));
                     self.block(yes, depth + 1, text);
                     if !no.is_empty() {
-                        line(text, language.otherwise());
+                        line(text, syntax.otherwise);
                         self.block(no, depth + 1, text);
                     }
-                    language.end().into_iter().for_each(|end| line(text, end));
+                    syntax.end.into_iter().for_each(|end| line(text, end));
                 }
             }
         }
@@ -164,9 +170,9 @@ impl<'a, L: Language> Printer<'a, L> {
             Real::Choice(condition, yes, no) => {
                 let condition = self.truth(condition, Binding::Or);
                 let (yes, no) = (self.real(yes, Binding::Or), self.real(no, Binding::Or));
-                language.choice(&condition, &yes, &no)
+                (L::SYNTAX.choice)(&condition, &yes, &no)
             }
-            Real::OfWhole(value) => (language.to_real(&self.whole(value, Binding::Atom)), Binding::Atom),
+            Real::OfWhole(value) => ((L::SYNTAX.to_real)(&self.whole(value, Binding::Atom)), Binding::Atom),
         };
         bracketed(text, binding, around)
     }
@@ -193,13 +199,13 @@ impl<'a, L: Language> Printer<'a, L> {
             Whole::Sum(a, b) => infix("+", a, b, Binding::Sum, Binding::Product),
             Whole::Difference(a, b) => infix("-", a, b, Binding::Sum, Binding::Product),
             Whole::Product(a, b) => infix("*", a, b, Binding::Product, Binding::Sign),
-            Whole::OfReal(value) => (self.language.to_whole(&self.real(value, Binding::Atom)), Binding::Atom),
+            Whole::OfReal(value) => ((L::SYNTAX.to_whole)(&self.real(value, Binding::Atom)), Binding::Atom),
         };
         bracketed(text, binding, around)
     }
 
     fn truth(&self, condition: &Truth, around: Binding) -> String {
-        let [and, or, not] = self.language.logic();
+        let [and, or, not] = L::SYNTAX.logic;
         let (text, binding) = match condition {
             Truth::Real(comparison, a, b) => {
                 let (a, b) = (self.real(a, Binding::Sum), self.real(b, Binding::Sum));

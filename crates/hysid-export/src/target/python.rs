@@ -11,7 +11,7 @@ use crate::program::unused::used_arrays;
 use crate::program::{Array, Declaration, Program, Storage};
 use crate::reserved;
 use crate::subject::{File, Subject};
-use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
+use crate::target::printer::{Binding, Language, Printer, Syntax, rows_of_numbers};
 use crate::target::{BackEnd, Written};
 
 pub(super) const BACK_END: BackEnd = BackEnd {
@@ -379,6 +379,22 @@ impl Python {
 }
 
 impl Language for Python {
+    const SYNTAX: Syntax = Syntax {
+        choice: |condition, yes, no| (format!("{yes} if {condition} else {no}"), Binding::Choice),
+        logic: ["and", "or", "not "],
+        to_whole: |real| format!("int({real})"),
+        to_real: |whole| format!("float({whole})"),
+        declare: |variable, value, _| format!("{variable} = {value}"),
+        declare_whole: |variable, value| format!("{variable} = {value}"),
+        assign: |to, value| format!("{to} = {value}"),
+        remark: |text| format!("# {text}"),
+        each: |variable, first, last| format!("for {variable} in range({first}, {last}):"),
+        while_true: |condition| format!("while {condition}:"),
+        when: |condition| format!("if {condition}:"),
+        otherwise: "else:",
+        end: None,
+    };
+
     fn number(&self, value: f64) -> String {
         match value.is_infinite() {
             true => if value < 0.0 { "-math.inf" } else { "math.inf" }.to_string(),
@@ -422,57 +438,5 @@ impl Language for Python {
             Binary::CopySign => Some("math.copysign"),
             Binary::Hypotenuse => Some("_hypot"),
         }
-    }
-
-    fn choice(&self, condition: &str, yes: &str, no: &str) -> (String, Binding) {
-        (format!("{yes} if {condition} else {no}"), Binding::Choice)
-    }
-
-    fn logic(&self) -> [&'static str; 3] {
-        ["and", "or", "not "]
-    }
-
-    fn to_whole(&self, real: &str) -> String {
-        format!("int({real})")
-    }
-
-    fn to_real(&self, whole: &str) -> String {
-        format!("float({whole})")
-    }
-
-    fn declare(&self, variable: &str, value: &str, _: bool) -> String {
-        format!("{variable} = {value}")
-    }
-
-    fn declare_whole(&self, variable: &str, value: &str) -> String {
-        format!("{variable} = {value}")
-    }
-
-    fn assign(&self, to: &str, value: &str) -> String {
-        format!("{to} = {value}")
-    }
-
-    fn remark(&self, text: &str) -> String {
-        format!("# {text}")
-    }
-
-    fn each(&self, variable: &str, first: &str, last: &str) -> String {
-        format!("for {variable} in range({first}, {last}):")
-    }
-
-    fn while_true(&self, condition: &str) -> String {
-        format!("while {condition}:")
-    }
-
-    fn when(&self, condition: &str) -> String {
-        format!("if {condition}:")
-    }
-
-    fn otherwise(&self) -> &'static str {
-        "else:"
-    }
-
-    fn end(&self) -> Option<&'static str> {
-        None
     }
 }

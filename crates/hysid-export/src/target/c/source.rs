@@ -10,7 +10,7 @@ use crate::program::unused::used_arrays;
 use crate::program::uses::Uses;
 use crate::program::{Array, Declaration, Precision, Program, Storage};
 use crate::subject::Subject;
-use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
+use crate::target::printer::{Binding, Language, Printer, Syntax, rows_of_numbers};
 
 /// Refuses options of compilers that change results, and switches off the optimisation of gcc that fuses products and sums
 /// in spite of `-ffp-contract=off` (gcc 12: alternating sums and differences become one `vfmaddsub`).
@@ -267,6 +267,26 @@ impl C {
 }
 
 impl Language for C {
+    const SYNTAX: Syntax = Syntax {
+        choice: |condition, yes, no| (format!("{condition} ? {yes} : {no}"), Binding::Choice),
+        logic: ["&&", "||", "!"],
+        to_whole: |real| format!("((int){real})"),
+        to_real: |whole| format!("((real){whole})"),
+        declare: |variable, value, is_constant| {
+            format!("{}real {variable} = {value};", if is_constant { "const " } else { "" })
+        },
+        declare_whole: |variable, value| format!("int {variable} = {value};"),
+        assign: |to, value| format!("{to} = {value};"),
+        remark: |text| format!("/* {text} */"),
+        each: |variable, first, last| {
+            format!("for (int {variable} = {first}; {variable} < {last}; {variable}++) {{")
+        },
+        while_true: |condition| format!("while ({condition}) {{"),
+        when: |condition| format!("if ({condition}) {{"),
+        otherwise: "} else {",
+        end: Some("}"),
+    };
+
     fn number(&self, value: f64) -> String {
         match self.precision {
             _ if value.is_infinite() => {
@@ -314,57 +334,5 @@ impl Language for C {
             Binary::CopySign => Some(self.of_precision("copysign", "copysignf")),
             Binary::Hypotenuse => Some(self.of_precision("hypot", "hypotf")),
         }
-    }
-
-    fn choice(&self, condition: &str, yes: &str, no: &str) -> (String, Binding) {
-        (format!("{condition} ? {yes} : {no}"), Binding::Choice)
-    }
-
-    fn logic(&self) -> [&'static str; 3] {
-        ["&&", "||", "!"]
-    }
-
-    fn to_whole(&self, real: &str) -> String {
-        format!("((int){real})")
-    }
-
-    fn to_real(&self, whole: &str) -> String {
-        format!("((real){whole})")
-    }
-
-    fn declare(&self, variable: &str, value: &str, is_constant: bool) -> String {
-        format!("{}real {variable} = {value};", if is_constant { "const " } else { "" })
-    }
-
-    fn declare_whole(&self, variable: &str, value: &str) -> String {
-        format!("int {variable} = {value};")
-    }
-
-    fn assign(&self, to: &str, value: &str) -> String {
-        format!("{to} = {value};")
-    }
-
-    fn remark(&self, text: &str) -> String {
-        format!("/* {text} */")
-    }
-
-    fn each(&self, variable: &str, first: &str, last: &str) -> String {
-        format!("for (int {variable} = {first}; {variable} < {last}; {variable}++) {{")
-    }
-
-    fn while_true(&self, condition: &str) -> String {
-        format!("while ({condition}) {{")
-    }
-
-    fn when(&self, condition: &str) -> String {
-        format!("if ({condition}) {{")
-    }
-
-    fn otherwise(&self) -> &'static str {
-        "} else {"
-    }
-
-    fn end(&self) -> Option<&'static str> {
-        Some("}")
     }
 }
