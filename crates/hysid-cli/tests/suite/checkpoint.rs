@@ -13,12 +13,6 @@ const FITS: [&str; 4] = [
     "--model xpnn+ --starts 6 --epochs 60",
 ];
 
-fn bench() -> Workbench {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
-    bench
-}
-
 fn fit(arguments: &str) -> String {
     format!("fit good.csv --no-report {arguments}")
 }
@@ -48,7 +42,7 @@ fn appears(bench: &Workbench, name: &str, child: &mut Child) -> bool {
 #[cfg(unix)]
 #[test]
 fn killed_at_any_moment_a_fit_is_taken_up_again_to_the_same_model() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     // Moments spread over the run by a fixed sequence that hits every part of it.
     let mut moment = 0.37;
     for options in FITS {
@@ -80,7 +74,7 @@ fn killed_at_any_moment_a_fit_is_taken_up_again_to_the_same_model() {
 #[cfg(unix)]
 #[test]
 fn a_fit_that_is_interrupted_says_how_to_go_on() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let options = "--model xpnn+ --training hybrid --epochs 100000 --stall 0 --population 20";
     let mut child = bench
         .command(&fit(&format!("{options} -o m.json --checkpoint c.bin")))
@@ -103,7 +97,7 @@ fn a_fit_that_is_interrupted_says_how_to_go_on() {
 #[cfg(unix)]
 #[test]
 fn a_second_fit_on_a_checkpoint_is_refused_at_once_until_the_first_is_dead() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let long = "--model xpnn+ --training hybrid --epochs 100000 --stall 0 --population 20";
     let mut first = spawned(&bench, &format!("{long} -o m.json --checkpoint c.bin"));
     assert!(appears(&bench, "c.bin", &mut first));
@@ -129,7 +123,7 @@ fn a_second_fit_on_a_checkpoint_is_refused_at_once_until_the_first_is_dead() {
 
 #[test]
 fn a_fit_begun_anew_keeps_the_checkpoint_that_it_replaces() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let fit = "--model xpnn+ --starts 2 --epochs 2 -o m.json --checkpoint c.bin";
     ran(&bench, fit);
     let first = std::fs::read(bench.path("c.bin")).unwrap();
@@ -142,7 +136,7 @@ fn a_fit_begun_anew_keeps_the_checkpoint_that_it_replaces() {
 
 #[test]
 fn resuming_is_refused_with_other_options_or_data() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     ran(&bench, "--model xpnn+ --starts 2 --epochs 2 -o m.json --checkpoint c.bin");
     let table = table();
     let all_but_the_last = table.trim_end().rsplit_once('\n').unwrap().0;

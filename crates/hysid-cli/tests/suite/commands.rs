@@ -193,8 +193,7 @@ fn hang_up_is_ignored() -> bool {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_and_signals_save_the_best_model_so_far() {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
+    let bench = Workbench::with_data();
     for (signal, status) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
         if signal == "-HUP" && hang_up_is_ignored() {
             println!("skipped: these tests run under nohup, which the program respects");
@@ -226,8 +225,7 @@ fn ctrl_c_and_signals_save_the_best_model_so_far() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_closed_terminal_is_ignored_under_nohup() {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
+    let bench = Workbench::with_data();
     let fit = format!("fit good.csv -o m.json {LONG} --time-limit 2 --json");
     let ran = bench.shell(&format!("trap '' HUP; hysid {fit} & sleep 1; kill -HUP $!; wait $!"));
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
@@ -236,8 +234,7 @@ fn a_closed_terminal_is_ignored_under_nohup() {
 
 #[test]
 fn the_time_limit_is_kept() {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
+    let bench = Workbench::with_data();
     let began = Instant::now();
     let ran = bench.run(&format!("fit good.csv {LONG} --time-limit 1 --json"));
     let took = began.elapsed();

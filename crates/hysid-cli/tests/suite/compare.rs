@@ -1,16 +1,10 @@
 //! `hysid compare` as a user runs it, and models that are no networks in the other commands.
 
-use crate::workbench::{Workbench, json, must_contain, table};
-
-fn bench() -> Workbench {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
-    bench
-}
+use crate::workbench::{Workbench, json, must_contain};
 
 #[test]
 fn models_are_sorted_by_their_error_on_unseen_data() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let models = "prandtl-ishlinskii,pnn,preisach,random-stops,rate-dependent-prandtl-ishlinskii";
     let compared =
         bench.run(&format!("compare good.csv --test good.csv --models {models} --json --rate none"));
@@ -34,7 +28,7 @@ fn models_are_sorted_by_their_error_on_unseen_data() {
 
 #[test]
 fn the_table_fits_a_terminal() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let ran =
         bench.succeeds("compare good.csv --models gpnn,bouc-wen,generalized-prandtl-ishlinskii --no-report");
     assert!(ran.stdout.lines().all(|line| line.chars().count() <= 80), "{}", ran.stdout);
@@ -45,7 +39,7 @@ fn the_table_fits_a_terminal() {
 
 #[test]
 fn a_fit_that_was_stopped_is_marked() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let ran = bench.succeeds("compare good.csv --models xpnn+ --time-limit 0.05");
     let row = ran.stdout.lines().find(|line| line.starts_with("xpnn+")).unwrap();
     assert!(row.contains("* "), "{}", ran.stdout);
@@ -58,7 +52,7 @@ fn a_fit_that_was_stopped_is_marked() {
 
 #[test]
 fn a_law_is_compared_in_all_its_variants() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let rows = bench.json("compare good.csv --models bouc-wen --no-report --json --time-limit 2");
     let mut labels: Vec<&str> =
         rows.as_array().unwrap().iter().map(|row| row["label"].as_str().unwrap()).collect();
@@ -70,7 +64,7 @@ fn a_law_is_compared_in_all_its_variants() {
 
 #[test]
 fn what_cannot_be_compared_is_refused() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     bench.put("other.csv", "a,b\n1,2\n");
     bench.refuses_in_part(
         "
@@ -84,7 +78,7 @@ fn what_cannot_be_compared_is_refused() {
 
 #[test]
 fn a_law_is_fitted_reported_judged_and_simulated_like_a_network() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let ran = bench.succeeds("fit good.csv --model bouc-wen -o law.json --starts 2 --epochs 10");
     assert!(ran.stdout.contains("bouc-wen with 7 parameters; multi-start search"), "{}", ran.stdout);
     let page = bench.text("law.html");

@@ -2,17 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use crate::workbench::{ROWS, Ran, Workbench, csv, json, rows, table};
+use crate::workbench::{ROWS, Ran, Workbench, csv, json, rows};
 use serde_json::Value;
 
 /// An ensemble that takes well below a second.
 const QUICK: &str = "--model xpnn --members 3 --epochs 10";
-
-fn bench() -> Workbench {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
-    bench
-}
 
 fn assert_narrow(text: &str) {
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
@@ -20,7 +14,7 @@ fn assert_narrow(text: &str) {
 
 #[test]
 fn an_ensemble_tells_its_members_and_what_they_cost() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let fit = bench.json(&format!("fit good.csv -o e.json {QUICK} --json"));
     let members = fit["members"].as_array().unwrap();
     assert_eq!(members.len(), 3);
@@ -58,7 +52,7 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
 
 #[test]
 fn the_band_stands_in_columns_and_its_coverage_is_counted() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     bench.succeeds(&format!("fit good.csv -o e.json --no-report {QUICK}"));
     let simulated = bench.run("simulate e.json good.csv --band 0.6");
     let mut lines = simulated.stdout.lines();
@@ -124,7 +118,7 @@ fn a_band_that_is_not_there_is_refused() {
 /// Of all candidates those that see a companded input without rate, which are few.
 #[test]
 fn auto_chooses_among_kinds_and_is_the_same_for_any_number_of_threads() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let fit = |options: &str| {
         let ran = bench
             .succeeds(&format!("fit good.csv -o a.json --rate none --companding 0.1 --epochs 4 {options}"));
@@ -147,7 +141,7 @@ fn auto_chooses_among_kinds_and_is_the_same_for_any_number_of_threads() {
 
 #[test]
 fn auto_keeps_its_time_limit_and_says_where_it_is() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let began = Instant::now();
     let ran = bench.run("fit good.csv -o a.json --no-report --threads 1 --time-limit 2.5 --json");
     assert!(began.elapsed() < Duration::from_secs(12), "{:?}", began.elapsed());
@@ -158,7 +152,7 @@ fn auto_keeps_its_time_limit_and_says_where_it_is() {
 
 #[test]
 fn compare_begins_with_auto_and_tells_structures() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let rows = bench.json("compare good.csv --time-limit 0.05 --rate none --no-report --json");
     let row = |model: &str| {
         let found = rows.as_array().unwrap().iter().find(|row| row["model"] == model);
@@ -171,7 +165,7 @@ fn compare_begins_with_auto_and_tells_structures() {
 
 #[test]
 fn folds_are_told_one_by_one_and_together() {
-    let bench = bench();
+    let bench = Workbench::with_data();
     let command = "validate good.csv --model prandtl-ishlinskii";
     let ran = bench.succeeds(command);
     assert_narrow(&ran.stdout);
@@ -219,7 +213,7 @@ const LONG: &str = "--model xpnn+ --stops 20 --hidden 20 --starts 20 --epochs 10
 
 #[test]
 fn each_fold_has_its_time() {
-    let ran = bench().succeeds(&format!("validate good.csv {LONG} --time-limit 0.2"));
+    let ran = Workbench::with_data().succeeds(&format!("validate good.csv {LONG} --time-limit 0.2"));
     assert!(ran.stdout.contains("xpnn+: 5 folds, 5 of them ended by the time limit, in "), "{}", ran.stdout);
 }
 
@@ -229,7 +223,7 @@ fn ctrl_c_keeps_the_folds_that_are_done() {
     use std::io::{BufRead, BufReader};
     use std::process::{Command, Stdio};
 
-    let bench = bench();
+    let bench = Workbench::with_data();
     let mut command = bench.command(&format!("validate good.csv {LONG} --time-limit 1.5"));
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut stderr = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);

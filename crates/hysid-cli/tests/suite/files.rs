@@ -4,21 +4,14 @@
 use std::fs;
 use std::path::Path;
 
-use crate::workbench::{Ran, Workbench, must_contain};
+use crate::workbench::{self, Ran, Workbench, must_contain};
 
 /// A column of numbers; NaN where there is none.
 type Column = Vec<f64>;
 
 /// The columns of a CSV table with their names, and without the names of records.
 fn columns(text: &str) -> (Vec<String>, Vec<Column>) {
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let names: Vec<String> = reader.headers().unwrap().iter().map(String::from).collect();
-    let mut columns = vec![Column::new(); names.len()];
-    for row in reader.records() {
-        for (column, cell) in columns.iter_mut().zip(&row.unwrap()) {
-            column.push(cell.parse().unwrap_or(f64::NAN));
-        }
-    }
+    let (names, columns) = workbench::columns(text);
     let is_number = |name: &String| name != "record";
     let kept = names.into_iter().zip(columns).filter(|(name, _)| is_number(name));
     kept.unzip()

@@ -1,7 +1,7 @@
 //! `hysid force`: restoring forces from tables of measured motion and force, what other commands make of them, and what is
 //! refused.
 
-use crate::workbench::{Ran, Workbench, cases};
+use crate::workbench::{Ran, Workbench, cases, columns};
 
 const ROWS: usize = 1200;
 
@@ -27,17 +27,6 @@ fn ran(bench: &Workbench, line: &str) -> Ran {
     let ran = bench.shell(&format!("hysid {line}"));
     assert_eq!(ran.status, Some(0), "{line}: {}", ran.stderr);
     ran
-}
-
-/// Names and columns of a table, NaN for an empty cell.
-fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
-    let mut lines = text.lines();
-    let header: Vec<String> = lines.next().unwrap().split(',').map(str::to_owned).collect();
-    let number = |cell: &str| if cell.is_empty() { f64::NAN } else { cell.parse().unwrap_or(f64::NAN) };
-    let rows: Vec<Vec<f64>> = lines.map(|line| line.split(',').map(number).collect()).collect();
-    let column = |place: usize| rows.iter().map(|row| row[place]).collect();
-    let columns = (0..header.len()).map(column).collect();
-    (header, columns)
 }
 
 /// Largest deviation of a column from exact values, in percent of the largest of these.

@@ -1,6 +1,6 @@
 //! Options that a model ignores are named and change nothing; values that it cannot have are refused before the fit.
 
-use crate::workbench::{Workbench, table};
+use crate::workbench::Workbench;
 
 const QUICK: &str = "--starts 1 --epochs 2";
 
@@ -12,8 +12,7 @@ fn fitted(bench: &Workbench, options: &str, searched: bool) -> (String, String) 
 
 #[test]
 fn an_ignored_option_is_named_and_changes_nothing() {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
+    let bench = Workbench::with_data();
     for (model, searched, option, flag) in [
         ("bouc-wen", true, "--history", "--history"),
         ("pnn", true, "--hidden 7 --relaxation 9", "--relaxation"),

@@ -32,8 +32,7 @@ fn plain(value: f64) -> String {
 
 /// A bench with a model for each way of finding the rate.
 fn bench() -> Workbench {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
+    let bench = Workbench::with_data();
     for rate in ["central", "backward", "savitzky-golay"] {
         let fit = format!(
             "fit good.csv -o {rate}.json --no-report --model xpnn+ --starts 1 --epochs 2 --rate {rate}"
@@ -78,8 +77,7 @@ fn records_of_a_long_table_are_simulated_as_if_each_were_alone() {
 
 #[test]
 fn the_input_alone_is_enough_to_simulate() {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
+    let bench = Workbench::with_data();
     let fit = "fit good.csv -o m.json --no-report --model pnn --starts 1 --epochs 2";
     bench.succeeds(fit);
     let place = table().lines().next().unwrap().split(',').position(|name| name == "x").unwrap();

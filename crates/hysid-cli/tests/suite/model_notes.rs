@@ -1,7 +1,7 @@
 //! What a user is told of a model beside its errors: rows that it was not trained on, data that cannot tell
 //! candidates apart, inputs that are measured from elsewhere than 0.
 
-use crate::workbench::{Workbench, csv, must_contain, table};
+use crate::workbench::{Workbench, csv, must_contain};
 use serde_json::Value;
 
 /// Some cycles of one loop.
@@ -15,8 +15,7 @@ fn one_loop() -> String {
 
 #[test]
 fn a_warm_up_is_told_with_its_effect_and_judged_both_ways() {
-    let bench = Workbench::new();
-    bench.put("good.csv", table());
+    let bench = Workbench::with_data();
     let fit = bench.json("fit good.csv -o m.json --model prandtl-ishlinskii --warm-up 20 --json");
     let evaluated = bench.json("evaluate m.json good.csv --json");
     assert_eq!(fit["train"]["rmse"], evaluated["rmse"]);

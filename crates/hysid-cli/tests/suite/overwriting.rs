@@ -186,8 +186,7 @@ mod unix {
 
     #[test]
     fn a_full_disk_does_not_lose_the_fit() {
-        let bench = Workbench::new();
-        bench.put("good.csv", table());
+        let bench = Workbench::with_data();
         let disk = bench.path("small");
         fs::create_dir(&disk).unwrap();
         let mounted =

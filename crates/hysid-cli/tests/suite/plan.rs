@@ -1,6 +1,6 @@
 //! `hysid plan`: drives from data and for kinds of specimens, their files, and what is refused.
 
-use crate::workbench::Workbench;
+use crate::workbench::{Workbench, columns};
 
 /// Cycles of one amplitude, 400 rows.
 fn cycles(header: &str, has_time: bool) -> String {
@@ -20,16 +20,6 @@ fn bench() -> Workbench {
     bench.put("data.csv", cycles("t_s,disp_mm,force_kN", true));
     bench.put("slow.csv", cycles("disp_mm,force_kN", false));
     bench
-}
-
-fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
-    let mut lines = text.lines();
-    let header = lines.next().unwrap().split(',').map(str::to_owned).collect::<Vec<_>>();
-    let rows: Vec<Vec<f64>> =
-        lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
-    let column = |place: usize| rows.iter().map(|row| row[place]).collect();
-    let columns = (0..header.len()).map(column).collect();
-    (header, columns)
 }
 
 #[test]

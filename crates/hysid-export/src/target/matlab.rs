@@ -11,7 +11,6 @@ use crate::reserved;
 use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer, Syntax};
 use crate::target::{BackEnd, Written};
-use crate::vectors::Action;
 
 pub(super) const BACK_END: BackEnd = BackEnd {
     name: "matlab",
@@ -251,7 +250,8 @@ fn self_test(subject: &Subject<'_>) -> String {
             let mut numbers: Vec<String> = vector.arguments.iter().copied().map(number).collect();
             numbers.resize(count, "0".into());
             numbers.extend([number(vector.output), number(vector.tangent)]);
-            format!("    {}, {}\n", code(vector.action), numbers.join(", "))
+            // Actions are numbered in their order.
+            format!("    {}, {}\n", vector.action as usize + 1, numbers.join(", "))
         })
         .collect();
     let (low, high) = subject.model().trained_ranges().output;
@@ -304,18 +304,6 @@ end
         output = count + 2,
         tangent = count + 3,
     )
-}
-
-fn code(action: Action) -> usize {
-    match action {
-        Action::Reset => 1,
-        Action::Trial => 2,
-        Action::Commit => 3,
-        Action::Revert => 4,
-        Action::Step => 5,
-        Action::Save => 6,
-        Action::Restore => 7,
-    }
 }
 
 struct Matlab {

@@ -47,12 +47,17 @@ impl Workbench {
         Self { folder: TempDir::new().unwrap() }
     }
 
-    /// A folder with `good.csv` and `model.json`, quickly trained on it.
-    pub fn with_model() -> Self {
+    /// A folder with `good.csv`, the small record.
+    pub fn with_data() -> Self {
         let bench = Self::new();
         bench.put("good.csv", table());
-        let ran = bench.run("fit good.csv -o model.json --no-report --model xpnn+ --starts 1 --epochs 3");
-        assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+        bench
+    }
+
+    /// A folder with `good.csv` and `model.json`, quickly trained on it.
+    pub fn with_model() -> Self {
+        let bench = Self::with_data();
+        bench.succeeds("fit good.csv -o model.json --no-report --model xpnn+ --starts 1 --epochs 3");
         bench
     }
 
@@ -151,6 +156,19 @@ pub fn must_contain(text: &str, words: &[&str]) {
 pub fn json(ran: &Ran) -> serde_json::Value {
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
     serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
+}
+
+/// Names and columns of a table; NaN for a cell that is no number.
+pub fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let names: Vec<String> = reader.headers().unwrap().iter().map(String::from).collect();
+    let mut columns = vec![Vec::new(); names.len()];
+    for row in reader.records() {
+        for (column, cell) in columns.iter_mut().zip(&row.unwrap()) {
+            column.push(cell.parse().unwrap_or(f64::NAN));
+        }
+    }
+    (names, columns)
 }
 
 /// Rows of a table: on each line the exit status, the arguments of the program, `=>`, and what it says.
