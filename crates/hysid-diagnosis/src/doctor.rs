@@ -124,6 +124,11 @@ impl DataIssue {
         let record = rows.first().map(|piece| piece.record.clone());
         Self { record, evidence: rows, ..Self::of_all(kind, severity, statement) }
     }
+
+    /// The same with the number that tells how much, and its unit.
+    fn measured(self, value: f64, unit: &Option<String>) -> Self {
+        Self { value: Some(value), unit: unit.clone(), ..self }
+    }
 }
 
 /// Looks for all that may be wrong; warnings first.
@@ -138,18 +143,21 @@ pub(crate) fn examine(
     let clipped = clipping::complaints(survey);
     // A flat top turns earlier or later than the input.
     let lags = if clipped.is_empty() { lag::complaints(survey, delay) } else { Vec::new() };
+    let drifts = drift::complaint(survey, cycles).into_iter().collect();
     let found = [
         marks::complaints(survey.data),
-        spikes::complaints(survey),
+        spikes::complaint(survey).into_iter().collect(),
         artifacts::added(survey, lags, explanations, DataIssueKind::Lag),
-        artifacts::added(survey, drift::complaints(survey, cycles), explanations, DataIssueKind::Drift),
-        creep::complaints(survey),
-        if resonance.is_none() { hum::complaints(survey) } else { Vec::new() },
-        resonance.map(|found| resonance::complaint(survey, found)).into_iter().collect(),
+        artifacts::added(survey, drifts, explanations, DataIssueKind::Drift),
+        creep::complaint(survey).into_iter().collect(),
+        match resonance {
+            Some(found) => vec![resonance::complaint(survey, found)],
+            None => hum::complaint(survey).into_iter().collect(),
+        },
         clipped,
         repetition::complaints(survey),
         sampling::complaints(survey),
-        closure::complaints(findings),
+        closure::complaint(findings).into_iter().collect(),
         loops::complaints(survey, table),
         columns::complaints(survey),
         start::complaints(survey),

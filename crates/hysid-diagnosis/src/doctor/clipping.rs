@@ -64,11 +64,8 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
                 "the {name} stays at {shown} for {count} rows while the {other} changes: clipped by the \
                  instrument; measure with a larger range, or blank the output of these rows"
             );
-            found.push(DataIssue {
-                value: Some(value),
-                unit: if of_output { units.output.clone() } else { units.input.clone() },
-                ..DataIssue::of_rows(kind, Severity::Warning, statement, rows)
-            });
+            let issue = DataIssue::of_rows(kind, Severity::Warning, statement, rows);
+            found.push(issue.measured(value, if of_output { &units.output } else { &units.input }));
         }
     }
     found

@@ -3,12 +3,9 @@
 use super::{DataIssue, DataIssueKind, Severity};
 use crate::{Finding, Property, Verdict};
 
-pub(super) fn complaints(findings: &[Finding]) -> Vec<DataIssue> {
+pub(super) fn complaint(findings: &[Finding]) -> Option<DataIssue> {
     let verdict = |property| findings.iter().find(|finding| finding.property == property);
-    let Some(closure) = verdict(Property::LoopClosure).filter(|finding| finding.verdict == Verdict::No)
-    else {
-        return Vec::new();
-    };
+    let closure = verdict(Property::LoopClosure).filter(|finding| finding.verdict == Verdict::No)?;
     let wears = verdict(Property::Deterioration).is_some_and(|finding| finding.verdict == Verdict::Yes);
     let percent = 100.0 * closure.index.unwrap_or(0.0);
     let why = if wears {
@@ -18,15 +15,8 @@ pub(super) fn complaints(findings: &[Finding]) -> Vec<DataIssue> {
          remove the drift"
     };
     let rows = closure.evidence.iter().flat_map(|evidence| evidence.pieces.iter().cloned()).take(3).collect();
-    vec![DataIssue {
-        record: None,
-        value: Some(percent),
-        unit: Some("percent".into()),
-        ..DataIssue::of_rows(
-            DataIssueKind::UnclosedLoops,
-            Severity::Note,
-            format!("after a period of the input the output differs by {percent:.1} % of its range: {why}"),
-            rows,
-        )
-    }]
+    let statement =
+        format!("after a period of the input the output differs by {percent:.1} % of its range: {why}");
+    let issue = DataIssue::of_all(DataIssueKind::UnclosedLoops, Severity::Note, statement);
+    Some(DataIssue { evidence: rows, ..issue.measured(percent, &Some("percent".into())) })
 }

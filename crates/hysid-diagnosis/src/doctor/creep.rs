@@ -27,7 +27,7 @@ struct Hold {
     movement: f64,
 }
 
-pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
+pub(super) fn complaint(survey: &BranchSet) -> Option<DataIssue> {
     let mut holds: Vec<Hold> = Vec::new();
     let still = (STILL * survey.width()).max(2.5 * survey.input_noise.deviation());
     for (number, record) in survey.data.records().iter().enumerate() {
@@ -41,9 +41,7 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
         }
     }
     holds.sort_by(|a, b| b.movement.abs().total_cmp(&a.movement.abs()));
-    let Some(largest) = holds.first() else {
-        return Vec::new();
-    };
+    let largest = holds.first()?;
     let units = Units::of(survey);
     let (first, last) = largest.rows;
     let during = match survey.data.records()[largest.record].time() {
@@ -61,11 +59,8 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
         .iter()
         .take(SHOWN)
         .map(|hold| piece(&survey.data.records()[hold.record], hold.rows.0, hold.rows.1));
-    vec![DataIssue {
-        value: Some(largest.movement),
-        unit: units.output.clone(),
-        ..DataIssue::of_rows(DataIssueKind::Creep, Severity::Warning, statement, rows.collect())
-    }]
+    let issue = DataIssue::of_rows(DataIssueKind::Creep, Severity::Warning, statement, rows.collect());
+    Some(issue.measured(largest.movement, &units.output))
 }
 
 /// The hold, if the output creeps during it.

@@ -29,20 +29,18 @@ struct Trend<'c> {
     drift: f64,
 }
 
-pub(super) fn complaints(survey: &BranchSet, cycles: &[Cycle]) -> Vec<DataIssue> {
+pub(super) fn complaint(survey: &BranchSet, cycles: &[Cycle]) -> Option<DataIssue> {
     let groups = repeated(survey, cycles);
     let trends: Vec<Trend> = groups.iter().filter_map(|group| trend(group)).collect();
     // A tip is an extreme of many rows: its noise is a fraction of theirs.
     let limit = (EFFECT * survey.height()).max(3.0 * survey.output_noise.deviation());
     let drifting = |trend: &&Trend| trend.drift.abs() > limit;
     let count = |trend: &Trend| trend.cycles.len();
-    let Some(longest) = trends.iter().filter(drifting).max_by_key(|trend| count(trend)) else {
-        return Vec::new();
-    };
+    let longest = trends.iter().filter(drifting).max_by_key(|trend| count(trend))?;
     let same_way: usize =
         trends.iter().filter(drifting).filter(|t| t.drift * longest.drift > 0.0).map(count).sum();
     if 2 * same_way <= trends.iter().map(count).sum() {
-        return Vec::new();
+        return None;
     }
     let units = Units::of(survey);
     let (first, last) = (longest.cycles[0], longest.cycles[count(longest) - 1]);
@@ -55,11 +53,8 @@ pub(super) fn complaints(survey: &BranchSet, cycles: &[Cycle]) -> Vec<DataIssue>
         100.0 * longest.drift.abs() / survey.height()
     );
     let rows = [first, last].map(|cycle| Piece { record: cycle.record.clone(), rows: cycle.rows });
-    vec![DataIssue {
-        value: Some(longest.drift),
-        unit: units.output.clone(),
-        ..DataIssue::of_rows(DataIssueKind::Drift, Severity::Warning, statement, rows.into())
-    }]
+    let issue = DataIssue::of_rows(DataIssueKind::Drift, Severity::Warning, statement, rows.into());
+    Some(issue.measured(longest.drift, &units.output))
 }
 
 fn trend<'c>(group: &[&'c Cycle]) -> Option<Trend<'c>> {

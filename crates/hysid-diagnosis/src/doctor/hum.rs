@@ -17,17 +17,15 @@ const AROUND: f64 = 0.15;
 
 const MOST_ROWS: usize = 8192;
 
-pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
-    let Some((rows, amplitude)) = survey.output_noise.hum() else {
-        return Vec::new();
-    };
+pub(super) fn complaint(survey: &BranchSet) -> Option<DataIssue> {
+    let (rows, amplitude) = survey.output_noise.hum()?;
     let is_line = |record: &Record| {
         let (input, output) = (&record.inputs()[0], record.output());
         line(output, rows) >= LINE * amplitude
             && line(input, rows) / survey.width() < 0.5 * amplitude / survey.height()
     };
     if amplitude < EFFECT * survey.height() || !survey.data.records().iter().any(is_line) {
-        return Vec::new();
+        return None;
     }
     let units = Units::of(survey);
     let step = survey.time_step();
@@ -38,11 +36,8 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
         units.output(amplitude),
         100.0 * amplitude / survey.height()
     );
-    vec![DataIssue {
-        value: Some(amplitude),
-        unit: units.output.clone(),
-        ..DataIssue::of_all(DataIssueKind::Hum, Severity::Note, statement)
-    }]
+    let issue = DataIssue::of_all(DataIssueKind::Hum, Severity::Note, statement);
+    Some(issue.measured(amplitude, &units.output))
 }
 
 /// The largest amplitude of a sine of about this period, in rows, in the first rows.

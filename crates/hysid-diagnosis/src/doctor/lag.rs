@@ -121,11 +121,7 @@ fn between_speeds(survey: &BranchSet, delay: &Delay) -> DataIssue {
         units.time(delay.time.abs()),
         if delay.time > 0.0 { "an earlier" } else { "a later" },
     );
-    DataIssue {
-        value: Some(delay.time),
-        unit: units.time,
-        ..DataIssue::of_all(DataIssueKind::Lag, Severity::Warning, statement)
-    }
+    DataIssue::of_all(DataIssueKind::Lag, Severity::Warning, statement).measured(delay.time, &units.time)
 }
 
 fn at_turning_points(survey: &BranchSet) -> Vec<DataIssue> {
@@ -180,11 +176,7 @@ fn at_turning_points(survey: &BranchSet) -> Vec<DataIssue> {
         time(value.abs()),
         if value > 0.0 { "an earlier" } else { "a later" },
     );
-    vec![DataIssue {
-        value: Some(value),
-        unit: units.time.clone(),
-        ..DataIssue::of_all(DataIssueKind::Lag, Severity::Warning, statement)
-    }]
+    vec![DataIssue::of_all(DataIssueKind::Lag, Severity::Warning, statement).measured(value, &units.time)]
 }
 
 /// Turning points whose lag is found together.

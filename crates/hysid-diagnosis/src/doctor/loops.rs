@@ -34,10 +34,9 @@ pub(super) fn complaints(survey: &BranchSet, table: &CycleTable) -> Vec<DataIssu
             None => rows.iter().filter(|other| other.record == row.record).count() == 1,
         }
     };
-    let issue = |kind, row: &CycleRow, value: f64, statement: String| DataIssue {
-        value: Some(value),
-        unit: units.output.clone(),
-        ..DataIssue::of_rows(kind, Severity::Warning, statement, vec![piece(row)])
+    let issue = |kind, row: &CycleRow, value: f64, statement: String| {
+        DataIssue::of_rows(kind, Severity::Warning, statement, vec![piece(row)])
+            .measured(value, &units.output)
     };
     let mut issues = Vec::new();
     if let Some(row) = shown(&|row| row.faults.passings > 1) {

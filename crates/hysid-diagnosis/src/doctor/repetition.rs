@@ -57,17 +57,9 @@ fn repeated_rows(survey: &BranchSet) -> Option<DataIssue> {
              remove them, because they distort rates and weights",
             100.0 * share
         );
-        DataIssue {
-            record: None,
-            value: Some(100.0 * share),
-            unit: Some("percent".into()),
-            ..DataIssue::of_rows(
-                DataIssueKind::RepeatedRows,
-                Severity::Note,
-                statement,
-                shown.into_iter().collect(),
-            )
-        }
+        let issue = DataIssue::of_all(DataIssueKind::RepeatedRows, Severity::Note, statement);
+        let evidence = shown.into_iter().collect();
+        DataIssue { evidence, ..issue.measured(100.0 * share, &Some("percent".into())) }
     })
 }
 
@@ -105,18 +97,12 @@ fn held_samples(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
         && lengths.len() > 10;
     is_held.then(|| {
         let name = if of_output { "output" } else { "input" };
-        DataIssue {
-            value: Some(typical as f64),
-            ..DataIssue::of_all(
-                DataIssueKind::HeldSamples,
-                Severity::Warning,
-                format!(
-                    "the {name} keeps its value for {typical} rows at a time while the other channel \
-                     changes: it was sampled less often, and lags by half of that on average; keep one row \
-                     in {typical}, or interpolate"
-                ),
-            )
-        }
+        let statement = format!(
+            "the {name} keeps its value for {typical} rows at a time while the other channel changes: it was \
+             sampled less often, and lags by half of that on average; keep one row in {typical}, or interpolate"
+        );
+        DataIssue::of_all(DataIssueKind::HeldSamples, Severity::Warning, statement)
+            .measured(typical as f64, &None)
     })
 }
 
@@ -167,11 +153,8 @@ fn coarse_resolution(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
          points, are not reliable; measure in a smaller range of the instrument",
         100.0 * step / range
     );
-    Some(DataIssue {
-        value: Some(step),
-        unit: if of_output { units.output.clone() } else { units.input.clone() },
-        ..DataIssue::of_all(DataIssueKind::CoarseResolution, Severity::Note, statement)
-    })
+    let issue = DataIssue::of_all(DataIssueKind::CoarseResolution, Severity::Note, statement);
+    Some(issue.measured(step, if of_output { &units.output } else { &units.input }))
 }
 
 fn input(record: &hysid_core::data::record::Record) -> &[f64] {

@@ -27,7 +27,7 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
 fn time_steps(survey: &BranchSet) -> Vec<DataIssue> {
     let units = Units::of(survey);
     let mut found = Vec::new();
-    for (number, record) in survey.data.records().iter().enumerate() {
+    for record in survey.data.records() {
         let Some(time) = record.time() else {
             continue;
         };
@@ -45,16 +45,9 @@ fn time_steps(survey: &BranchSet) -> Vec<DataIssue> {
                 units.time(steps[longest]),
                 units.time(time[longest])
             );
-            found.push(DataIssue {
-                value: Some(steps[longest]),
-                unit: units.time.clone(),
-                ..DataIssue::of_rows(
-                    DataIssueKind::TimeGap,
-                    Severity::Warning,
-                    statement,
-                    vec![piece(&survey.data.records()[number], longest, longest + 1)],
-                )
-            });
+            let rows = vec![piece(record, longest, longest + 1)];
+            let issue = DataIssue::of_rows(DataIssueKind::TimeGap, Severity::Warning, statement, rows);
+            found.push(issue.measured(steps[longest], &units.time));
         }
         let mut sorted = steps;
         sorted.sort_by(f64::total_cmp);
@@ -68,15 +61,10 @@ fn time_steps(survey: &BranchSet) -> Vec<DataIssue> {
                 units.time(short),
                 units.time(long)
             );
-            found.push(DataIssue {
-                value: Some(long / short),
-                ..DataIssue::of_rows(
-                    DataIssueKind::ChangingSamplingRate,
-                    Severity::Note,
-                    statement,
-                    vec![piece(&survey.data.records()[number], 0, record.len() - 1)],
-                )
-            });
+            let rows = vec![piece(record, 0, record.len() - 1)];
+            let issue =
+                DataIssue::of_rows(DataIssueKind::ChangingSamplingRate, Severity::Note, statement, rows);
+            found.push(issue.measured(long / short, &None));
         }
     }
     found
@@ -91,38 +79,32 @@ fn rows_of_a_branch(survey: &BranchSet) -> Option<DataIssue> {
         .collect();
     counts.sort_unstable();
     let typical = *counts.get(counts.len() / 2)?;
-    (typical < FEWEST_ROWS).then(|| DataIssue {
-        value: Some(typical as f64),
-        ..DataIssue::of_all(
-            DataIssueKind::FewSamples,
-            Severity::Warning,
-            format!(
-                "there are {typical} rows from turning point to turning point: too few for the shape of a \
-                 branch; sample {} times as fast",
-                (2 * FEWEST_ROWS).div_ceil(typical.max(1))
-            ),
-        )
+    (typical < FEWEST_ROWS).then(|| {
+        let statement = format!(
+            "there are {typical} rows from turning point to turning point: too few for the shape of a branch; sample \
+             {} times as fast",
+            (2 * FEWEST_ROWS).div_ceil(typical.max(1))
+        );
+        DataIssue::of_all(DataIssueKind::FewSamples, Severity::Warning, statement)
+            .measured(typical as f64, &None)
     })
 }
 
 fn turning_points(survey: &BranchSet) -> Option<DataIssue> {
     let units = Units::of(survey);
     let found = survey.branches.len().saturating_sub(survey.data.records().len());
-    (found < FEWEST_TURNS).then(|| DataIssue {
-        value: Some(found as f64),
-        ..DataIssue::of_all(
-            DataIssueKind::FewTurningPoints,
-            Severity::Warning,
-            format!(
-                "the input turns only {} (by more than {}), so the data show little of the memory; measure \
-                 several cycles of different amplitude",
-                match found {
-                    1 => "once".to_string(),
-                    2 => "twice".to_string(),
-                    n => format!("{n} times"),
-                },
-                units.input(survey.smallest_reversal)
-            ),
-        )
+    let times = match found {
+        1 => "once".to_string(),
+        2 => "twice".to_string(),
+        n => format!("{n} times"),
+    };
+    (found < FEWEST_TURNS).then(|| {
+        let statement = format!(
+            "the input turns only {times} (by more than {}), so the data show little of the memory; measure several \
+             cycles of different amplitude",
+            units.input(survey.smallest_reversal)
+        );
+        DataIssue::of_all(DataIssueKind::FewTurningPoints, Severity::Warning, statement)
+            .measured(found as f64, &None)
     })
 }

@@ -44,11 +44,9 @@ pub(super) fn spikes(survey: &BranchSet) -> Vec<(usize, usize)> {
     if found.len() as f64 > MOST * survey.data.rows() as f64 { Vec::new() } else { found }
 }
 
-pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
+pub(super) fn complaint(survey: &BranchSet) -> Option<DataIssue> {
     let found = spikes(survey);
-    let Some(&(number, row)) = found.first() else {
-        return Vec::new();
-    };
+    let &(number, row) = found.first()?;
     let records = survey.data.records();
     let value = records[number].output()[row];
     let units = Units::of(survey);
@@ -62,9 +60,6 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     );
     let rows: Vec<Piece> =
         found.iter().take(SHOWN).map(|&(number, row)| piece(&records[number], row, row)).collect();
-    vec![DataIssue {
-        value: Some(value),
-        unit: units.output.clone(),
-        ..DataIssue::of_rows(DataIssueKind::MissingValueMark, Severity::Warning, statement, rows)
-    }]
+    let issue = DataIssue::of_rows(DataIssueKind::MissingValueMark, Severity::Warning, statement, rows);
+    Some(issue.measured(value, &units.output))
 }
