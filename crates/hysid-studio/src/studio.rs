@@ -128,6 +128,13 @@ impl Studio {
         Ok(result)
     }
 
+    /// Changes the project and what its files are read as, and reads them.
+    fn change_reading(&self, change: impl FnOnce(&mut Project) -> Result<()>) -> Result<()> {
+        self.change(change)?;
+        self.read_files();
+        Ok(())
+    }
+
     /// The whole state, as the page shows it.
     pub fn shown(&self) -> Shown {
         let project = self.project().clone();

@@ -52,7 +52,7 @@ impl Units {
             let Some(name) = names.name_of(column) else { continue };
             let (factor, unit) = known(file, column, name)?;
             if unit.is_none() {
-                without.push((name.to_string(), in_si(column)));
+                without.push((name.to_string(), quantity(column).0));
             }
             columns.push((column, factor, unit));
         }
@@ -91,33 +91,24 @@ impl Units {
     }
 }
 
-fn in_si(column: MotionColumn) -> &'static str {
+/// The SI unit of a column, and what its unit must be.
+fn quantity(column: MotionColumn) -> (&'static str, &'static str) {
     match column {
-        MotionColumn::Time => "s",
-        MotionColumn::Displacement => "m",
-        MotionColumn::Velocity => "m/s",
-        MotionColumn::Acceleration | MotionColumn::BaseAcceleration => "m/s2",
-        MotionColumn::AppliedForce => "N",
+        MotionColumn::Time => ("s", "a time"),
+        MotionColumn::Displacement => ("m", "a length"),
+        MotionColumn::Velocity => ("m/s", "a velocity, such as mm/s"),
+        MotionColumn::Acceleration | MotionColumn::BaseAcceleration => {
+            ("m/s2", "an acceleration, such as m/s2 or g")
+        }
+        MotionColumn::AppliedForce => ("N", "a force"),
     }
 }
 
 /// The factor of a column to SI units and its unit, if it is known.
 fn known(file: &str, column: MotionColumn, name: &str) -> Result<(f64, Option<String>)> {
     let Some(found) = unit::of_column(name) else { return Ok((1.0, None)) };
-    let (of_si, wanted) = (
-        unit::factor(&found, in_si(column)),
-        match column {
-            MotionColumn::Time => "a time",
-            MotionColumn::Displacement => "a length",
-            MotionColumn::Velocity => "a velocity, such as mm/s",
-            MotionColumn::Acceleration | MotionColumn::BaseAcceleration => {
-                "an acceleration, such as m/s2 or g"
-            }
-            MotionColumn::AppliedForce => "a force",
-        },
-    );
-    let is_acceleration = matches!(column, MotionColumn::Acceleration | MotionColumn::BaseAcceleration);
-    match if is_acceleration { of_acceleration(&found) } else { of_si } {
+    let (si, wanted) = quantity(column);
+    match if si == "m/s2" { of_acceleration(&found) } else { unit::factor(&found, si) } {
         Some(factor) => Ok((factor, Some(found))),
         None if unit::is_unit(&found) => bail!(
             "{file}: column \"{}\" is in {}, which is not {wanted} (name another column, or convert nothing with \

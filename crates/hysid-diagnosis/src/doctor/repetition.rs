@@ -3,6 +3,7 @@
 use super::{DataIssue, DataIssueKind, Severity, Units, piece};
 use crate::branch::BranchSet;
 use crate::significance;
+use hysid_core::data::record::Record;
 
 /// Share of rows that repeat the row before, where it matters.
 const REPEATED: f64 = 0.05;
@@ -68,8 +69,7 @@ fn held_samples(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     let mut lengths: Vec<usize> = Vec::new();
     let (mut held, mut while_other_moves) = (0, 0);
     for record in survey.data.records() {
-        let (x, y) = (&*record.inputs()[0], record.output());
-        let (column, other) = if of_output { (y, x) } else { (x, y) };
+        let (column, other) = (column(record, of_output), column(record, !of_output));
         let mut length = 1;
         for row in 1..column.len() {
             if column[row] == column[row - 1] {
@@ -109,11 +109,10 @@ fn held_samples(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
 /// A column whose values are all multiples of a large step.
 fn coarse_resolution(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     let stride = survey.data.rows().div_ceil(MOST_ROWS).max(1);
-    let column = |record| -> &[f64] { if of_output { output(record) } else { input(record) } };
     let records = survey.data.records();
     let mut values: Vec<f64> = records
         .iter()
-        .flat_map(|record| column(record).iter().step_by(stride))
+        .flat_map(|record| column(record, of_output).iter().step_by(stride))
         .copied()
         .filter(|value| !value.is_nan())
         .collect();
@@ -133,7 +132,7 @@ fn coarse_resolution(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     // A path whose rows lie on a grid goes on by equal steps; what is rounded stays where it is, or jumps.
     let mut jumps = [0_usize; 4];
     for record in records {
-        for pair in column(record).windows(2) {
+        for pair in column(record, of_output).windows(2) {
             let jump = ((pair[1] - pair[0]).abs() / step).round();
             jumps[if jump < 3.0 { jump as usize } else { 3 }] += 1;
         }
@@ -157,10 +156,6 @@ fn coarse_resolution(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     Some(issue.measured(step, if of_output { &units.output } else { &units.input }))
 }
 
-fn input(record: &hysid_core::data::record::Record) -> &[f64] {
-    &record.inputs()[0]
-}
-
-fn output(record: &hysid_core::data::record::Record) -> &[f64] {
-    record.output()
+fn column(record: &Record, of_output: bool) -> &[f64] {
+    if of_output { record.output() } else { &record.inputs()[0] }
 }

@@ -26,15 +26,10 @@ pub(super) fn complaint(survey: &BranchSet, found: &Resonance) -> DataIssue {
         found.ratio,
         models
     );
+    let issue = DataIssue::of_all(DataIssueKind::Resonance, Severity::Warning, statement);
+    let evidence = found.rows.iter().take(SHOWN).cloned().collect();
     DataIssue {
-        record: None,
-        value: Some(found.oscillator.natural_frequency),
-        unit: seconds.then(|| "Hz".into()),
-        ..DataIssue::of_rows(
-            DataIssueKind::Resonance,
-            Severity::Warning,
-            statement,
-            found.rows.iter().take(SHOWN).cloned().collect(),
-        )
+        evidence,
+        ..issue.measured(found.oscillator.natural_frequency, &seconds.then(|| "Hz".into()))
     }
 }

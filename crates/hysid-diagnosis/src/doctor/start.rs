@@ -31,7 +31,7 @@ fn beginning(survey: &BranchSet, number: usize) -> Option<DataIssue> {
     }
     let units = Units::of(survey);
     let complaint = |kind, severity, statement: String| {
-        Some(DataIssue::of_rows(kind, severity, statement, vec![piece(&survey.data.records()[number], 0, 0)]))
+        Some(DataIssue::of_rows(kind, severity, statement, vec![piece(record, 0, 0)]))
     };
     let largest = survey.input.0.abs().max(survey.input.1.abs());
     let later: Vec<&Branch> = survey.of_record(number).iter().skip(2).collect();

@@ -134,13 +134,11 @@ impl Studio {
     }
 
     pub fn use_file(&self, id: u64, usage: Use) -> Result<()> {
-        self.change(|project| {
+        self.change_reading(|project| {
             project.file(id)?;
             project.files.iter_mut().filter(|file| file.id == id).for_each(|file| file.usage = usage);
             Ok(())
-        })?;
-        self.read_files();
-        Ok(())
+        })
     }
 
     /// Takes the training and the test data of a specimen.
@@ -160,12 +158,10 @@ impl Studio {
 
     pub fn read_as(&self, reading: ReadingChoice) -> Result<()> {
         reading.reading()?;
-        self.change(|project| {
+        self.change_reading(|project| {
             project.understanding.reading = reading;
             Ok(())
-        })?;
-        self.read_files();
-        Ok(())
+        })
     }
 
     /// Says which columns are what; `None` to guess.
@@ -181,14 +177,13 @@ impl Studio {
             (Some(chosen), Some(first)) => self.check_columns(&before, first, chosen)?,
             _ => None,
         };
-        self.change(|project| {
+        self.change_reading(|project| {
             if project.files != before.files || project.understanding != before.understanding {
                 bail!("the files or their reading changed meanwhile: choose the columns again");
             }
             project.understanding.columns = columns;
             Ok(())
         })?;
-        self.read_files();
         Ok(note)
     }
 
