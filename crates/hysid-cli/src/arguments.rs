@@ -144,14 +144,12 @@ pub enum Command {
     Man(Man),
 }
 
-/// Arguments of `demo`.
 #[derive(Debug, Args)]
 #[command(after_help = DEMO_EXAMPLES)]
 pub struct Demo {
     /// Folder for the data, the model and the report
     #[arg(short, long, value_name = "DIR", default_value = "hysid-demo")]
     pub out: PathBuf,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
 }
@@ -292,7 +290,6 @@ fn rate(text: &str) -> Result<RateOption, String> {
 /// The heading of options of a run, which do not change the model.
 const RUN: &str = "Run";
 
-/// Arguments of `fit`.
 #[derive(Debug, Args)]
 #[command(after_help = FIT_EXAMPLES)]
 pub struct Fit {
@@ -304,7 +301,6 @@ pub struct Fit {
     /// The default is in the current folder and named after the first table. The report has the same name with `.html`.
     #[arg(short, long, value_name = "MODEL.json")]
     pub out: Option<PathBuf>,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     #[command(flatten)]
@@ -341,7 +337,6 @@ pub struct Fit {
     pub no_report: bool,
 }
 
-/// Arguments of `validate`.
 #[derive(Debug, Args)]
 #[command(after_help = VALIDATE_EXAMPLES)]
 pub struct Validate {
@@ -405,7 +400,6 @@ fn seconds(text: &str) -> Result<f64, String> {
     hysid::time_limit(seconds).map(|_| seconds).map_err(String::from)
 }
 
-/// Arguments of `simulate`.
 #[derive(Debug, Args)]
 #[command(after_help = SIMULATE_EXAMPLES)]
 pub struct Simulate {
@@ -418,7 +412,6 @@ pub struct Simulate {
     /// Table to write [default: stdout, as with `-`]
     #[arg(short, long, value_name = "OUT.csv")]
     pub out: Option<PathBuf>,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     /// Add a prediction band of this probability, such as 0.9
@@ -427,10 +420,8 @@ pub struct Simulate {
     /// outputs on average over data sets that resemble those of the training; in one of them it may be less.
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
-    /// In how many of ten data sets the band is to contain that share.
     #[command(flatten)]
     pub data_sets: DataSetsOptions,
-    /// Where the memory begins.
     #[command(flatten)]
     pub beginning: BeginningOptions,
     #[command(flatten)]
@@ -439,7 +430,6 @@ pub struct Simulate {
     pub units: UnitOptions,
 }
 
-/// Arguments of `invert`.
 #[derive(Debug, Args)]
 #[command(after_help = INVERT_EXAMPLES)]
 pub struct Invert {
@@ -458,7 +448,6 @@ pub struct Invert {
     /// Do not write a report
     #[arg(long)]
     pub no_report: bool,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     /// Lowest and highest input, such as 0:150 or -1:1 [default: the trained range]
@@ -478,10 +467,8 @@ pub struct Invert {
     /// The columns with `_low` and `_high` behind the name of the drive are the lowest and the highest of them.
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
-    /// In how many of ten data sets the band is to contain that share.
     #[command(flatten)]
     pub data_sets: DataSetsOptions,
-    /// Where the memory begins.
     #[command(flatten)]
     pub beginning: BeginningOptions,
     #[command(flatten)]
@@ -493,7 +480,6 @@ pub struct Invert {
     pub json: bool,
 }
 
-/// Arguments of `evaluate`.
 #[derive(Debug, Args)]
 #[command(after_help = EVALUATE_EXAMPLES)]
 pub struct Evaluate {
@@ -506,7 +492,6 @@ pub struct Evaluate {
     /// Print the share of measured outputs within the prediction band of this probability, such as 0.9
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
-    /// In how many of ten data sets the band is to contain that share.
     #[command(flatten)]
     pub data_sets: DataSetsOptions,
     /// Test the residual for structure: whiteness, correlation with the input, size and bias by place
@@ -514,7 +499,6 @@ pub struct Evaluate {
     /// Says for each test what was found and what helps (docs/residuals.md). The rows are kept in memory.
     #[arg(long)]
     pub residuals: bool,
-    /// Where the memory begins.
     #[command(flatten)]
     pub beginning: BeginningOptions,
     #[command(flatten)]
@@ -526,7 +510,6 @@ pub struct Evaluate {
     pub json: bool,
 }
 
-/// Arguments of `compare`.
 #[derive(Debug, Args)]
 #[command(after_help = COMPARE_EXAMPLES)]
 pub struct Compare {
@@ -544,7 +527,6 @@ pub struct Compare {
     /// The default is in the current folder and named after the first table.
     #[arg(short, long, value_name = "PAGE.html")]
     pub out: Option<PathBuf>,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     #[command(flatten)]
@@ -566,7 +548,6 @@ pub struct Compare {
     pub no_report: bool,
 }
 
-/// Arguments of `look`.
 #[derive(Debug, Args)]
 #[command(after_help = LOOK_EXAMPLES)]
 pub struct Look {
@@ -576,7 +557,6 @@ pub struct Look {
     /// Write the columns that are used as a plain CSV table; - is standard output
     #[arg(short, long, value_name = "CLEAN.csv")]
     pub out: Option<PathBuf>,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     #[command(flatten)]
@@ -586,7 +566,6 @@ pub struct Look {
     pub json: bool,
 }
 
-/// Arguments of `diagnose`.
 #[derive(Debug, Args)]
 #[command(after_help = DIAGNOSE_EXAMPLES)]
 pub struct Diagnose {
@@ -598,7 +577,6 @@ pub struct Diagnose {
     /// The default is in the current folder and named after the first file.
     #[arg(short, long, value_name = "PAGE.html")]
     pub out: Option<PathBuf>,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     #[command(flatten)]
@@ -624,7 +602,6 @@ impl Diagnose {
     }
 }
 
-/// Arguments of `reproduce`.
 #[derive(Debug, Args)]
 #[command(after_help = REPRODUCE_EXAMPLES)]
 pub struct Reproduce {
@@ -634,7 +611,6 @@ pub struct Reproduce {
     /// Folder for pages and tables
     #[arg(short, long, value_name = "DIR", default_value = "hysid-reproduction")]
     pub out: PathBuf,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     /// Run with a fraction of the effort; results are worse
@@ -650,7 +626,6 @@ fn experiment() -> impl TypedValueParser<Value = Experiment> {
     PossibleValuesParser::new(names).map(|name| Experiment::named(&name).expect("one of the possible values"))
 }
 
-/// Arguments of `generate`.
 #[derive(Debug, Args)]
 #[command(after_help = GENERATE_EXAMPLES)]
 pub struct Generate {
@@ -663,7 +638,6 @@ pub struct Generate {
     /// Table of test data; `-` is stdout [default: none]
     #[arg(long, value_name = "TEST.csv")]
     pub test: Option<PathBuf>,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     /// Standard deviation of Gaussian noise on the output, in percent of that of the output
@@ -690,7 +664,6 @@ fn noise(text: &str) -> Result<f64, String> {
     percent.ok_or_else(|| "a number of percent, 0 or more, is needed".into())
 }
 
-/// Arguments of `export`.
 #[derive(Debug, Args)]
 #[command(after_help = EXPORT_EXAMPLES)]
 pub struct Export {
@@ -739,7 +712,6 @@ pub struct Export {
     /// the time step, even if the model does not need it.
     #[arg(long, value_name = "RATE", value_parser = limits::slew)]
     pub slew: Option<f64>,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     /// Print the result as one JSON object

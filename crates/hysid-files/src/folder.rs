@@ -165,6 +165,8 @@ fn is_plain(root: &Path, name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use tempfile::TempDir;
+
     use super::*;
 
     const FILES: [(&str, &[u8]); 3] =
@@ -182,6 +184,14 @@ mod tests {
 
     fn folder(path: &Path, force: bool) -> Folder<'_> {
         Folder { path, what: "export", manifest: "list", listed, checksum, inputs: &[], force }
+    }
+
+    /// A place with a folder `export`, in which these files were written.
+    fn written() -> (TempDir, PathBuf) {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("export");
+        folder(&path, false).write(&FILES).unwrap();
+        (place, path)
     }
 
     fn names(folder: &Path) -> Vec<String> {
@@ -204,9 +214,7 @@ mod tests {
             (Some("new"), None),
             (Some("new"), Some("newer")),
         ] {
-            let place = tempfile::tempdir().unwrap();
-            let path = place.path().join("export");
-            folder(&path, false).write(&FILES).unwrap();
+            let (_place, path) = written();
             for (name, content) in [("a.txt", a), ("b/c.txt", c)] {
                 match content {
                     Some(content) => fs::write(path.join(name), content).unwrap(),
@@ -224,9 +232,7 @@ mod tests {
 
     #[test]
     fn writers_wait_for_nobody_and_go_nowhere_else() {
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("export");
-        folder(&path, false).write(&FILES).unwrap();
+        let (place, path) = written();
         let held = Lock::acquire(&path.join("list")).unwrap();
         assert!(matches!(folder(&path, false).write(&FILES), Err(Failure::InUse(_))));
         drop(held);
@@ -255,9 +261,7 @@ mod tests {
 
     #[test]
     fn files_that_were_changed_are_kept() {
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("export");
-        folder(&path, false).write(&FILES).unwrap();
+        let (_place, path) = written();
         fs::write(path.join("b/c.txt"), "edited").unwrap();
         let next: [(&str, &[u8]); 3] =
             [("a.txt", b"new"), ("b/c.txt", b"three"), ("list", b"list:a.txt=new b/c.txt=three")];
@@ -312,9 +316,7 @@ mod tests {
 
     #[test]
     fn a_failure_leaves_what_was_there() {
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("export");
-        folder(&path, false).write(&FILES).unwrap();
+        let (_place, path) = written();
         fs::create_dir(path.join("d")).unwrap();
         // The last of the files has the name of a folder.
         let next: [(&str, &[u8]); 3] = [("a.txt", b"new"), ("b/c.txt", b"new"), ("d", b"new")];
@@ -355,9 +357,7 @@ mod tests {
 
     #[test]
     fn temporary_folders_of_killed_processes_go() {
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("export");
-        folder(&path, false).write(&FILES).unwrap();
+        let (place, path) = written();
         fs::create_dir(path.join(".list.AbCdEf12.hysid-partial")).unwrap();
         fs::create_dir(place.path().join(".next.AbCdEf12.hysid-partial")).unwrap();
         folder(&path, false).write(&FILES).unwrap();

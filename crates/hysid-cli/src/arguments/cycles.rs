@@ -17,7 +17,6 @@ Examples:
 
 Definitions of all figures: docs/cycles.md";
 
-/// Arguments of `cycles`.
 #[derive(Debug, Args)]
 #[command(after_help = CYCLES_EXAMPLES)]
 pub struct Cycles {
@@ -30,7 +29,6 @@ pub struct Cycles {
     /// table of first-order reversal curves, if there are any, has it with `.forc.csv`.
     #[arg(short, long, value_name = "TABLE.csv")]
     pub out: Option<PathBuf>,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     #[command(flatten)]

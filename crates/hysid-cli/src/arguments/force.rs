@@ -21,7 +21,6 @@ const ZERO_HELP: &str = "Subtract from the displacement and from the restoring f
 
 const MISSING_MEANS: &str = "Where an acceleration or the applied force is missing, the restoring force is blank; time, displacement and velocity need a number in every row.";
 
-/// Arguments of `force`.
 #[derive(Debug, Args)]
 // The columns of a motion are neither inputs nor outputs.
 #[command(
@@ -49,7 +48,6 @@ pub struct Force {
     /// `plot` take the displacement as input and the restoring force as output.
     #[arg(short, long, value_name = "FORCE.csv")]
     pub out: Option<PathBuf>,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     #[command(flatten)]

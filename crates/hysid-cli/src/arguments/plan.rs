@@ -17,7 +17,6 @@ Examples:
 
 Method, protocols and what they are worth: docs/plan.md";
 
-/// Arguments of `plan`.
 #[derive(Debug, Args)]
 #[command(after_help = PLAN_EXAMPLES)]
 pub struct Plan {
@@ -34,7 +33,6 @@ pub struct Plan {
     /// The default is the name of DATA or KIND with `.drive.csv`, in the current folder. Its columns are time, if there is one, and the input. The page has the same name with `.html`.
     #[arg(short, long, value_name = "DRIVE.csv")]
     pub out: Option<PathBuf>,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     #[command(flatten)]

@@ -42,7 +42,6 @@ impl PlotKind {
     }
 }
 
-/// Arguments of `plot`.
 #[derive(Debug, Args)]
 #[command(after_help = PLOT_EXAMPLES, mut_arg("of_ten", hidden), mut_arg("initial_state", hidden), mut_arg("same_units", hidden))]
 pub struct Plot {
@@ -66,13 +65,10 @@ pub struct Plot {
     /// In histories, a band of this probability, such as 0.9
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
-    /// In how many data sets the band is to contain its share.
     #[command(flatten)]
     pub data_sets: DataSetsOptions,
-    /// How the memory begins.
     #[command(flatten)]
     pub beginning: BeginningOptions,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
     #[command(flatten)]

@@ -26,7 +26,6 @@ Examples:
   hysid man -o ~/.local/share/man/man1
   hysid man -o DIR && man -l DIR/hysid-fit.1";
 
-/// Arguments of `models`.
 #[derive(Debug, Args)]
 #[command(after_help = MODELS_EXAMPLES)]
 pub struct Models {
@@ -38,7 +37,6 @@ pub struct Models {
     pub json: bool,
 }
 
-/// Arguments of `completions`.
 #[derive(Debug, Args)]
 #[command(after_help = COMPLETIONS_EXAMPLES)]
 pub struct Completions {
@@ -47,14 +45,12 @@ pub struct Completions {
     pub shell: Shell,
 }
 
-/// Arguments of `man`.
 #[derive(Debug, Args)]
 #[command(after_help = MAN_EXAMPLES)]
 pub struct Man {
     /// Folder for the pages, one of the program and one of each command
     #[arg(short, long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
 }

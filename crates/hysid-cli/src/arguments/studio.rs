@@ -13,7 +13,6 @@ Examples:
 
 No data leave this machine. See docs/studio.md.";
 
-/// Arguments of `studio`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Studio {
