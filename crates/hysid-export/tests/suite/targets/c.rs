@@ -11,7 +11,7 @@ use hysid_export::{Error, InverseOptions, Options, Precision, Target, export};
 use serde_json::json;
 
 use super::case::{Case, MODELS, NAME, written};
-use super::tools::{succeeds, tool};
+use super::tools::{gcc, succeeds, tool};
 use crate::models::{data, path, time_step};
 
 pub const STRICT: [&str; 8] =
@@ -33,9 +33,7 @@ fn test_vectors_agree_in_both_precisions() {
     // One compiler for a model, in turns.
     for ((name, model), compiler) in MODELS.iter().zip(compilers().iter().cycle()) {
         for precision in [Precision::Double, Precision::Single] {
-            let folder = tempfile::tempdir().unwrap();
-            let options = Options { precision, ..Options::named(NAME) };
-            written(model, Target::C, &options, folder.path());
+            let folder = written(model, Target::C, &Options { precision, ..Options::named(NAME) });
             succeeds(Command::new(compiler).current_dir(folder.path()).args(STRICT).args([
                 "actuator.c",
                 "actuator_test.c",
@@ -56,10 +54,8 @@ fn the_header_is_good_for_cpp() {
     else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let (_, model) = &MODELS[0];
     let options = Options { inverse: Some(InverseOptions::default()), ..Options::named(NAME) };
-    written(model, Target::C, &options, folder.path());
+    let folder = written(&MODELS[0].1, Target::C, &options);
     let program = "#include \"actuator_inverse.h\"\nint main() { actuator_model m; actuator_reset(&m); return actuator_step(&m, 1.0) > 1e9; }\n";
     fs::write(folder.path().join("main.cpp"), program).unwrap();
     succeeds(Command::new("gcc").current_dir(folder.path()).args(STRICT).args(["-c", "actuator.c"]));
@@ -115,8 +111,7 @@ fn outputs_equal_those_of_the_library_to_the_last_bit() {
     let Some(compiler) = compilers().into_iter().next() else { return };
     for (name, model) in MODELS.iter() {
         let case = Case::of(model, rows);
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::C, &Options::named(NAME), folder.path());
+        let folder = written(model, Target::C, &Options::named(NAME));
         fs::write(folder.path().join("driver.c"), driver(case.arguments.len(), OUTPUTS)).unwrap();
         let files = ["actuator.c", "driver.c", "-lm", "-o", "driver"];
         succeeds(Command::new(&compiler).current_dir(folder.path()).args(STRICT).args(files));
@@ -202,12 +197,10 @@ fn soak(kinds: &[Argument]) -> String {
 /// `HYSID_SOAK_STEPS=100000000 cargo test --release -p hysid-export --test targets survive` is the long one.
 #[test]
 fn random_steps_survive_the_sanitizers() {
-    let install = "run: sudo apt-get install gcc";
-    let Some(compiler) = tool("exports to C", "gcc", &["--version"], install) else { return };
+    let Some(compiler) = gcc() else { return };
     let steps = std::env::var("HYSID_SOAK_STEPS").unwrap_or_else(|_| "20000".into());
     for (name, model) in MODELS.iter() {
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::C, &Options::named(NAME), folder.path());
+        let folder = written(model, Target::C, &Options::named(NAME));
         fs::write(folder.path().join("soak.c"), soak(&Case::of(model, 1).arguments)).unwrap();
         let sanitizers = ["-O1", "-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
         let files = ["actuator.c", "soak.c", "-lm", "-o", "soak"];
@@ -240,8 +233,7 @@ fn the_band_is_that_of_the_library() {
     let expected = model.predict(&excitation, level).unwrap();
 
     let options = Options { band: Some(level), ..Options::named(NAME) };
-    let folder = tempfile::tempdir().unwrap();
-    written(model, Target::C, &options, folder.path());
+    let folder = written(model, Target::C, &options);
     let arguments = Description::of(model, RateSource::Backward, Precision::Double).arguments;
     let mut rows: Vec<u8> = Vec::new();
     for row in 0..ROWS {

@@ -8,6 +8,7 @@ use hysid::Model;
 use hysid_export::description::{Argument, Description, RateSource};
 use hysid_export::program::Precision;
 use hysid_export::{Options, Target, export};
+use tempfile::TempDir;
 
 use crate::models::{all, path, time_step};
 
@@ -77,8 +78,15 @@ fn numbers(bytes: &[u8]) -> Vec<f64> {
     bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect()
 }
 
+/// A folder with an export.
+pub fn written(model: &Model, to: Target, options: &Options) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    write(model, to, options, folder.path());
+    folder
+}
+
 /// Writes an export into a folder.
-pub fn written(model: &Model, to: Target, options: &Options, folder: &Path) {
+pub fn write(model: &Model, to: Target, options: &Options, folder: &Path) {
     for file in export(model, to, options).unwrap().files {
         let path = folder.join(file.path);
         fs::create_dir_all(path.parent().unwrap()).unwrap();

@@ -23,8 +23,7 @@ fn the_example_tracks_five_times_as_well_with_the_inverse() {
     let train = Specimen::named("terfenol-actuator").unwrap().train();
     let model = Fit::new().model("modified-prandtl-ishlinskii").seed(1).run(&train).unwrap();
     let options = Options { inverse: Some(InverseOptions::default()), ..Options::named(NAME) };
-    let folder = tempfile::tempdir().unwrap();
-    written(&model, Target::C, &options, folder.path());
+    let folder = written(&model, Target::C, &options);
     for compiler in compilers() {
         let files = ["actuator.c", "actuator_inverse.c", "-lm", "-o", "loop"];
         let mut compile = Command::new(&compiler);

@@ -100,8 +100,7 @@ fn importers_find_nothing_wrong_and_outputs_equal_those_of_the_library() {
     let Some(python) = python("exports as FMU", &["numpy", "fmpy"]) else { return };
     // One version for a model, in turns.
     for ((name, model), fmi) in MODELS.iter().zip([FmiVersion::Three, FmiVersion::Two].into_iter().cycle()) {
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::Fmu, &Options { fmi, ..Options::named(NAME) }, folder.path());
+        let folder = written(model, Target::Fmu, &Options { fmi, ..Options::named(NAME) });
         let output = succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(text.starts_with("0 of "), "{name}, {fmi:?}: {text}");

@@ -6,7 +6,7 @@ use std::process::Command;
 use hysid_export::{Options, Target};
 
 use super::case::{Case, MODELS, NAME, written};
-use super::tools::{python, succeeds, tool};
+use super::tools::{gcc, python, succeeds};
 
 /// A program that makes steps with NaN and infinite arguments between others, which must not notice them, and trials after
 /// time steps next to 0, whose slopes must be finite.
@@ -72,13 +72,10 @@ int main(void)
 
 #[test]
 fn invalid_arguments_change_nothing_and_slopes_after_short_steps_are_finite() {
-    let Some(compiler) = tool("exports to C", "gcc", &["--version"], "run: sudo apt-get install gcc") else {
-        return;
-    };
+    let Some(compiler) = gcc() else { return };
     for (label, model) in MODELS.iter() {
         let arguments = Case::of(model, 1).arguments.len();
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::C, &Options::named(NAME), folder.path());
+        let folder = written(model, Target::C, &Options::named(NAME));
         fs::write(folder.path().join("main.c"), program(arguments)).unwrap();
         println!("{label}");
         let flags = ["-std=c99", "-O1", "actuator.c", "main.c", "-lm", "-o", "invalid"];
@@ -92,8 +89,7 @@ fn invalid_arguments_change_nothing_in_python() {
     let Some(python) = python("exports to Python", &["numpy"]) else { return };
     for (label, model) in MODELS.iter() {
         let more = ", 0.01".repeat(Case::of(model, 1).arguments.len() - 1);
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::Python, &Options::named(NAME), folder.path());
+        let folder = written(model, Target::Python, &Options::named(NAME));
         let program = format!(
             "import math, actuator
 a, b = actuator.Model(), actuator.Model()
@@ -113,16 +109,13 @@ for row in range(40):
 /// gcc 12 fused alternating sums and differences in spite of `-ffp-contract=off`.
 #[test]
 fn optimised_code_fuses_no_products_and_sums_and_fast_arithmetic_is_refused() {
-    let Some(compiler) = tool("exports to C", "gcc", &["--version"], "run: sudo apt-get install gcc") else {
-        return;
-    };
+    let Some(compiler) = gcc() else { return };
     let gcc = |folder: &std::path::Path, flags: &[&str]| {
         let flags = ["-std=c99", "-S", "-o", "-"].iter().chain(flags).chain(&["actuator.c"]);
         Command::new(&compiler).current_dir(folder).args(flags).output().unwrap()
     };
     for (label, model) in MODELS.iter() {
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::C, &Options::named(NAME), folder.path());
+        let folder = written(model, Target::C, &Options::named(NAME));
         if cfg!(target_arch = "x86_64") {
             let code = gcc(folder.path(), &["-O3", "-mfma", "-ffp-contract=off"]);
             let text = String::from_utf8(code.stdout).unwrap();

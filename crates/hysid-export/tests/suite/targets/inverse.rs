@@ -12,7 +12,7 @@ use hysid_export::{Error, InverseOptions, Options, Precision, Target, export};
 use super::c::{STRICT, UNIT, compilers, random_others};
 use super::case::{MODELS, NAME, written};
 use super::inverse_case::{InverseCase, code, tight};
-use super::tools::{succeeds, tool};
+use super::tools::{gcc, succeeds};
 
 fn with_inverse(inverse: InverseOptions) -> Options {
     Options { inverse: Some(inverse), ..Options::named(NAME) }
@@ -64,8 +64,7 @@ fn inverses_equal_those_of_the_library_to_the_last_bit() {
     for (number, (name, model)) in MODELS.iter().enumerate() {
         let options = if number % 2 == 0 { InverseOptions::default() } else { tight(model) };
         let case = InverseCase::of(model, options, rows, true);
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::C, &with_inverse(options), folder.path());
+        let folder = written(model, Target::C, &with_inverse(options));
         fs::write(folder.path().join("driver.c"), driver(case.arguments.len() + 1)).unwrap();
         compiled(&compiler, folder.path(), "driver.c");
         let input = folder.path().join("rows");
@@ -95,9 +94,7 @@ fn test_vectors_of_inverses_agree_in_both_precisions() {
         for (precision, inverse) in
             [(Precision::Double, InverseOptions::default()), (Precision::Single, tight(model))]
         {
-            let folder = tempfile::tempdir().unwrap();
-            let options = Options { precision, ..with_inverse(inverse) };
-            written(model, Target::C, &options, folder.path());
+            let folder = written(model, Target::C, &Options { precision, ..with_inverse(inverse) });
             compiled(compiler, folder.path(), "actuator_test.c");
             let output = succeeds(&mut Command::new(folder.path().join("program")));
             let text = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -158,13 +155,11 @@ fn soak(kinds: &[Argument], (low, high): (f64, f64)) -> String {
 /// `HYSID_SOAK_STEPS=1000000 cargo test --release -p hysid-export --test targets inverses_survive` is the long one.
 #[test]
 fn inverses_survive_the_sanitizers() {
-    let install = "run: sudo apt-get install gcc";
-    let Some(compiler) = tool("exports to C", "gcc", &["--version"], install) else { return };
+    let Some(compiler) = gcc() else { return };
     let steps = std::env::var("HYSID_SOAK_STEPS").unwrap_or_else(|_| "1000".into());
     for (name, model) in MODELS.iter() {
-        let folder = tempfile::tempdir().unwrap();
         let inverse = tight(model);
-        written(model, Target::C, &with_inverse(inverse), folder.path());
+        let folder = written(model, Target::C, &with_inverse(inverse));
         let kinds = InverseCase::of(model, inverse, 1, false).arguments;
         fs::write(folder.path().join("soak.c"), soak(&kinds, model.trained_ranges().output)).unwrap();
         let sanitizers = ["-O1", "-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
@@ -183,10 +178,9 @@ fn names_do_not_meet_those_of_an_inverse() {
     for name in ["inverse", "at", "found", "point", "search", "unit", "REACH", "MODEL", "model", "x_inverse"]
     {
         for target in [Target::C, Target::Fmu] {
-            let folder = tempfile::tempdir().unwrap();
             let options = Options { name: name.into(), ..with_inverse(tight(model)) };
             // The binary of a unit is built here too.
-            written(model, target, &options, folder.path());
+            let folder = written(model, target, &options);
             if target == Target::C
                 && let Some(compiler) = compilers.first()
             {

@@ -86,11 +86,10 @@ fn importers_find_nothing_wrong_and_units_of_inverses_agree() {
             0 => (FmiVersion::Three, tight(model)),
             _ => (FmiVersion::Two, InverseOptions::default()),
         };
-        let folder = tempfile::tempdir().unwrap();
         // The band, where there is one, is an output more.
         let band = model.band().map(|_| BandLevel { probability: 0.9, of_ten: 8 });
         let options = Options { fmi, band, inverse: Some(inverse), ..Options::named(NAME) };
-        written(model, Target::Fmu, &options, folder.path());
+        let folder = written(model, Target::Fmu, &options);
         let output = succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(text.starts_with("0 of "), "{name}, {fmi:?}: {text}");

@@ -31,8 +31,7 @@ fn outputs_are_those_of_the_library() {
     let install = "run: sudo apt-get install octave";
     let Some(octave) = tool("exports to MATLAB", "octave-cli", &["--version"], install) else { return };
     for (name, model) in MODELS.iter() {
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::Matlab, &Options::named(NAME), folder.path());
+        let folder = written(model, Target::Matlab, &Options::named(NAME));
         let case = Case::of(model, ROWS);
         fs::write(folder.path().join("rows"), case.bytes()).unwrap();
         fs::write(folder.path().join("driver.m"), driver(case.arguments.len())).unwrap();

@@ -6,7 +6,7 @@ use std::process::Command;
 use hysid_export::{Error, Options, Target, export};
 
 use super::case::{MODELS, written};
-use super::tools::{at_length, python, succeeds, tool};
+use super::tools::{at_length, gcc, python, succeeds, tool};
 
 /// Names of models: those that users choose, and parts of names inside the files.
 const NAMES: [&str; 8] = ["model", "data", "state", "first", "real", "MODEL", "y", "inverse"];
@@ -58,10 +58,7 @@ fn run(target: Target, name: &str, folder: &Path) {
     let (c, c_test) = (format!("{name}.c"), format!("{name}_test.c"));
     match target {
         Target::C | Target::OpenSees => {
-            let Some(compiler) = tool("exports to C", "gcc", &["--version"], "run: sudo apt-get install gcc")
-            else {
-                return;
-            };
+            let Some(compiler) = gcc() else { return };
             compiled(&compiler, &["-std=c99", "-ffp-contract=off", &c, &c_test, "-lm", "-o", "the_test"]);
         }
         Target::Matlab => {
@@ -92,8 +89,7 @@ fn every_name_that_is_not_refused_works() {
                 assert!(is_matlab, "{name}: {target:?}");
                 continue;
             }
-            let folder = tempfile::tempdir().unwrap();
-            written(model, target, &options, folder.path());
+            let folder = written(model, target, &options);
             run(target, name, folder.path());
         }
     }

@@ -27,8 +27,7 @@ fn outputs_are_those_of_the_library() {
     const ROWS: usize = 400;
     let Some(python) = python("exports to ONNX", &["numpy", "onnx", "onnxruntime"]) else { return };
     for (name, model) in MODELS.iter() {
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::Onnx, &Options::named(NAME), folder.path());
+        let folder = written(model, Target::Onnx, &Options::named(NAME));
         let case = Case::of(model, ROWS);
         fs::write(folder.path().join("rows"), case.bytes()).unwrap();
         let arguments = ["-c", DRIVER, &case.arguments.len().to_string()];

@@ -136,8 +136,7 @@ fn the_class_passes_the_test_vectors() {
     let is_material =
         |(name, model): &&(String, Model)| model.names().inputs.len() == 1 && !has_inertia(name);
     for (name, model) in MODELS.iter().filter(is_material) {
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::OpenSees, &Options::named(NAME), folder.path());
+        let folder = written(model, Target::OpenSees, &Options::named(NAME));
         INTERFACE.iter().for_each(|(path, text)| fs::write(folder.path().join(path), text).unwrap());
         fs::write(folder.path().join("driver.cpp"), DRIVER).unwrap();
         let has_time = Case::of(model, 1).has_time().to_string();
@@ -221,8 +220,7 @@ fn native_materials_approach_the_model_with_small_steps() {
         ("BWBN", BoucWen { degradation: Some(pinched), ..plain }),
     ] {
         let model = model_of(law);
-        let folder = tempfile::tempdir().unwrap();
-        written(&model, Target::OpenSees, &Options::named(NAME), folder.path());
+        let folder = written(&model, Target::OpenSees, &Options::named(NAME));
         let script = fs::read_to_string(folder.path().join("actuator.tcl")).unwrap();
         assert!(script.contains(&format!("uniaxialMaterial {command} $tag ")), "{script}");
         let origin = model.input_transform().origin(0);

@@ -23,8 +23,7 @@ fn outputs_equal_those_of_the_library() {
     const ROWS: usize = 3000;
     let Some(python) = python("exports to Python", &["numpy"]) else { return };
     for (name, model) in MODELS.iter() {
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::Python, &Options::named(NAME), folder.path());
+        let folder = written(model, Target::Python, &Options::named(NAME));
         let output = succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(text.starts_with("0 of "), "{name}: {text}");

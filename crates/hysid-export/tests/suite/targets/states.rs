@@ -7,8 +7,8 @@ use std::process::Command;
 use hysid::Model;
 use hysid_export::{InverseOptions, Options, Target};
 
-use super::case::{Case, MODELS, NAME, written};
-use super::tools::{at_length, succeeds, tool};
+use super::case::{Case, MODELS, NAME, write, written};
+use super::tools::{at_length, gcc, succeeds};
 
 /// Models whose states have counters, and those whose loops depend on the state.
 const WITH_COUNTERS: [&str; 7] =
@@ -21,9 +21,7 @@ fn models() -> impl Iterator<Item = &'static (String, Model)> {
 }
 
 fn run(folder: &Path, sources: &[&str]) {
-    let Some(compiler) = tool("exports to C", "gcc", &["--version"], "run: sudo apt-get install gcc") else {
-        return;
-    };
+    let Some(compiler) = gcc() else { return };
     let flags = ["-std=c99", "-O1", "-g", "-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
     let command = &mut Command::new(compiler);
     succeeds(command.current_dir(folder).args(flags).args(sources).args(["-lm", "-o", "states"]));
@@ -78,8 +76,7 @@ int main(void)
 fn damaged_states_are_refused_and_forged_ones_write_nowhere_else() {
     let mut count = 0;
     for (label, model) in models() {
-        let folder = tempfile::tempdir().unwrap();
-        written(model, Target::C, &Options::named(NAME), folder.path());
+        let folder = written(model, Target::C, &Options::named(NAME));
         fs::write(folder.path().join("main.c"), program(Case::of(model, 1).arguments.len())).unwrap();
         run(folder.path(), &["actuator.c", "main.c"]);
         println!("{label}");
@@ -95,7 +92,7 @@ fn a_state_of_another_model_is_refused_and_an_inverse_keeps_its_limits() {
     let inverse = InverseOptions { limits: Some((-1.0, 1.0)), slew: Some(0.1) };
     for (name, model) in [("one", &first.1), ("two", &second.1)] {
         let options = Options { inverse: Some(inverse), ..Options::named(name) };
-        written(model, Target::C, &options, folder.path());
+        write(model, Target::C, &options, folder.path());
     }
     let main = "#include <stdio.h>
 #include <string.h>

@@ -26,6 +26,11 @@ pub fn tool(what: &str, program: &str, probe: &[&str], install: &str) -> Option<
     None
 }
 
+/// The compiler gcc.
+pub fn gcc() -> Option<String> {
+    tool("exports to C", "gcc", &["--version"], "run: sudo apt-get install gcc")
+}
+
 /// A Python with these modules: that of the environment variable `HYSID_PYTHON`, or the machine's.
 pub fn python(what: &str, modules: &[&str]) -> Option<String> {
     let python = env::var("HYSID_PYTHON").unwrap_or_else(|_| "python3".into());
