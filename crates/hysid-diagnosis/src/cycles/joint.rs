@@ -8,7 +8,7 @@ use hysid_core::significant::Significant;
 
 use super::division::Span;
 use super::path::width;
-use crate::branch::Branch;
+use crate::branch::{Branch, BranchSet};
 
 /// A step of the input is a jump if it is so many times those beside it, and this share of the swing.
 const JUMP: (f64, f64) = (3.0, 0.02);
@@ -52,7 +52,7 @@ impl fmt::Display for Joint {
 
 /// The largest jump in a cycle: of the input anywhere, or of the output at the end of the cycle, at its turning points and
 /// where the input changes its pace. Elsewhere a magnet may jump by itself.
-pub(super) fn joint(record: &Record, span: &Span, branches: &[Branch], noise: f64) -> Option<Joint> {
+pub(super) fn joint(record: &Record, span: &Span, survey: &BranchSet, branches: &[Branch]) -> Option<Joint> {
     let (x, y) = (&record.inputs()[0][..], record.output());
     let rows = span.from.floor() as usize..=span.to.ceil() as usize;
     let (inputs, outputs) = (x.get(rows.clone())?, y.get(rows.clone())?);
@@ -60,11 +60,14 @@ pub(super) fn joint(record: &Record, span: &Span, branches: &[Branch], noise: f6
     // A step over the beginning is no part of it.
     let steps = span.from.ceil() as usize..(rows.end() + 1).min(x.len() - 1);
 
+    // Noise of the input is one of the output, by the slope.
+    let input_noise = survey.input_noise.deviation();
+    let noise = survey.output_noise.deviation() + height / swing * input_noise;
     let is_jump = |row: &usize| {
         let step = |row: usize| (x[row + 1] - x[row]).abs();
         let beside = row.saturating_sub(2)..(row + 3).min(x.len() - 1);
         let most = beside.filter(|other| other != row).map(step).fold(0.0, f64::max);
-        step(*row) > f64::max(JUMP.0 * most, JUMP.1 * swing)
+        step(*row) > f64::max(JUMP.0 * most, JUMP.1 * swing) + SURE * input_noise
     };
     let jumps: Vec<usize> = steps.clone().filter(is_jump).collect();
     if let (Some(row), true) = (jumps.first(), jumps.len() <= MOST_JUMPS) {

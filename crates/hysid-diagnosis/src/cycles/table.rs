@@ -502,9 +502,7 @@ impl Reader<'_> {
             return;
         };
         let (middle, swing, height) = (0.5 * (low + high), high - low, (peak - valley).abs());
-        if let Some(joint) =
-            joint(self.record, self.span, self.branches, self.survey.output_noise.deviation())
-        {
+        if let Some(joint) = joint(self.record, self.span, self.survey, self.branches) {
             row.notes.push(format!(
                 "no coercive field and no remanence: {joint} as between records one after the other (--record names a \
                  column that tells them apart)"

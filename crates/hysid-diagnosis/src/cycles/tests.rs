@@ -554,7 +554,36 @@ fn a_cycle_of_two_frequencies_has_none_and_round_tips_are_closed() {
     }
 }
 
-/// Viscous forces are 0 at the tips: what noise leaves there is no stiffness, and damps nothing.
+/// Steady ellipses one after the other that begin within a cycle, as above: where one ends and the next begins, a cycle has
+/// no figures.
+#[test]
+fn a_cycle_with_a_joint_has_no_coercive_field() {
+    for (begins, amplitude) in [(1.0, 1.0), (1.0, 3.0), (0.5 * PI, 1.0), (0.5 * PI, 2.5), (0.8 * PI, 1.2)] {
+        let row = |(a, lag): (f64, f64), row: usize| {
+            let phase = begins + TAU * row as f64 / 100.0;
+            (a * phase.sin(), a * (phase - lag).sin())
+        };
+        let loops = [(2.0, 0.3), (amplitude, 0.5)];
+        let (x, y) = loops.into_iter().flat_map(|of| (0..300).map(move |number| row(of, number))).unzip();
+        let options = CycleOptions {
+            field: Some(Field::Magnet),
+            division: Some(Division::Zero),
+            ..CycleOptions::default()
+        };
+        for cycle in CycleTable::of(&data(x, y), &options).unwrap().complete() {
+            let found = (cycle.coercive_input, cycle.remanent_output);
+            let (a, lag) = loops[usize::from(cycle.rows.0 >= 300)];
+            match cycle.rows.0 < 299 && cycle.rows.1 > 300 {
+                true => assert_eq!(found, (None, None), "{begins} {amplitude}: {:?}", cycle.notes),
+                false => {
+                    assert_relative_eq!(found.0.unwrap(), a * lag.sin(), max_relative = 0.01);
+                    assert_relative_eq!(found.1.unwrap(), a * lag.sin(), max_relative = 0.01);
+                }
+            }
+        }
+    }
+}
+
 /// `x = a sin φ`, `y = a sin(φ - δ)`: coercive field and remanence `a sin δ`. Steady loops one after the other.
 #[test]
 fn smaller_loops_and_jumps_behind_a_cycle_are_not_in_its_figures() {
@@ -618,6 +647,7 @@ fn repeated_rows_hide_no_cycles() {
     found.iter().zip(amplitudes).for_each(|(a, b)| assert_relative_eq!(a, &b, max_relative = 2e-3));
 }
 
+/// Viscous forces are 0 at the tips: what noise leaves there is no stiffness, and damps nothing.
 #[test]
 fn noise_at_the_tips_is_no_stiffness() {
     let noise = |row: usize| 0.04 * (mix(row as u64) as f64 / u64::MAX as f64 - 0.5);

@@ -147,9 +147,8 @@ int main(void)
         (InverseOptions { slew: Some(0.2), ..inverse }, 0),
     ];
     for (other, is_same) in others {
-        let sibling = tempfile::tempdir().unwrap();
         let options = Options { inverse: Some(other), ..Options::named("one") };
-        written(&first.1, Target::C, &options, sibling.path());
+        let sibling = written(&first.1, Target::C, &options);
         fs::write(sibling.path().join("main.c"), format!("#define IS_SAME {is_same}\n{main}")).unwrap();
         fs::copy(folder.path().join("state.bin"), sibling.path().join("state.bin")).unwrap();
         run(sibling.path(), &["one.c", "one_inverse.c", "main.c"]);
