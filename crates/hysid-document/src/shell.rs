@@ -32,6 +32,7 @@ mod tests {
     fn shell_arguments_are_quoted_where_needed() {
         assert_eq!(shown(Path::new("a/b-1.csv")), "a/b-1.csv");
         assert_eq!(shown(Path::new("my data.csv")), "'my data.csv'");
+        assert_eq!(shown(Path::new("$(touch x).csv")), "'$(touch x).csv'");
         assert_eq!(shown(Path::new("a\n\x1b'b\\.csv")), r"$'a\n\x1b\'b\\.csv'");
         assert_eq!(shown(Path::new("a\u{202e}b")), r"$'a\U0000202eb'");
     }

@@ -63,7 +63,7 @@ fn report<'a>(model: &'a Model, data: &'a Dataset, warnings: &'a [String]) -> Re
         frequency_response: None,
         warnings,
         understood: &[],
-        model_file: "my model.json".into(),
+        model_file: "my $(model).json".into(),
         seconds: 1.25,
     }
 }
@@ -80,7 +80,7 @@ fn the_page_is_whole_and_needs_nothing_else() {
         assert!(script.ends_with("</script>\n</body>\n</html>\n") && !script.contains("import"));
         assert!(
             page.contains("beware of &lt;this&gt;")
-                && page.contains("hysid evaluate &quot;my model.json&quot;")
+                && page.contains("hysid evaluate &#39;my $(model).json&#39;")
         );
         for reference in ["src=", "href=\"h", "url(", "@import", "<link"] {
             assert!(!page.contains(reference), "{reference}");

@@ -1,6 +1,9 @@
 //! How to go on with the model, and what it cannot do.
 
+use std::path::Path;
+
 use hysid::model::Model;
+use hysid_document::shell::shown;
 use hysid_document::{Cell, Item, Part, Table, span, unit};
 
 use crate::Report;
@@ -11,7 +14,7 @@ pub fn sections(report: &Report) -> [Part; 2] {
 }
 
 fn commands(report: &Report) -> Part {
-    let file = quoted(&report.model_file);
+    let file = shown(Path::new(&report.model_file));
     let band = if report.model.band().is_some() { " --band 0.9" } else { "" };
     let parts = [
         Part::paragraph("Evaluate it on new measured data:"),
@@ -79,14 +82,4 @@ fn limits(report: &Report) -> Part {
 fn wears_out(model: &Model) -> bool {
     let network = model.network().is_some_and(|network| network.architecture().deterioration);
     network || model.ensemble().is_some_and(|ensemble| ensemble.members().iter().any(wears_out))
-}
-
-/// A file name as a shell takes it.
-fn quoted(file: &str) -> String {
-    let plain = |letter: char| letter.is_alphanumeric() || "._-/+:\\".contains(letter);
-    if !file.is_empty() && file.chars().all(plain) {
-        file.into()
-    } else {
-        format!("\"{}\"", file.replace('"', "\\\""))
-    }
 }
