@@ -19,6 +19,9 @@ const MOST_JUMPS: usize = 2;
 /// A change of the input's pace is so many times those beside it.
 const PACE: f64 = 3.0;
 
+/// More rows with a change of pace in a cycle are those of rows at uneven steps; a joint has up to three.
+const MOST_KINKS: usize = 4;
+
 /// A jump of the output is so many times what the rows beside it deviate from straight lines, and this share of the height.
 const BREAK: (f64, f64) = (3.0, 0.005);
 
@@ -36,7 +39,7 @@ const BESIDE: usize = 4;
 pub(super) enum Joint {
     /// The input, between two rows.
     Input(f64),
-    /// The output, where the cycle ends, or the input turns or changes its pace.
+    /// The output, where the cycle ends or the input changes its pace.
     Output(f64),
 }
 
@@ -50,8 +53,8 @@ impl fmt::Display for Joint {
     }
 }
 
-/// The largest jump in a cycle: of the input anywhere, or of the output at the end of the cycle, at its turning points and
-/// where the input changes its pace. Elsewhere a magnet may jump by itself.
+/// The largest jump in a cycle: of the input anywhere, or of the output at the end of the cycle and where an input that is
+/// smooth otherwise changes its pace. Elsewhere the output may jump by itself, at turning points by friction.
 pub(super) fn joint(record: &Record, span: &Span, survey: &BranchSet, branches: &[Branch]) -> Option<Joint> {
     let (x, y) = (&record.inputs()[0][..], record.output());
     let rows = span.from.floor() as usize..=span.to.ceil() as usize;
@@ -74,10 +77,12 @@ pub(super) fn joint(record: &Record, span: &Span, survey: &BranchSet, branches: 
         return Some(Joint::Input(x[row + 1] - x[*row]));
     }
 
-    let turns = branches[span.branches.clone()].iter().map(|branch| branch.rows.start);
-    let kinks = steps.clone().filter(|&row| changes_pace(x, row));
+    let turns = || branches[span.branches.clone()].iter().map(|branch| branch.rows.start);
+    let is_at_a_turn = |row: usize| turns().any(|turn| turn.abs_diff(row) <= BESIDE);
+    let kinks: Vec<usize> = steps.clone().filter(|&row| changes_pace(x, row) && !is_at_a_turn(row)).collect();
+    let kinks = if kinks.len() <= MOST_KINKS { kinks } else { Vec::new() };
     let near =
-        turns.chain([span.to.round() as usize]).chain(kinks).flat_map(|row| row.saturating_sub(2)..row + 2);
+        kinks.into_iter().chain([span.to.round() as usize]).flat_map(|row| row.saturating_sub(2)..row + 2);
     let jumps = near.filter(|row| steps.contains(row)).filter_map(|row| {
         let jump = jump_of_output(x, y, row)?;
         let beside = (row.saturating_sub(BESIDE)..row.saturating_sub(1)).chain(row + 2..row + 1 + BESIDE);
