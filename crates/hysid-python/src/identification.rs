@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 
 use crate::data::Dataset;
 use crate::failure::refused;
-use crate::interruption::{PAUSE, no_result};
+use crate::interruption::waited_for;
 use crate::model::Model;
 
 /// What is to be identified, and how.
@@ -194,7 +194,7 @@ fn attended<T: Send + 'static>(
     let pool = hysid::thread_pool(threads);
     let pool = pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start the threads: {error}")))?;
     let exchange = Arc::new(Exchange::default());
-    let (answer, mut answers) = channel();
+    let (answer, answers) = channel();
     let with_work = Arc::clone(&exchange);
     std::thread::spawn(move || {
         let mut observer = |progress: &Progress<'_>| with_work.observe(progress, deadline);
@@ -204,15 +204,7 @@ fn attended<T: Send + 'static>(
     });
     let mut interrupted = false;
     let mut failure = None;
-    let done = loop {
-        let answers = &mut answers;
-        match py.detach(move || answers.recv_timeout(PAUSE)) {
-            Ok(done) => break done,
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => {
-                return Err(no_result());
-            }
-        }
+    let done = waited_for(py, answers, || {
         if let Err(error) = py.check_signals() {
             exchange.ask_to_stop();
             if interrupted || !error.is_instance_of::<PyKeyboardInterrupt>(py) {
@@ -224,7 +216,8 @@ fn attended<T: Send + 'static>(
             exchange.ask_to_stop();
             failure = Some(error);
         }
-    };
+        Ok(())
+    })?;
     if let Some(error) = failure {
         return Err(error);
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use hysid::data::initial_state::InitialState;
-use hysid::data::record::{Excitation, Record};
+use hysid::data::record::Excitation;
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
@@ -178,8 +178,7 @@ impl Model {
             true => model.evaluate_after_warm_up(&set),
             false => model.evaluate(&set).map(Some),
         };
-        let operations = self.model.work_of_longest_row()
-            * data.set.records().iter().map(Record::len).sum::<usize>() as f64;
+        let operations = self.model.work_of_longest_row() * data.set.rows() as f64;
         let errors = interruptible_if_long(py, operations, evaluate)?;
         let errors = errors.ok_or_else(|| refused("no row after the warm-up has a measured output"))?;
         serde_json::to_string(&errors).map_err(refused)

@@ -59,7 +59,8 @@ fn check_warm_up(data: &Dataset, request: &FitSpec) -> Result<()> {
     if warm_up == 0 || data.scored() < FEWEST_ROWS {
         return Ok(());
     }
-    let found = data.clone().warmed_up(warm_up).scored();
+    let after = data.records().iter().flat_map(|record| record.output().iter().skip(warm_up));
+    let found = after.filter(|y| !y.is_nan()).count();
     let problem = DataProblem::LongWarmUp { warm_up, found, needed: FEWEST_ROWS };
     match found < FEWEST_ROWS {
         true => Err(data.records()[0].defect(None, Some(Channel::Output), problem)),

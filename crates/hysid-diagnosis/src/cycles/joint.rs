@@ -72,15 +72,22 @@ pub(super) fn joint(record: &Record, span: &Span, survey: &BranchSet, branches: 
         let most = beside.filter(|other| other != row).map(step).fold(0.0, f64::max);
         step(*row) > f64::max(JUMP.0 * most, JUMP.1 * swing) + SURE * input_noise
     };
-    let jumps: Vec<usize> = steps.clone().filter(is_jump).collect();
+    let jumps: Vec<usize> = steps.clone().filter(is_jump).take(MOST_JUMPS + 1).collect();
     if let (Some(row), true) = (jumps.first(), jumps.len() <= MOST_JUMPS) {
         return Some(Joint::Input(x[row + 1] - x[*row]));
     }
 
-    let turns = || branches[span.branches.clone()].iter().map(|branch| branch.rows.start);
-    let is_at_a_turn = |row: usize| turns().any(|turn| turn.abs_diff(row) <= BESIDE);
-    let kinks: Vec<usize> = steps.clone().filter(|&row| changes_pace(x, row) && !is_at_a_turn(row)).collect();
-    let kinks = if kinks.len() <= MOST_KINKS { kinks } else { Vec::new() };
+    // Branches are in the order of their rows.
+    let of_cycle = &branches[span.branches.clone()];
+    let is_at_a_turn = |row: usize| {
+        let next = of_cycle.partition_point(|branch| branch.rows.start + BESIDE < row);
+        of_cycle.get(next).is_some_and(|branch| branch.rows.start <= row + BESIDE)
+    };
+    let is_kink = |row: &usize| changes_pace(x, *row) && !is_at_a_turn(*row);
+    let mut kinks: Vec<usize> = steps.clone().filter(is_kink).take(MOST_KINKS + 1).collect();
+    if kinks.len() > MOST_KINKS {
+        kinks.clear();
+    }
     let near =
         kinks.into_iter().chain([span.to.round() as usize]).flat_map(|row| row.saturating_sub(2)..row + 2);
     let jumps = near.filter(|row| steps.contains(row)).filter_map(|row| {

@@ -439,20 +439,20 @@ impl Reader<'_> {
     fn strands(&self, tips: &Tips, (low, high): (f64, f64)) -> Option<(Strand, Strand)> {
         let (peak, valley) = (tips.peak?, tips.valley?);
         let beyond = CLOSED * (high - low);
-        let down = self.strand(&peak, valley.input + beyond, peak.input + beyond);
-        let up = self.strand(&valley, peak.input - beyond, valley.input - beyond);
+        let closes = output_closes(self.survey, self.record.output(), (self.span.from, self.span.to));
+        let down = self.strand(&peak, valley.input + beyond, peak.input + beyond, closes);
+        let up = self.strand(&valley, peak.input - beyond, valley.input - beyond, closes);
         Some((down, up))
     }
 
     /// The way from a turning point on until the input reaches `target`, and no further than where it turns beyond
     /// `limit`. A loop that closes goes on where it began; one that does not, into the next cycle.
-    fn strand(&self, tip: &Tip, target: f64, limit: f64) -> Strand {
+    fn strand(&self, tip: &Tip, target: f64, limit: f64, closes: bool) -> Strand {
         let falls = target < tip.input;
         let is_past = |x: f64, level: f64| if falls { x <= level } else { x >= level };
         // A smaller loop that goes through the middle is not on the way.
         let back = (0.5 - BACK) * target + (0.5 + BACK) * tip.input;
         let (x, (from, to)) = (&self.record.inputs()[0], (self.span.from, self.span.to));
-        let closes = output_closes(self.survey, self.record.output(), (from, to));
         let mut strand = Strand::default();
         for branch in self.branches.get(tip.leaves..).unwrap_or_default() {
             let turns_back = is_past(branch.from, back) && !is_past(branch.to, back);

@@ -73,8 +73,8 @@ const RATE_COMPANDING: f64 = 0.1;
 const OTHER_PENALTIES: [Regularisation; 2] =
     [Regularisation { ridge: 1e-6, decay: 1e-7 }, Regularisation { ridge: 1e-10, decay: 1e-12 }];
 
+/// Epochs of a network and of a recurrent one. Designed.
 const EPOCHS: usize = 25;
-
 const EPOCHS_OF_RECURRENT: usize = 40;
 
 /// Starts of a model with inertia for each start of another candidate; its search drops those with the larger errors.

@@ -10,7 +10,7 @@ fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
     Ok((1..=count).map(|i| largest * (i as f64 / (count + 1) as f64).powf(exponent)).collect())
 }
 
-/// Rejects no operators and more than so many; also those of another option.
+/// Rejects the value of an option that is not from 1 to `most`.
 pub(crate) fn check_count(option: &'static str, count: usize, most: usize) -> Result<()> {
     match (1..=most).contains(&count) {
         true => Ok(()),
