@@ -35,7 +35,7 @@ use examples::*;
 pub use force::{Force, MotionOptions};
 pub use limits::Preview;
 pub use mass::Mass;
-pub use model_options::{ModelOptions, flag};
+pub use model_options::ModelOptions;
 pub use plan::Plan;
 pub use plot::{Plot, PlotKind};
 pub use program::{Completions, Man, Models};

@@ -5,6 +5,7 @@ use std::path::{self, Path, PathBuf};
 
 use anyhow::{Error, Result, anyhow};
 use hysid_document::Page;
+use hysid_document::shell::quoted;
 pub use hysid_document::shell::shown;
 pub use hysid_files::reason;
 use hysid_files::{Destination, Failure, Kind};
@@ -55,8 +56,8 @@ pub fn write_page(destination: &Destination, mut page: Page, inputs: &[impl AsRe
 /// The command line as a shell takes it.
 fn command() -> String {
     let arguments = std::env::args_os().skip(1);
-    let shown = arguments.map(|argument| shown(Path::new(&argument)));
-    std::iter::once("hysid".to_string()).chain(shown).collect::<Vec<_>>().join(" ")
+    let quoted = arguments.map(|argument| quoted(&argument.to_string_lossy()));
+    std::iter::once("hysid".to_string()).chain(quoted).collect::<Vec<_>>().join(" ")
 }
 
 /// Writes a file that took long to compute. If that fails, it is put elsewhere, and the error says where.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use clap::CommandFactory;
+use hysid_document::shell::option;
 
 use crate::arguments::Arguments;
 use crate::files::shown;
@@ -45,8 +46,8 @@ fn value_of_force(typed: impl IntoIterator<Item = String>) -> Option<String> {
 }
 
 fn applied_force(column: &str) -> String {
-    let column = shown(Path::new(column));
-    format!("--force replaces files; a column with the applied force is named by --applied-force {column}")
+    let option = option("applied-force", column);
+    format!("--force replaces files; a column with the applied force is named by {option}")
 }
 
 /// What follows an error of a command that names neither an option nor a command that helps: where its options are

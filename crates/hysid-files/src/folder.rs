@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::failure::Failure;
 use crate::lock::Lock;
-use crate::{leftovers, temporary};
+use crate::{leftovers, reading, temporary};
 use changes::Changes;
 
 /// Files of a manifest with their checksums.
@@ -113,7 +113,7 @@ impl Folder<'_> {
         if !is_plain(root, self.manifest) {
             return None;
         }
-        let text = fs::read_to_string(root.join(self.manifest)).ok()?;
+        let text = String::from_utf8(reading::read(&root.join(self.manifest)).ok()?).ok()?;
         let mut listed: BTreeMap<String, String> = (self.listed)(&text)?.into_iter().collect();
         listed.insert(self.manifest.into(), (self.checksum)(text.as_bytes()));
         Some(listed)
@@ -136,14 +136,15 @@ impl Folder<'_> {
             Ok(_) => {}
         }
         let is_ours = listed.get(name).is_some_and(|sum| self.has_sum(&path, sum));
-        if is_ours || fs::read(&path).is_ok_and(|old| old == content) {
+        if is_ours || reading::read(&path).is_ok_and(|old| old == content) {
             return Ok(false);
         }
         if self.force { Ok(true) } else { Err(Failure::Changed(shown)) }
     }
 
     fn has_sum(&self, path: &Path, sum: &str) -> bool {
-        fs::read(path).is_ok_and(|content| (self.checksum)(&content) == sum)
+        // Nothing that Hysid writes into a folder is larger than what is read.
+        reading::read(path).is_ok_and(|content| (self.checksum)(&content) == sum)
     }
 }
 
@@ -312,6 +313,17 @@ mod tests {
         fs::write(path.join("list"), "list:../mine=mine").unwrap();
         folder(&path, false).write(&FILES).unwrap();
         assert_eq!(fs::read(place.path().join("mine")).unwrap(), b"mine");
+    }
+
+    #[test]
+    fn a_manifest_that_names_an_endless_file_reads_none_of_it() {
+        let (_place, path) = written();
+        fs::File::create(path.join("huge")).unwrap().set_len(1 << 40).unwrap();
+        fs::write(path.join("list"), "list:a.txt=one huge=one").unwrap();
+        folder(&path, false).write(&FILES).unwrap();
+        assert!(path.join("huge").exists());
+        fs::File::options().write(true).open(path.join("a.txt")).unwrap().set_len(1 << 40).unwrap();
+        assert!(matches!(folder(&path, false).write(&FILES), Err(Failure::Changed(_))));
     }
 
     #[test]

@@ -24,7 +24,12 @@ const LARGEST: u64 = 1 << 28;
 /// As [`open`]; a file of more than 256 MB.
 pub fn read(path: &Path) -> Result<Vec<u8>, String> {
     let file = open(path)?;
-    read_from(&path.display().to_string(), file)
+    let name = path.display().to_string();
+    // What has no length, such as a pipe, is read as far as it may be long.
+    match file.metadata() {
+        Ok(found) if found.is_file() && found.len() > LARGEST => Err(too_large(&name)),
+        _ => read_from(&name, file),
+    }
 }
 
 /// As [`read`], from what is open under this name.
@@ -32,9 +37,13 @@ pub fn read_from(name: &str, from: impl Read) -> Result<Vec<u8>, String> {
     let mut content = Vec::new();
     from.take(LARGEST + 1).read_to_end(&mut content).map_err(|error| unreadable(name, &error))?;
     match content.len() as u64 > LARGEST {
-        true => Err(format!("{name}: has more than {} MB", LARGEST >> 20)),
+        true => Err(too_large(name)),
         false => Ok(content),
     }
+}
+
+fn too_large(name: &str) -> String {
+    format!("{name}: has more than {} MB", LARGEST >> 20)
 }
 
 /// What is said of a file of this name that cannot be read.

@@ -6,7 +6,6 @@ pub mod values;
 
 use std::collections::HashMap;
 use std::ops::Range;
-use std::path::Path;
 
 use anyhow::{Result, bail, ensure};
 use hysid_core::data::rate::RateMethod;
@@ -19,7 +18,7 @@ use self::guess::Guess;
 use self::values::{Running, Seen, numbers};
 use crate::usage::Usage;
 use hysid_core::data::unit::{self, Conversion};
-use hysid_document::shell::shown;
+use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
 use hysid_tables::{Head, Table, is_record};
 
@@ -52,10 +51,10 @@ impl ColumnChoice {
             RateOption::Choice(_) => None,
         };
         let named = [("record", &self.record), ("time", &self.time), ("output", &self.output)];
-        let named = named.into_iter().filter_map(|(option, name)| Some((option, name.as_ref()?)));
+        let named = named.into_iter().filter_map(|(of, name)| Some((of, name.as_ref()?)));
         let named = named.chain(self.input.iter().map(|name| ("input", name)));
         let named = named.chain(rate.map(|name| ("rate", name)));
-        named.map(|(option, name)| format!("--{option} {}", shown(Path::new(name)))).collect()
+        named.map(|(of, name)| option(of, name)).collect()
     }
 }
 

@@ -17,7 +17,7 @@ use crate::columns::{ColumnChoice, Roles};
 use crate::record_names::RecordNames;
 use crate::units::Factors;
 use crate::usage::Usage;
-use hysid_document::shell::shown;
+use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
 
 /// Measured data and the tables they come from.
@@ -455,7 +455,7 @@ pub fn checked(number: Result<f64, String>, cell: &str, kind: Kind, is_first: bo
             let hint = match (kind, problem.ends_with("number")) {
                 (Kind::Optional, true) if cell.trim().len() <= LONGEST_WORD => {
                     let cell = cell.trim();
-                    format!(" (if it stands for a missing value: --missing {})", shown(Path::new(cell)))
+                    format!(" (if it stands for a missing value: {})", option("missing", cell))
                 }
                 (Kind::Required { if_no_number: Some(hint), .. }, true) if is_first => format!(" ({hint})"),
                 _ => String::new(),

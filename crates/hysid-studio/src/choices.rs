@@ -4,6 +4,7 @@ use hysid::options::ModelName;
 use hysid::options::network::Trainer;
 use hysid::options::table::{FitOption, OPTIONS, Values};
 use hysid::specimens::Specimen;
+use hysid_document::shell::flag;
 use hysid_export::Target;
 use hysid_records::{READING_OPTIONS, ReadingOption};
 use hysid_report::BAND;
@@ -101,9 +102,4 @@ impl OptionChoice {
             },
         }
     }
-}
-
-/// The name of an option on the command line.
-pub fn flag(name: &str) -> String {
-    format!("--{}", name.replace('_', "-"))
 }

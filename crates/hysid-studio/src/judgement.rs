@@ -137,10 +137,10 @@ pub fn members(model: &Model, data: &Dataset) -> Result<Vec<(String, Vec<f64>)>>
     ensemble.members().iter().enumerate().map(run).collect()
 }
 
-/// A run, with the numbers of its model and its file.
-type Kept = ((u64, u64), Arc<Run>);
+/// A run, with its model and the number of its file.
+type Kept = (Arc<Model>, u64, Arc<Run>);
 
-/// The last runs, by the numbers of model and file.
+/// The last runs, by model and number of the file.
 #[derive(Default)]
 pub struct Runs {
     kept: Mutex<VecDeque<Kept>>,
@@ -148,17 +148,17 @@ pub struct Runs {
 
 impl Runs {
     /// The run of a model over a file; it is made if it is not kept.
-    pub fn of(&self, model: u64, file: u64, make: impl FnOnce() -> Result<Run>) -> Result<Arc<Run>> {
-        let key = (model, file);
+    pub fn of(&self, model: &Arc<Model>, file: u64, make: impl FnOnce() -> Result<Run>) -> Result<Arc<Run>> {
         let kept = || self.kept.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        let known = kept().iter().find(|(known, _)| *known == key).map(|(_, run)| Arc::clone(run));
+        let is_asked = |(of, number, _): &&Kept| Arc::ptr_eq(of, model) && *number == file;
+        let known = kept().iter().find(is_asked).map(|(.., run)| Arc::clone(run));
         if let Some(known) = known {
             return Ok(known);
         }
         let run = Arc::new(make()?);
         let mut kept = kept();
         kept.truncate(MOST_KEPT - 1);
-        kept.push_front((key, Arc::clone(&run)));
+        kept.push_front((Arc::clone(model), file, Arc::clone(&run)));
         Ok(run)
     }
 

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use anyhow::Result;
 use hysid::data::metrics::Errors;
 use hysid::model::Model;
 use hysid_document::unit;
@@ -15,6 +16,7 @@ use crate::fitting::FitState;
 use crate::folder::Folder;
 use crate::project::{ChosenColumns, Project, ProjectFile, ProjectModel, Use};
 use crate::view::{FileView, View};
+use crate::words::said;
 
 #[derive(Debug, Serialize)]
 pub struct Shown {
@@ -122,7 +124,7 @@ impl Shown {
         folder: &Folder,
         view: &View,
         fit: Option<FitState>,
-        model: impl Fn(&ProjectModel) -> Option<Arc<Model>>,
+        model: impl Fn(&ProjectModel) -> Result<Arc<Model>>,
         version: u64,
     ) -> Self {
         let known: HashMap<u64, &FileView> = view.files.iter().map(|file| (file.id, &**file)).collect();
@@ -203,10 +205,10 @@ fn records(data: &Data) -> Vec<ShownRecord> {
 }
 
 impl ShownModel {
-    fn of(project: &Project, stored: &ProjectModel, model: Option<Arc<Model>>) -> Self {
+    fn of(project: &Project, stored: &ProjectModel, model: Result<Arc<Model>>) -> Self {
         let begun = &stored.begun;
-        let name = model.as_ref().map_or_else(String::new, |model| model.name().name().into());
-        let problem = model.is_none().then(|| "its file is missing or damaged".to_string());
+        let name = model.as_ref().map_or_else(|_| String::new(), |model| model.name().name().into());
+        let problem = model.as_ref().err().map(said);
         let end = if stored.was_interrupted { ", interrupted" } else { "" };
         Self {
             id: begun.id,
@@ -220,7 +222,7 @@ impl ShownModel {
             options: begun.request.options.clone(),
             has_report: stored.report.is_some(),
             problem,
-            facts: model.map(|model| Facts::of(&model)),
+            facts: model.ok().map(|model| Facts::of(&model)),
         }
     }
 }

@@ -7,11 +7,9 @@ mod models;
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
 
 use anyhow::Result;
-use hysid::model::Model;
 use tokio::sync::watch;
 
 use crate::fitting::Fits;
@@ -21,6 +19,7 @@ use crate::project::{Project, ProjectModel};
 use crate::shown::Shown;
 use crate::view::{AtHand, View};
 use fits::Found;
+use models::Models;
 
 pub struct Studio {
     folder: Folder,
@@ -36,7 +35,7 @@ pub struct Studio {
     /// Held while a fit begins, so that two requests do not begin two.
     beginning: Mutex<()>,
     runs: Runs,
-    models: Mutex<HashMap<u64, Arc<Model>>>,
+    models: Models,
     /// Numbers of changes: of the project, and of the fit.
     news: watch::Sender<News>,
 }
@@ -62,7 +61,7 @@ impl Studio {
             unsaved: Mutex::default(),
             beginning: Mutex::default(),
             runs: Runs::default(),
-            models: Mutex::default(),
+            models: Models::default(),
             news: watch::Sender::new(News::default()),
         };
         // On a full disk the project opens all the same, and the page says so.
@@ -138,7 +137,7 @@ impl Studio {
     /// The whole state, as the page shows it.
     pub fn shown(&self) -> Shown {
         let project = self.project().clone();
-        let model = |stored: &ProjectModel| self.model(stored.begun.id).ok();
+        let model = |stored: &ProjectModel| self.model(stored.begun.id);
         Shown::of(&project, &self.folder, &self.view(), self.fits.state(), model, self.news.borrow().project)
     }
 

@@ -7,14 +7,13 @@ use anyhow::{Context, Result, anyhow};
 use hysid::model::Model;
 use hysid::options::table::{OPTIONS, Values};
 use hysid::termination::Termination;
-use hysid_document::shell::shown;
+use hysid_document::shell::{flag, option, shown};
 use hysid_export::{Options, Target};
 use hysid_records::ReadingChoice;
 use serde::Serialize;
 use serde_json::Value;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-use crate::choices::flag;
 use crate::project::{Begun, ProjectModel};
 
 /// A model for a target, as one archive; and its name.
@@ -74,15 +73,15 @@ impl Lines {
 fn shell(stored: &ProjectModel, folder: &Path) -> String {
     let (begun, columns) = (&stored.begun, &stored.begun.columns);
     let mut words = vec!["hysid fit".to_string()];
-    words.extend(begun.files.iter().map(|file| quoted(&format!("data/{file}"))));
+    words.extend(begun.files.iter().map(|file| shown(&Path::new("data").join(file))));
     words.extend(columns.choice().options());
-    words.extend(begun.rate_method().map(|method| format!("--rate {}", quoted(method))));
+    words.extend(begun.rate_method().map(|method| option("rate", method)));
     words.extend(of_reading(&begun.understanding.reading));
     for (name, value) in chosen(begun) {
         words.extend(word(name, value));
     }
     words.extend(begun.request.time_limit.map(|seconds| format!("--time-limit {seconds}")));
-    words.push(format!("-o {}", quoted(&stored.file)));
+    words.push(format!("-o {}", shown(Path::new(&stored.file))));
     format!("cd {}\n{}", shown(folder), words.join(" "))
 }
 
@@ -98,10 +97,10 @@ fn chosen(begun: &Begun) -> Vec<(&String, &Value)> {
 fn of_reading(reading: &ReadingChoice) -> Vec<String> {
     let Ok(Value::Object(named)) = serde_json::to_value(reading) else { unreachable!("it is a map") };
     let words = |(name, value): (String, Value)| match value {
-        // One for each cell, which may begin with a minus sign.
+        // One for each cell.
         Value::Array(cells) => {
             let cells = cells.iter().filter_map(Value::as_str);
-            cells.map(|cell| format!("{}={}", flag(&name), quoted(cell))).collect()
+            cells.map(|cell| option(&name, cell)).collect()
         }
         value => word(&name, &value).into_iter().collect::<Vec<String>>(),
     };
@@ -118,11 +117,7 @@ fn word(name: &str, value: &Value) -> Option<String> {
         Value::Array(all) => all.iter().map(ToString::to_string).collect::<Vec<String>>().join(","),
         other => other.to_string(),
     };
-    Some(format!("{} {}", flag(name), quoted(&value)))
-}
-
-fn quoted(text: &str) -> String {
-    shown(Path::new(text))
+    Some(option(name, &value))
 }
 
 /// Python takes columns of arrays, so a table that is read in another way than pandas does has no line.

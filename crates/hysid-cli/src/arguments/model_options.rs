@@ -41,15 +41,10 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     OPTIONS.iter().map(|option| option.name)
 }
 
-/// An option as a flag of the command line.
-pub fn flag(name: &str) -> String {
-    name.replace('_', "-")
-}
-
 fn argument(option: &'static FitOption) -> Arg {
     let help = format!("{} [default: {}]", option.meaning, option.default_in_words());
     let argument = Arg::new(option.name)
-        .long(flag(option.name))
+        .long(option.name.replace('_', "-"))
         .help(&help)
         .help_heading(option.group.heading())
         .hide_short_help(!IN_SHORT_HELP.contains(&option.name));

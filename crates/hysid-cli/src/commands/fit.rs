@@ -16,12 +16,13 @@ use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};
 use hysid::options::network::FitOptions;
 use hysid::options::{FitSpec, ModelName};
 use hysid::termination::Termination;
+use hysid_document::shell::flag;
 use hysid_files::{Destination, Kind};
 use hysid_records::Roles;
 use hysid_report::{Identified, initial_state};
 
 use crate::Outcome;
-use crate::arguments::{Fit, RateOption, flag};
+use crate::arguments::{Fit, RateOption};
 use crate::checkpoint::{self, Keeper};
 use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
@@ -141,7 +142,7 @@ fn check_checkpoints(request: &FitSpec) -> Result<()> {
 
 pub fn warn_of_ignored(chosen: &NamedOptions) {
     for Ignored { option, by } in chosen.ignored() {
-        warning(format_args!("{by} ignores --{}", flag(option)));
+        warning(format_args!("{by} ignores {}", flag(option)));
     }
 }
 

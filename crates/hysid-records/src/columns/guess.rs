@@ -3,12 +3,11 @@
 //! names the options that answer it.
 
 use std::ops::Range;
-use std::path::Path;
 
 use anyhow::{Result, anyhow, bail};
 use hysid_core::data::column::{Course, Domain, one_signal};
 use hysid_core::data::unit;
-use hysid_document::shell::shown;
+use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
 use hysid_tables::Table;
 
@@ -191,10 +190,10 @@ impl<'t> Guess<'t> {
             Course::Constant => return doubt(Rank::Constant, "constant"),
             Course::Counts => return doubt(Rank::Counts, "counts the rows"),
             Course::CountsInSteps => {
-                let record = shown(Path::new(name));
+                let record = option("record", name);
                 return doubt(
                     Rank::CountsInSteps,
-                    &format!("counts up in steps (to divide the rows into records: --record {record})"),
+                    &format!("counts up in steps (to divide the rows into records: {record})"),
                 );
             }
             Course::Grows | Course::Varies => {}
@@ -254,7 +253,7 @@ impl<'t> Guess<'t> {
             seen.iter().find(|(name, seen)| self.free.contains(name) && seen.as_ref().is_some_and(grows));
         let Some((name, _)) = unclear else { return Ok(()) };
         let time = match self.time {
-            None => format!("name it with --time {}, or ", shown(Path::new(name))),
+            None => format!("name it with {}, or ", option("time", name)),
             Some(_) => String::new(),
         };
         bail!(
@@ -326,24 +325,22 @@ impl<'t> Guess<'t> {
 
     fn against_the_order(&self, one: &str, last: &str) -> anyhow::Error {
         anyhow!(
-            "{}: \"{}\" is the last column, but \"{}\" looks more like the output: choose with --output {} or \
-             --output {}",
+            "{}: \"{}\" is the last column, but \"{}\" looks more like the output: choose with {} or {}",
             self.table.file,
             clipped(last),
             clipped(one),
-            shown(Path::new(one)),
-            shown(Path::new(last)),
+            option("output", one),
+            option("output", last),
         )
     }
 
     fn order_believed(&self, one: &str, last: &str) -> String {
         format!(
-            "{}: output \"{}\", because it is the last column, although \"{}\" looks more like an output (to change it: \
-             --output {})",
+            "{}: output \"{}\", because it is the last column, although \"{}\" looks more like an output (to change it: {})",
             self.table.file,
             clipped(last),
             clipped(one),
-            shown(Path::new(one)),
+            option("output", one),
         )
     }
 
@@ -410,12 +407,12 @@ impl<'t> Guess<'t> {
                 if let Some(correlation) = one_signal(other_values, values) {
                     bail!(
                         "{}: columns \"{}\" and \"{}\" are nearly the same signal (correlation {correlation:.4}), such as \
-                         a command and its measurement: name the input with --input {} or --input {}",
+                         a command and its measurement: name the input with {} or {}",
                         self.table.file,
                         clipped(other),
                         clipped(name),
-                        shown(Path::new(other)),
-                        shown(Path::new(name)),
+                        option("input", other),
+                        option("input", name),
                     );
                 }
             }
@@ -517,7 +514,6 @@ impl<'t> Guess<'t> {
         let free = || self.free.iter().copied();
         let input = self.inputs.first().or(free().find(|name| Kind::of(name).drives()));
         let output = self.output.as_ref().or(free().rfind(|name| Kind::of(name).follows()));
-        let option = |option: &str, name: &String| format!("--{option} {}", shown(Path::new(name)));
         match (input, output) {
             (Some(input), Some(output)) if input != output => {
                 format!(", for instance {} {}", option("input", input), option("output", output))

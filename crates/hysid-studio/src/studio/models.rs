@@ -1,7 +1,10 @@
 //! Models of a project, and their runs over its files.
 
+use std::collections::HashMap;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
 
 use anyhow::{Result, anyhow};
 use hysid::model::Model;
@@ -18,22 +21,60 @@ use crate::view::read;
 /// Models that are kept in memory.
 const MOST_MODELS: usize = 200;
 
-impl Studio {
-    pub fn model(&self, id: u64) -> Result<Arc<Model>> {
-        let kept = || self.models.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        if let Some(known) = kept().get(&id) {
-            return Ok(Arc::clone(known));
+/// The models of a project that were read, each by the number of its fit.
+#[derive(Default)]
+pub(super) struct Models(Mutex<HashMap<u64, ReadModel>>);
+
+/// A model, or why its file holds none.
+struct ReadModel {
+    of: State,
+    model: std::result::Result<Arc<Model>, String>,
+}
+
+/// What tells that a file is another than the one that was read.
+#[derive(PartialEq)]
+struct State {
+    path: PathBuf,
+    bytes: u64,
+    changed: Option<SystemTime>,
+}
+
+impl State {
+    fn of(path: &Path) -> Option<Self> {
+        let found = fs::symlink_metadata(path).ok()?;
+        Some(Self { path: path.into(), bytes: found.len(), changed: found.modified().ok() })
+    }
+}
+
+impl Models {
+    fn kept(&self) -> MutexGuard<'_, HashMap<u64, ReadModel>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The model of a file, which is read once, also if it holds none.
+    pub fn of(&self, id: u64, path: &Path, text: impl FnOnce() -> Result<String>) -> Result<Arc<Model>> {
+        let state = State::of(path);
+        if let Some(known) = self.kept().get(&id).filter(|known| Some(&known.of) == state.as_ref()) {
+            return known.model.clone().map_err(anyhow::Error::msg);
         }
-        let path = self.model_file(id)?;
-        let text = self.text(&path)?;
-        let model = Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display()))?;
-        let model = Arc::new(model);
-        let mut kept = kept();
+        let parsed =
+            |text: String| Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display()));
+        let model = text().and_then(parsed).map(Arc::new).map_err(|error| error.to_string());
+        let mut kept = self.kept();
         if kept.len() >= MOST_MODELS {
             kept.clear();
         }
-        kept.insert(id, Arc::clone(&model));
-        Ok(model)
+        if let Some(of) = state {
+            kept.insert(id, ReadModel { of, model: model.clone() });
+        }
+        model.map_err(anyhow::Error::msg)
+    }
+}
+
+impl Studio {
+    pub fn model(&self, id: u64) -> Result<Arc<Model>> {
+        let path = self.model_file(id)?;
+        self.models.of(id, &path, || self.text(&path))
     }
 
     pub fn stored_model(&self, id: u64) -> Result<ProjectModel> {
@@ -67,20 +108,20 @@ impl Studio {
         for file in std::iter::once(&removed.file).chain(&removed.report) {
             self.folder.remove(&self.folder.models(file));
         }
-        self.models.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).remove(&id);
+        self.models.kept().remove(&id);
         self.runs.clear();
         Ok(())
     }
 
     /// The free run of a model over a file.
     pub fn run(&self, model: u64, file: u64) -> Result<Arc<Run>> {
-        self.runs.of(model, file, || {
+        let fitted = self.model(model)?;
+        self.runs.of(&fitted, file, || {
             let (stored, file, reading) = {
                 let project = self.project();
                 let file = project.file(file)?.clone();
                 (project.model(model)?.clone(), file, project.understanding.reading.clone())
             };
-            let fitted = self.model(model)?;
             let table = read(&file, &self.folder, &reading.reading()?)?;
             // The model knows the names of its columns, whatever is chosen now.
             let record = stored.begun.columns.record.filter(|name| table.column(name).is_some());

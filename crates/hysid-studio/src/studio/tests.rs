@@ -2,6 +2,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use hysid::model::Model;
 use serde_json::{Value, json};
 
 use super::*;
@@ -177,6 +178,29 @@ fn a_studio_that_was_killed_between_model_and_project_takes_the_finished_model()
     assert!(project.unfinished.is_none() && !finished.exists());
     let left = fs::read_dir(path.join("models")).unwrap().flatten().map(|entry| entry.file_name());
     assert_eq!(left.filter(|name| name.to_string_lossy().ends_with(".json")).count(), 1);
+}
+
+#[test]
+fn a_file_without_a_model_is_read_once_until_it_changes() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("p");
+    let studio = opened(&path);
+    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    let id = fit(&studio).made.unwrap();
+    let model = studio.model_file(id).unwrap();
+    let text = fs::read_to_string(&model).unwrap();
+    let simulated = |studio: &Studio| studio.run(id, 1).unwrap();
+    let before = simulated(&studio);
+    assert!(Arc::ptr_eq(&before, &simulated(&studio)));
+    fs::write(&model, "{}").unwrap();
+    let problem = shown(&studio)["models"][0]["problem"].as_str().unwrap().to_string();
+    assert!(problem.contains(&model.display().to_string()), "{problem}");
+    assert!(studio.run(id, 1).is_err());
+    let again = || -> Result<String> { panic!("it is read again") };
+    assert_eq!(studio.models.of(id, &model, again).unwrap_err().to_string(), problem);
+    fs::write(&model, text).unwrap();
+    assert!(shown(&studio)["models"][0]["problem"].is_null());
+    assert!(!Arc::ptr_eq(&before, &simulated(&studio)));
 }
 
 #[test]

@@ -9,6 +9,9 @@ use crate::significant::Significant;
 /// Fewest rows of a drive.
 pub const FEWEST_ROWS: usize = 40;
 
+/// Smallest step and rate: smaller ones make ratios that numbers cannot have.
+const SMALLEST_VALUE: f64 = 1e-100;
+
 /// Most rows of a drive.
 pub const MOST_ROWS: usize = 1_000_000;
 
@@ -92,10 +95,11 @@ impl Limits {
             let given = format!("{:.9}:{:.9}", Significant(low), Significant(high));
             return Err(OptionError::value("range", given, needed).into());
         }
-        let is_positive = |value: f64| value > 0.0 && value <= LARGEST_VALUE;
+        let is_usual = |value: f64| (SMALLEST_VALUE..=LARGEST_VALUE).contains(&value);
         for (name, value) in [("step", self.step.unwrap_or(1.0)), ("max_rate", self.max_rate)] {
-            if !is_positive(value) {
-                return Err(OptionError::value(name, value, "a number above 0 is needed").into());
+            if !is_usual(value) {
+                let needed = format!("a number from {SMALLEST_VALUE:e} to {LARGEST_VALUE:e} is needed");
+                return Err(OptionError::value(name, Significant(value), needed).into());
             }
         }
         if !(FEWEST_ROWS..=MOST_ROWS).contains(&self.rows) {
