@@ -96,7 +96,7 @@ fn rows_and_cells() {
         decimal commas => , line 2: has 6 cells where the header has 3 (decimal commas? separate the columns by semicolons)
         quoted comma => , line 2, column "x": "0,5" has a decimal comma, line 2 a decimal point (use one of them)
         comma and point => , line 3, column "t": "0.1" has a decimal point, line 2 a decimal comma (use one of them)
-        infinite output => , line 17, column "y": "-inf" is not a finite number (if it stands for a missing value: --missing -inf)
+        infinite output => , line 17, column "y": "-inf" is not a finite number (if it stands for a missing value: --missing=-inf)
         NaN input => , line 17, column "x": "nan" is a missing value (only the output may be blank; choose rows with --rows)
         infinite input => , line 17, column "x": "inf" is not a finite number (see `hysid look data.csv`)
         text in a number => , line 17, column "x": "0.5V" is not a number (see `hysid look data.csv`)

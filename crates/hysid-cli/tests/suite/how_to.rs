@@ -1,6 +1,7 @@
 //! Pages of `docs` as a reader follows them: every line of a `sh` block that calls `hysid`, a compiler, or a program of the
 //! folder is run, in order, in a folder of the page's own. Each page is a test of its own. Every line of a `text` block must
-//! be among the lines that these commands print: the same words, and numbers that are near enough.
+//! be among the lines that these commands print: the same words, and numbers that are near enough. The figures in the text and
+//! the tables of how-to pages and tutorials must be printed too; the tables of the other pages are the laboratory's.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -48,8 +49,66 @@ fn is_alike(shown: &str, printed: &str) -> bool {
     shown.len() == printed.len() && shown.into_iter().zip(printed).all(are_alike)
 }
 
+/// The figures in the text and the tables of a page, each with its line: numbers with a decimal point or in percent, of at
+/// least two digits.
+fn figures(page: &str) -> Vec<(Figure, &str)> {
+    let mut is_code = false;
+    let is_text = |line: &&str| {
+        let is_fence = line.starts_with("```");
+        is_code ^= is_fence;
+        !is_code && !is_fence
+    };
+    let of_line = |line| words(line).into_iter().filter_map(Figure::of).map(move |figure| (figure, line));
+    page.lines().filter(is_text).flat_map(of_line).collect()
+}
+
+/// The words of a line outside of code, links and references, a percent sign with its number.
+fn words(line: &str) -> Vec<String> {
+    let text: String = line.split('`').step_by(2).collect::<Vec<_>>().join(" ");
+    let parts: Vec<&str> = text.split("](").collect();
+    let outside = |(place, part): (usize, &&str)| match place {
+        0 => part.to_string(),
+        _ => part.split_once(')').map_or(String::new(), |(_, rest)| rest.into()),
+    };
+    let text: Vec<String> = parts.iter().enumerate().map(outside).collect();
+    let text = text.join(" ").replace(" %", "%");
+    let words = text.split(|c: char| !(c.is_alphanumeric() || ".%".contains(c)));
+    words.map(|word| word.trim_end_matches('.').to_string()).collect()
+}
+
+/// A number as a page shows it.
+struct Figure {
+    value: f64,
+    /// Half of its last digit.
+    rounding: f64,
+}
+
+impl Figure {
+    fn of(word: String) -> Option<Self> {
+        let bare = word.trim_end_matches('%');
+        let value: f64 = bare.parse().ok()?;
+        let decimals = bare.split_once('.').map(|(_, decimals)| decimals.len());
+        let digits = bare.trim_start_matches(['0', '.']).replace('.', "");
+        let digits = if decimals.is_none() { digits.trim_end_matches('0') } else { &digits };
+        let is_asked = (decimals.is_some() || word.ends_with('%')) && digits.len() >= 2;
+        let rounding = 0.5 * 10f64.powi(-(decimals.unwrap_or(0) as i32));
+        is_asked.then_some(Self { value, rounding })
+    }
+
+    fn is_near(&self, printed: f64) -> bool {
+        (self.value - printed).abs() <= self.rounding.max(0.02 * self.value)
+    }
+}
+
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
+}
+
+/// What the examples print that a page names.
+fn printed_by_examples(page: &str) -> String {
+    let names = page.split("`examples/").skip(1).filter_map(|rest| rest.split_once('.'));
+    let texts = names.map(|(name, _)| docs().join("../examples").join(name).with_extension("txt"));
+    texts.filter_map(|text| fs::read_to_string(text).ok()).collect()
 }
 
 /// Runs the commands of a page, with the files that it tells its reader to copy.
@@ -72,6 +131,16 @@ fn follow(path: &str) {
         assert_eq!(ran.status, Some(0), "{path}: `{command}`: {}", ran.stderr);
         printed += &format!("{}\n{}\n", ran.stdout, ran.stderr);
     }
+    printed += &printed_by_examples(&page);
+    let known: Vec<f64> =
+        printed.lines().flat_map(words).filter_map(|word| word.trim_end_matches('%').parse().ok()).collect();
+    let is_known = |figure: &Figure| known.iter().any(|known| figure.is_near(*known));
+    let unknown: Vec<String> = figures(&page)
+        .into_iter()
+        .filter(|(figure, _)| path.contains('/') && !is_known(figure))
+        .map(|(figure, line)| format!("{}: {line}", figure.value))
+        .collect();
+    assert!(unknown.is_empty(), "{path} has figures that no command prints:\n{}", unknown.join("\n"));
     let is_printed = |line: &&str| printed.lines().any(|printed| is_alike(line, printed));
     let others: Vec<&str> = shown(&page).into_iter().filter(|line| !is_printed(line)).collect();
     assert!(
@@ -139,6 +208,19 @@ fn lines_are_alike_whose_words_are_equal_and_whose_numbers_are_near() {
     {
         assert!(!is_alike("loss at 5 Hz: 97.2 J/m3", other), "{other}");
     }
+}
+
+#[test]
+fn figures_are_found_in_the_text_and_the_tables_alone() {
+    let page = "Off by 3.40 % ([1.5](2.5)), `6.5`, 10 %, 20 rows.\n| a | -12.5 |\n```text\n7.5\n```\n";
+    let found: Vec<f64> = figures(page).iter().map(|(figure, _)| figure.value).collect();
+    assert_eq!(found, [3.4, 1.5, 12.5]);
+    let figure = |word: &str| Figure::of(word.into()).unwrap();
+    assert!(figure("3.4").is_near(3.449) && figure("3.40").is_near(3.46) && !figure("3.40").is_near(3.5));
+}
+
+#[test]
+fn the_blocks_of_a_page_have_its_lines() {
     assert_eq!(shown("a\n```text\nb 1\n...\n\nc\n```\nd\n```sh\ne\n```\n"), ["b 1", "c"]);
 }
 
