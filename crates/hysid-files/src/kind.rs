@@ -106,7 +106,7 @@ fn line_behind_mark(page: &str) -> Option<usize> {
 }
 
 /// True for a page that nobody changed since Hysid wrote it.
-pub(crate) fn is_page_as_written(page: &[u8]) -> bool {
+pub fn is_page_as_written(page: &[u8]) -> bool {
     let Ok(page) = std::str::from_utf8(page) else { return false };
     let Some((before, rest)) = line_behind_mark(page).map(|place| page.split_at(place)) else { return false };
     let Some((sum, after)) = rest.strip_prefix(PAGE_SUM).and_then(|rest| rest.split_once("\">\n")) else {

@@ -46,6 +46,18 @@ fn too_large(name: &str) -> String {
     format!("{name}: has more than {} MB", LARGEST >> 20)
 }
 
+/// The checksum of a content, by which a file is known that somebody changed: CRC-32.
+pub fn checksum(mut from: impl Read) -> io::Result<String> {
+    let mut sum = crc32fast::Hasher::new();
+    let mut block = vec![0; 1 << 16];
+    loop {
+        match from.read(&mut block)? {
+            0 => return Ok(format!("{:08x}", sum.finalize())),
+            read => sum.update(&block[..read]),
+        }
+    }
+}
+
 /// What is said of a file of this name that cannot be read.
 pub fn unreadable(name: &str, error: &io::Error) -> String {
     format!("{name}: cannot be read: {}", reason(error))

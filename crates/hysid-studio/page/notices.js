@@ -40,6 +40,11 @@ export class Notice {
   /** Shows why an action failed. The banner tells when the server is gone. */
   fail(error) { if (!(error instanceof Gone)) this.show(error.message); }
   clear() { this.node.replaceChildren(); }
+  /** Runs an action and shows its error, or the words that it gives. */
+  async saying(action) {
+    const words = await this.during(action);
+    if (words) this.show(words);
+  }
   /** Runs an action and shows its error. */
   async during(action) {
     this.clear();

@@ -49,7 +49,11 @@ async function request(address, options) {
 
 export const getJson = async (address) => (await request(address)).json();
 export const getText = async (address) => (await request(address)).text();
-export const remove = (address) => request(address, { method: "DELETE" });
+/** Removes a file or a model from the project; gives a sentence if a file stays in the folder. */
+export async function remove(address) {
+  const { kept } = await (await request(address, { method: "DELETE" })).json();
+  return kept.length ? `Removed from the project. ${kept.join(", ")} stays in its folder: somebody changed it, or Hysid did not write it.` : "";
+}
 export async function post(address, value) {
   const response = await request(address, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(value) });
   const text = await response.text();

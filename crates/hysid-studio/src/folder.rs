@@ -4,6 +4,7 @@ mod entrance;
 mod readings;
 
 use std::fs::{self, DirBuilder};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
@@ -151,6 +152,18 @@ impl Folder {
         if self.check_file(path).is_ok() {
             let _ = fs::remove_file(path);
         }
+    }
+
+    /// Removes a file of the project if it is one that Hysid wrote or took, and nobody changed. True if another stays.
+    pub fn remove_if(&self, path: &Path, is_as_it_was: impl FnOnce(fs::File) -> io::Result<bool>) -> bool {
+        if fs::symlink_metadata(path).is_err() {
+            return false;
+        }
+        let is_plain = self.check_file(path).is_ok();
+        if is_plain && fs::File::open(path).and_then(is_as_it_was).unwrap_or(false) {
+            self.remove(path);
+        }
+        fs::symlink_metadata(path).is_ok()
     }
 
     /// Refuses what is no plain file, or is in a folder that is a link: it may be anywhere.

@@ -83,6 +83,8 @@ pub struct ProjectFile {
     pub id: u64,
     pub name: String,
     pub bytes: u64,
+    /// Of its content as it came.
+    pub checksum: String,
     #[serde(rename = "use")]
     pub usage: Use,
 }
@@ -283,7 +285,13 @@ mod tests {
 
     #[test]
     fn forged_numbers_and_names_are_refused() {
-        let file = |id, name: &str| ProjectFile { id, name: name.into(), bytes: 1, usage: Use::Training };
+        let file = |id, name: &str| ProjectFile {
+            id,
+            name: name.into(),
+            bytes: 1,
+            checksum: String::new(),
+            usage: Use::Training,
+        };
         let with = |files: Vec<ProjectFile>| Project { files, ..Project::default() }.checked();
         assert_eq!(with(vec![file(7, "a.csv")]).unwrap().next, 8, "a number is never given twice");
         for (files, said) in [
@@ -309,7 +317,13 @@ mod tests {
         let mut project = Project::of(&folder).unwrap();
         assert_eq!(project, Project::default());
         let id = project.next_id();
-        project.files.push(ProjectFile { id, name: "a.csv".into(), bytes: 7, usage: Use::Unseen });
+        project.files.push(ProjectFile {
+            id,
+            name: "a.csv".into(),
+            bytes: 7,
+            checksum: "0".into(),
+            usage: Use::Unseen,
+        });
         folder.write_project(&project.text()).unwrap();
         assert_eq!(Project::of(&folder).unwrap(), project);
         let text = project.text();

@@ -54,7 +54,7 @@ export class CompareStep {
       }), model.is_stale ? `${model.title} (other data)` : model.title)),
       ...cells(k), element("td", { text: counted(model.parameters) }), element("td", { text: duration(model.seconds) }),
       element("td", {}, element("a", { href: `#judge/${model.id}`, text: "Judge", "aria-label": `Judge ${model.title}` }), " ",
-        button("Remove", () => this.notice.during(() => remove(`/api/models/${model.id}`)), { "aria-label": `Remove ${model.title}` })));
+        button("Remove", () => this.notice.saying(() => remove(`/api/models/${model.id}`)), { "aria-label": `Remove ${model.title}` })));
     const heads = ["Model (tick to draw)", ...columns.map(([name]) => name), "Parameters", "Time"];
     return [element("div", { class: "scroll", role: "region", "aria-label": "Models", tabindex: "0" }, element("table", {},
       element("caption", { class: "hidden", text: "Models" }),

@@ -96,7 +96,7 @@ export class DataStep {
       const records = file.records.length > 1 ? `, ${file.records.length} records` : "";
       return element("li", {}, element("span", { class: "name", text: file.name }),
         element("span", { class: "about", text: file.problem ? "not read" : file.read_as === null ? "being read \u2026" : `${counted(file.rows)} rows${records}, ${bytes(file.bytes)}. ${file.read_as}` }), use,
-        button("Remove", () => this.notice.during(() => remove(`/api/files/${file.id}`)), { "aria-label": `Remove ${file.name}` }),
+        button("Remove", () => this.notice.saying(() => remove(`/api/files/${file.id}`)), { "aria-label": `Remove ${file.name}` }),
         file.is_held_back ? button("Read again", () => this.notice.during(() => post(`/api/files/${file.id}/read`, {})), { "aria-label": `Read ${file.name} again` }) : null,
         file.problem ? problem(file.problem) : null,
         file.warnings.length > 0 ? element("ul", { class: "warnings" }, ...file.warnings.map((words) => element("li", {}, linked(words)))) : null);

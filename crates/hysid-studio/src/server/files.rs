@@ -92,8 +92,8 @@ fn too_large() -> Problem {
 
 /// Removes a file.
 pub async fn remove(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
-    at_once(shared, move |studio| studio.remove_file(id)).await?;
-    Ok(done())
+    let kept = at_once(shared, move |studio| studio.remove_file(id)).await?;
+    Ok(value(json!({"kept": kept.into_iter().collect::<Vec<String>>()})))
 }
 
 /// Reads a file that was held back.

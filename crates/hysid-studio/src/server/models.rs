@@ -116,8 +116,7 @@ pub async fn facts(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<
 
 /// Removes a model.
 pub async fn remove(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
-    at_once(shared, move |studio| studio.remove_model(id)).await?;
-    Ok(done())
+    Ok(value(json!({"kept": at_once(shared, move |studio| studio.remove_model(id)).await?})))
 }
 
 /// The file of a model.

@@ -56,6 +56,7 @@ impl Studio {
         let name = self.folder.free_name(Inner::Data, given)?;
         let content = fs::read(place).map_err(|error| cannot_read(Path::new(&name), &error))?;
         let bytes = content.len() as u64;
+        let checksum = hysid_files::checksum(&content[..])?;
         let table = Table::from_bytes(Path::new(&name), content, &reading.reading()?);
         let mut stored = None;
         let entered = self.change(|project| {
@@ -66,7 +67,7 @@ impl Studio {
                 .map_err(|error| anyhow!("{name}: cannot be stored: {}", hysid_files::reason(&error)))?;
             stored = Some(path);
             let id = project.next_id();
-            project.files.push(ProjectFile { id, name, bytes, usage });
+            project.files.push(ProjectFile { id, name, bytes, checksum, usage });
             Ok((id, project.understanding.reading == reading))
         });
         if entered.is_err() {
@@ -108,20 +109,21 @@ impl Studio {
         if self.project().models.is_empty() { Use::Training } else { Use::Unseen }
     }
 
-    pub fn remove_file(&self, id: u64) -> Result<()> {
+    /// Removes a file from the project. Gives its name if it stays in the folder, because it is no longer the one that came.
+    pub fn remove_file(&self, id: u64) -> Result<Option<String>> {
         let removed = self.change(|project| {
             let removed = project.file(id)?.clone();
             project.files.retain(|file| file.id != id);
             Ok(removed)
         })?;
-        // A model that was made of it keeps its line. A file that is no longer the one that came stays.
+        // A model that was made of it keeps its line.
         let path = self.folder.data(&removed.name);
-        if fs::symlink_metadata(&path).is_ok_and(|found| found.len() == removed.bytes) {
-            self.folder.remove(&path);
-        }
+        let kept = self.folder.remove_if(&path, |file| {
+            Ok(file.metadata()?.len() == removed.bytes && hysid_files::checksum(file)? == removed.checksum)
+        });
         self.folder.release(id);
         self.read_files();
-        Ok(())
+        Ok(kept.then_some(removed.name))
     }
 
     /// Reads a file that was not read because that killed the studio before.

@@ -126,7 +126,8 @@ impl Studio {
         // From here on a studio that is killed finds this model, and not an earlier one.
         let _ = self.folder.write(&self.folder.finished(id), Kind::Model, found.text.as_bytes());
         let Err(error) = self.store_model(&found) else { return Ok(id) };
-        let named = self.folder.models(&format!("{}.json", found.identified.model.name().name()));
+        // Beside the file of the project: the folder of models may be what cannot be written to, or a link elsewhere.
+        let named = self.folder.root().join(format!("{}.json", found.identified.model.name().name()));
         let rescued = hysid_files::rescue(&named, found.text.as_bytes());
         let place = rescued.as_ref().map_or_else(String::new, |place| format!(" and in {}", place.display()));
         *self.unsaved() = Some(Found { rescued, ..found });

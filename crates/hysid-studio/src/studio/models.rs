@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
@@ -99,18 +100,32 @@ impl Studio {
         String::from_utf8(self.folder.read(path)?).map_err(|_| anyhow!("{}: is no text", path.display()))
     }
 
-    pub fn remove_model(&self, id: u64) -> Result<()> {
+    /// Removes a model from the project. Gives the names of its files that stay in the folder, because Hysid did not write
+    /// them or somebody changed them.
+    pub fn remove_model(&self, id: u64) -> Result<Vec<String>> {
         let removed = self.change(|project| {
             let removed = project.model(id)?.clone();
             project.models.retain(|model| model.begun.id != id);
             Ok(removed)
         })?;
-        for file in std::iter::once(&removed.file).chain(&removed.report) {
-            self.folder.remove(&self.folder.models(file));
+        let text = |file| hysid_files::read_from("", file).map_err(io::Error::other);
+        let is_model = |file| {
+            let text = String::from_utf8(text(file)?);
+            Ok(text.is_ok_and(|text| Model::from_json(&text).is_ok()))
+        };
+        let mut kept = Vec::new();
+        if self.folder.remove_if(&self.folder.models(&removed.file), is_model) {
+            kept.push(removed.file);
+        }
+        if let Some(report) = removed.report {
+            let is_page = |file| Ok(hysid_files::is_page_as_written(&text(file)?));
+            if self.folder.remove_if(&self.folder.models(&report), is_page) {
+                kept.push(report);
+            }
         }
         self.models.kept().remove(&id);
         self.runs.clear();
-        Ok(())
+        Ok(kept)
     }
 
     /// The free run of a model over a file.

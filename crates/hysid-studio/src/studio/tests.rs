@@ -79,8 +79,7 @@ fn a_project_with_3000_files_opens_in_a_second() {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("p");
     drop(opened(&path));
-    let file =
-        |id: usize| json!({"id": id, "name": format!("{id}.csv"), "bytes": TABLE.len(), "use": "training"});
+    let file = |id: usize| json!({"id": id, "name": format!("{id}.csv"), "bytes": TABLE.len(), "checksum": "", "use": "training"});
     (1..=3000).for_each(|id| fs::write(path.join(format!("data/{id}.csv")), TABLE).unwrap());
     opened(&path).change(|_| Ok(())).unwrap();
     changed(&path, |project| project["files"] = (1..=3000).map(file).collect());
@@ -201,6 +200,47 @@ fn a_file_without_a_model_is_read_once_until_it_changes() {
     fs::write(&model, text).unwrap();
     assert!(shown(&studio)["models"][0]["problem"].is_null());
     assert!(!Arc::ptr_eq(&before, &simulated(&studio)));
+}
+
+#[test]
+fn what_somebody_changed_or_others_wrote_stays_when_it_is_removed_from_the_project() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("p");
+    let studio = opened(&path);
+    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    let (first, second) = (fit(&studio).made.unwrap(), fit(&studio).made.unwrap());
+    let stored = |id: u64| studio.stored_model(id).unwrap();
+    let (model, report) = (studio.folder.models(&stored(first).file), stored(first).report.unwrap());
+    let report = studio.folder.models(&report);
+    fs::write(&model, fs::read_to_string(&model).unwrap().replacen('0', "1", 1)).unwrap();
+    fs::write(&report, "<p>mine</p>").unwrap();
+    assert_eq!(studio.remove_model(first).unwrap().len(), 2);
+    assert!(model.exists() && report.exists());
+    let ours =
+        [studio.folder.models(&stored(second).file), studio.folder.models(&stored(second).report.unwrap())];
+    assert_eq!(studio.remove_model(second).unwrap(), [""; 0]);
+    assert!(ours.iter().all(|file| !file.exists()));
+    // Data of the same length are other data.
+    let data = studio.folder.data("ferromagnet-train.csv");
+    let text = fs::read_to_string(&data).unwrap();
+    fs::write(&data, text.replace('1', "2")).unwrap();
+    assert_eq!(studio.remove_file(1).unwrap(), Some("ferromagnet-train.csv".into()));
+    assert_eq!(studio.remove_file(2).unwrap(), None);
+    assert!(data.exists() && !studio.folder.data("ferromagnet-test.csv").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_model_that_cannot_be_stored_goes_nowhere_that_a_link_leads_to() {
+    let place = tempfile::tempdir().unwrap();
+    let (path, other) = (place.path().join("p"), place.path().join("other"));
+    let studio = opened(&path);
+    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    fs::create_dir(&other).unwrap();
+    fs::remove_dir_all(path.join("models")).unwrap();
+    std::os::unix::fs::symlink(&other, path.join("models")).unwrap();
+    assert!(fit(&studio).is_unsaved);
+    assert_eq!(fs::read_dir(&other).unwrap().count(), 0);
 }
 
 #[test]

@@ -13,14 +13,19 @@ use crate::subject::Subject;
 use crate::target::printer::{Binding, Language, Printer, Syntax, rows_of_numbers};
 
 /// Refuses options of compilers that change results, and switches off the optimisation of gcc that fuses products and sums
-/// in spite of `-ffp-contract=off` (gcc 12: alternating sums and differences become one `vfmaddsub`).
-pub(super) const EXACT: &str =
-    "#if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || \\
+/// in spite of `-ffp-contract=off` (gcc 12: alternating sums and differences become one `vfmaddsub`). That line makes gcc
+/// apply `-fassociative-math`, which it ignores by itself, so the options are looked at again. Clang tells of few of them,
+/// but can be told to be exact; `float_control` alone would let it fuse.
+pub(super) const EXACT: &str = "#if defined __GNUC__ && !defined __clang__ && __GNUC__ >= 12
+#pragma GCC optimize (\"no-tree-slp-vectorize\")
+#endif
+#if defined __clang__ && __clang_major__ >= 12
+#pragma float_control(precise, on)
+#pragma clang fp reassociate(off) contract(off)
+#endif
+#if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || \\
     (defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__)
 #error \"-ffast-math and its parts change the results of this file\"
-#endif
-#if defined __GNUC__ && !defined __clang__ && __GNUC__ >= 12
-#pragma GCC optimize (\"no-tree-slp-vectorize\")
 #endif
 
 ";

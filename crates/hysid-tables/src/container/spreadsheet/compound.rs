@@ -32,13 +32,16 @@ pub fn check(bytes: &[u8]) -> Result<(), String> {
         _ => file.chain(file.number(60)?)?,
     };
     for entry in &entries {
-        // Of all streams only one is needed, and the library may read any.
-        if !matches!(entry.get(66), Some(2)) {
-            continue;
-        }
-        let (start, length) = (number(entry, 116)?, number(entry, 120)? as usize);
-        if length > bytes.len() {
+        let (start, low, high) = (number(entry, 116)?, number(entry, 120)?, number(entry, 124)?);
+        let is_long = file.sector > 512 && high > 0;
+        let length = low as usize;
+        if is_long || length > bytes.len() {
             return Err(DAMAGED.into());
+        }
+        let may_be_read = may_be_workbook(&entry[..64]);
+        // Of all streams only one is needed, and the library may read any.
+        if !may_be_read && !matches!(entry.get(66), Some(2)) {
+            continue;
         }
         let mut stream = match length {
             0 => Vec::new(),
@@ -49,14 +52,19 @@ pub fn check(bytes: &[u8]) -> Result<(), String> {
             return Err(DAMAGED.into());
         }
         stream.truncate(length);
-        let name: Vec<u16> =
-            entry[..64].chunks_exact(2).map(|two| u16::from_le_bytes([two[0], two[1]])).collect();
-        let name = String::from_utf16_lossy(&name).trim_end_matches('\0').to_lowercase();
-        if name == "workbook" || name == "book" {
+        if may_be_read {
             check_workbook(&stream, Budget::of(bytes.len()))?;
         }
     }
     Ok(())
+}
+
+/// True for names of the stream with the sheets, `Workbook` or `Book`, however the library reads the letters: with a mark of
+/// the order of bytes, up to a zero, of an entry of any type.
+fn may_be_workbook(name: &[u8]) -> bool {
+    let letters: Vec<u8> =
+        name.iter().filter(|byte| byte.is_ascii_alphabetic()).map(u8::to_ascii_lowercase).collect();
+    letters.windows(4).any(|part| part == b"book")
 }
 
 fn number(bytes: &[u8], place: usize) -> Result<u32, String> {

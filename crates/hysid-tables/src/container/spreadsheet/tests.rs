@@ -203,6 +203,26 @@ fn compound_files_claim_no_more_than_they_hold() {
     let mut encrypted = workbook([0, 2, 0, 1], &[[0, 0]]);
     encrypted.extend("EncryptedPackage".encode_utf16().flat_map(u16::to_le_bytes));
     assert_eq!(problem(encrypted), "it is encrypted: save it without a password");
+    // The library reads names up to a zero, with a mark of the order of bytes, and of entries of any type.
+    let entry = 512 + 512 + 128;
+    let name = |mark: &str, order: fn(u16) -> [u8; 2]| -> Vec<u8> {
+        format!("{mark}Workbook\0").encode_utf16().flat_map(order).collect()
+    };
+    let utf8 = [b"\xef\xbb\xbfWorkbook\0\0\0\0", &[0; 20][..]].concat();
+    let names = [
+        name("", u16::to_le_bytes),
+        name("\u{feff}", u16::to_le_bytes),
+        name("\u{feff}", u16::to_be_bytes),
+        utf8,
+    ];
+    for name in names {
+        for kind in [1, 2, 5] {
+            let mut named = workbook([0, u32::MAX, 0, 256], &[[0, 0]]);
+            named[entry..entry + name.len()].copy_from_slice(&name);
+            (named[entry + 40], named[entry + 66]) = (0xff, kind);
+            assert!(problem(named).contains("which it cannot hold"), "{name:?} {kind}");
+        }
+    }
     let whole = workbook([0, 2, 0, 1], &[[0, 0], [1, 0]]);
     for end in (0..whole.len()).step_by(61) {
         let _ = text(whole[..end].to_vec(), None);
