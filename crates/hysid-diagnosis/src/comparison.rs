@@ -5,7 +5,10 @@ use super::significance;
 use super::{PictureCurve, Piece, Verdict};
 
 /// A property holds if no difference can be larger than so many times the effect that matters.
-const BOUND: f64 = 3.0;
+const BOUND: f64 = 2.0;
+
+/// A property does not hold if a gap, which is read at one point, is so many times its limit. Designed.
+const CLEAR_GAP: f64 = 1.2;
 
 /// A difference beyond this share of the effect that matters is too close to it for a property to hold.
 const CLOSE: f64 = 0.6;
@@ -109,9 +112,11 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     let is_doubtful = |c: &Comparison| c.index > (CLOSE * effect).max(in_doubt(c) * c.deviation);
     let bound = |c: &Comparison| (c.index + UP_TO * c.deviation + c.bend).max(2.0 * c.other);
     let mut bounds: Vec<f64> = comparisons.iter().map(bound).collect();
-    let verdict = if excess(deciding) > 1.0 {
+    let clearly = if deciding.freedom > GAP { 1.0 } else { CLEAR_GAP };
+    let verdict = if excess(deciding) > clearly {
         Verdict::No
-    } else if comparisons.iter().any(is_doubtful)
+    } else if excess(deciding) > 1.0
+        || comparisons.iter().any(is_doubtful)
         || are_doubtful_together(comparisons, effect)
         || significance::median(&mut bounds) > BOUND * effect
     {
