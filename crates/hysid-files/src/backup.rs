@@ -4,26 +4,26 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::kind::Kind;
+use crate::seal;
 use crate::temporary::{beginning, builder, folder_of, plain, with_ending};
 
-/// Where a copy of the target is kept.
-pub(crate) fn path_of(target: &Path) -> PathBuf {
-    with_ending(target, ".bak")
+/// Names for copies of the target: `NAME.bak`, `NAME.bak2` and so on.
+fn names(target: &Path) -> impl Iterator<Item = PathBuf> {
+    let endings = std::iter::once(".bak".to_string()).chain((2..).map(|number| format!(".bak{number}")));
+    endings.map(|ending| with_ending(target, &ending))
 }
 
-/// True if `NAME.bak` is free, or holds an older file of the same kind.
-pub(crate) fn is_free(target: &Path, kind: &Kind) -> bool {
-    let path = path_of(target);
-    match fs::symlink_metadata(&path) {
-        Ok(there) => there.is_file() && kind.recognises(&path).unwrap_or(false),
+/// True if nothing is there, or an older file that nobody changed.
+fn is_free(path: &Path) -> bool {
+    match fs::symlink_metadata(path) {
+        Ok(there) => there.is_file() && seal::is_sealed(path),
         Err(error) => error.kind() == io::ErrorKind::NotFound,
     }
 }
 
-/// Keeps the target as `NAME.bak`. At every moment the target is there.
+/// Keeps the target as `NAME.bak`, in the place of an older copy that nobody changed. At every moment the target is there.
 pub(crate) fn keep(target: &Path) -> io::Result<PathBuf> {
-    let path = path_of(target);
+    let path = names(target).find(|name| is_free(name)).expect("there is always a further name");
     let beginning = beginning(target);
     let folder = folder_of(target);
     let linked = builder(&beginning).make_in(folder, |name| fs::hard_link(target, name));
@@ -38,7 +38,9 @@ pub(crate) fn keep(target: &Path) -> io::Result<PathBuf> {
         Err(_) => {
             let mut copy = builder(&beginning).tempfile_in(folder).map_err(plain)?;
             io::copy(&mut File::open(target)?, &mut copy)?;
-            copy.as_file().set_permissions(fs::metadata(target)?.permissions())?;
+            let old = fs::metadata(target)?;
+            copy.as_file().set_permissions(old.permissions())?;
+            copy.as_file().set_modified(old.modified()?)?;
             copy.as_file().sync_all()?;
             copy.persist(&path).map_err(|error| error.error)?;
         }
@@ -46,11 +48,9 @@ pub(crate) fn keep(target: &Path) -> io::Result<PathBuf> {
     Ok(path)
 }
 
-/// A copy of a file under a name beside it that is free: `NAME.bak`, `NAME.bak2` and so on.
+/// A copy of a file under a name beside it that is free.
 pub(crate) fn copied_aside(target: &Path) -> io::Result<PathBuf> {
-    let endings = std::iter::once(".bak".to_string()).chain((2..).map(|number| format!(".bak{number}")));
-    for ending in endings {
-        let copy = with_ending(target, &ending);
+    for copy in names(target) {
         match File::create_new(&copy) {
             Ok(mut file) => {
                 io::copy(&mut File::open(target)?, &mut file)?;
@@ -79,9 +79,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("m.json");
         fs::write(&target, "new").unwrap();
-        assert_eq!(keep(&target).unwrap(), path_of(&target));
-        keep(&target).unwrap();
-        assert_eq!(fs::read_to_string(path_of(&target)).unwrap(), "new");
+        seal::seal(&target).unwrap();
+        let copy = keep(&target).unwrap();
+        assert_eq!(copy, with_ending(&target, ".bak"));
+        assert_eq!(keep(&target).unwrap(), copy);
+        assert_eq!(fs::read_to_string(copy).unwrap(), "new");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use crate::failure::Failure;
 use crate::kind::{Kind, is_page_as_written};
 use crate::target::Target;
-use crate::{backup, leftovers, reading, temporary};
+use crate::{leftovers, reading, seal, temporary};
 pub use new_file::NewFile;
 
 #[derive(Debug, Clone)]
@@ -98,15 +98,17 @@ impl Destination {
 
     /// How what is at the target is kept: what Hysid did not write in any case, under a name of its own.
     pub(crate) fn copy_of_the_old(&self, target: &Path) -> io::Result<Copy> {
-        // A page that is too large to be read is none as Hysid wrote it.
-        let is_as_written = || reading::read(target).is_ok_and(|page| is_page_as_written(&page));
-        let is_edited = || self.kind == Kind::Page && !is_as_written();
+        let is_edited = || match self.kind {
+            // A page that is too large to be read is none as Hysid wrote it.
+            Kind::Page => !reading::read(target).is_ok_and(|page| is_page_as_written(&page)),
+            _ => self.keep && !seal::is_sealed(target),
+        };
         Ok(match (self.kind.recognises(target)?, self.keep) {
             _ if fs::metadata(target)?.len() == 0 => Copy::None,
             (true, _) if is_edited() => Copy::Aside,
             (true, false) => Copy::None,
-            (true, true) if backup::is_free(target, &self.kind) => Copy::Replacing,
-            _ => Copy::Aside,
+            (true, true) => Copy::Replacing,
+            (false, _) => Copy::Aside,
         })
     }
 }

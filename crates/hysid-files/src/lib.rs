@@ -21,6 +21,7 @@ mod leftovers;
 mod lock;
 mod reading;
 mod rescue;
+mod seal;
 mod target;
 mod temporary;
 

@@ -47,12 +47,16 @@ fn too_large(name: &str) -> String {
 }
 
 /// The checksum of a content, by which a file is known that somebody changed: CRC-32.
-pub fn checksum(mut from: impl Read) -> io::Result<String> {
+pub fn checksum(from: impl Read) -> io::Result<String> {
+    Ok(format!("{:08x}", checksum_of(from)?))
+}
+
+pub(crate) fn checksum_of(mut from: impl Read) -> io::Result<u32> {
     let mut sum = crc32fast::Hasher::new();
     let mut block = vec![0; 1 << 16];
     loop {
         match from.read(&mut block)? {
-            0 => return Ok(format!("{:08x}", sum.finalize())),
+            0 => return Ok(sum.finalize()),
             read => sum.update(&block[..read]),
         }
     }

@@ -65,6 +65,16 @@ fn what_somebody_edited_is_kept() {
     };
     kept("look good.csv -o plain.csv", "plain.csv");
     kept("plot good.csv -o loops.svg", "loops.svg");
+    // Later runs with other results replace the copies of unchanged files alone.
+    let (edited, whole) = (bench.text("plain.csv.bak"), bench.text("good.csv"));
+    let part: Vec<&str> = whole.lines().take(50).collect();
+    for content in [part.join("\n"), whole.clone(), part.join("\n"), whole] {
+        bench.put("good.csv", content);
+        bench.succeeds("look good.csv -o plain.csv");
+    }
+    assert_eq!(bench.text("plain.csv.bak"), edited);
+    let copies = bench.files("").into_iter().filter(|name| name.starts_with("plain.csv.bak")).count();
+    assert_eq!(copies, 2);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use tempfile::NamedTempFile;
 use crate::destination::{Copy, Destination};
 use crate::failure::Failure;
 use crate::target::Target;
-use crate::{backup, temporary};
+use crate::{backup, seal, temporary};
 
 /// A file on its way to its destination: the old one stays until [`NewFile::commit`]. Dropped before that, it leaves
 /// nothing behind. It is not buffered.
@@ -64,6 +64,8 @@ impl<'d> NewFile<'d> {
         self.flush().map_err(refused())?;
         let Sink::Beside(file, target) = self.sink else { return Ok(None) };
         let mut kept = None;
+        // Without a seal the file counts as changed, so nothing is lost.
+        let _ = seal::seal(file.path());
         if destination.check_old(&target)? {
             take_over(file.as_file(), &target).map_err(refused())?;
             file.as_file().sync_all().map_err(refused())?;
