@@ -5,7 +5,7 @@
 use std::fs::{File, FileTimes};
 use std::io;
 use std::path::Path;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, UNIX_EPOCH};
 
 use crate::reading::checksum_of;
 
@@ -13,23 +13,20 @@ const MILLISECOND: u32 = 1_000_000;
 
 /// Seals a file that is complete. It looks up to a millisecond older.
 pub fn seal(path: &Path) -> io::Result<()> {
-    let digits = digits_of_content(path)?;
-    let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let below = now.subsec_nanos() % MILLISECOND;
-    let earlier = if digits > below { MILLISECOND } else { 0 };
-    let since = now - Duration::from_nanos(below.into()) - Duration::from_nanos(earlier.into());
-    let time = UNIX_EPOCH + since + Duration::from_nanos(digits.into());
+    let (digits, found) = (digits_of_content(path)?, digits_of_time(path)?);
+    let earlier = if digits > found { MILLISECOND } else { 0 };
+    let time = path.metadata()?.modified()? - Duration::from_nanos((found + earlier - digits).into());
     File::options().append(true).open(path)?.set_times(FileTimes::new().set_modified(time))
 }
 
 /// True for a file with a seal of its content.
 pub fn is_sealed(path: &Path) -> bool {
-    let digits = || -> io::Result<u32> {
-        let changed = path.metadata()?.modified()?;
-        let since = changed.duration_since(UNIX_EPOCH).map_err(io::Error::other)?;
-        Ok(since.subsec_nanos() % MILLISECOND)
-    };
-    digits().is_ok_and(|digits| digits_of_content(path).is_ok_and(|expected| expected == digits))
+    digits_of_time(path).is_ok_and(|digits| digits_of_content(path).is_ok_and(|expected| expected == digits))
+}
+
+fn digits_of_time(path: &Path) -> io::Result<u32> {
+    let since = path.metadata()?.modified()?.duration_since(UNIX_EPOCH).map_err(io::Error::other)?;
+    Ok(since.subsec_nanos() % MILLISECOND)
 }
 
 fn digits_of_content(path: &Path) -> io::Result<u32> {
@@ -49,11 +46,11 @@ mod tests {
         for k in 0..50 {
             fs::write(&path, format!("x,y\n{k},1\n")).unwrap();
             assert!(!is_sealed(&path));
-            let before = SystemTime::now();
+            let changed = || path.metadata().unwrap().modified().unwrap();
+            let before = changed();
             seal(&path).unwrap();
             assert!(is_sealed(&path));
-            let changed = path.metadata().unwrap().modified().unwrap();
-            assert!(changed <= SystemTime::now() && changed + Duration::from_millis(2) > before);
+            assert!(changed() <= before && changed() + Duration::from_millis(1) > before);
         }
         fs::write(&path, "x,y\n49,2\n").unwrap();
         assert!(!is_sealed(&path));
