@@ -189,8 +189,12 @@ mod tests {
         let base = Wanted::default();
         assert!(refused(Wanted { range: Some((1.0, 1.0)), ..base }).contains("lower one first"));
         assert!(refused(Wanted { length: Some(3), ..base }).contains("from 40 to"));
-        assert!(refused(Wanted { max_rate: Some(-1.0), ..base }).contains("above 0"));
+        assert!(refused(Wanted { max_rate: Some(-1.0), ..base }).contains("from 1e-100"));
         assert!(refused(Wanted { max_rate: Some(1e-3), ..base }).contains("too few"));
-        assert!(refused(Wanted { step: Some(f64::NAN), ..base }).contains("above 0"));
+        assert!(refused(Wanted { step: Some(f64::NAN), ..base }).contains("from 1e-100"));
+        assert_eq!(
+            refused(Wanted { step: Some(1e-300), ..base }),
+            "step 1e-300: a number from 1e-100 to 1e100 is needed"
+        );
     }
 }

@@ -5,6 +5,7 @@ use std::process::Command;
 
 use hysid_export::{Options, Target};
 
+use super::c::compilers;
 use super::case::{Case, MODELS, NAME, written};
 use super::tools::{gcc, python, succeeds};
 
@@ -131,6 +132,23 @@ fn optimised_code_fuses_no_products_and_sums_and_fast_arithmetic_is_refused() {
         ];
         for flag in unsafe_options {
             assert!(!gcc(folder.path(), &["-O2", flag]).status.success(), "{label}: {flag}");
+        }
+    }
+}
+
+/// Clang tells a file of few of these options.
+#[test]
+fn clang_is_exact_whatever_it_is_told() {
+    for compiler in compilers().iter().filter(|compiler| compiler.contains("clang")) {
+        for ((label, model), flag) in
+            MODELS.iter().zip(["-funsafe-math-optimizations", "-freciprocal-math"].iter().cycle())
+        {
+            let folder = written(model, Target::C, &Options::named(NAME));
+            let files = ["-O2", flag, "actuator.c", "actuator_test.c", "-lm", "-o", "test"];
+            succeeds(Command::new(compiler).current_dir(folder.path()).args(files));
+            let output = succeeds(&mut Command::new(folder.path().join("test")));
+            let text = String::from_utf8_lossy(&output.stdout).into_owned();
+            assert!(text.starts_with("0 of "), "{label} {flag}: {text}");
         }
     }
 }
