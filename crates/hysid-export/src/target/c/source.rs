@@ -15,7 +15,7 @@ use crate::target::printer::{Binding, Language, Printer, Syntax, rows_of_numbers
 /// Refuses options of compilers that change results, and switches off the optimisation of gcc that fuses products and sums
 /// in spite of `-ffp-contract=off` (gcc 12: alternating sums and differences become one `vfmaddsub`). That line makes gcc
 /// apply `-fassociative-math`, which it ignores by itself, so the options are looked at again. Clang tells of few of them,
-/// but can be told to be exact; `float_control` alone would let it fuse.
+/// but can be told to reorder nothing; `float_control` alone would let it fuse.
 pub(super) const EXACT: &str = "#if defined __GNUC__ && !defined __clang__ && __GNUC__ >= 12
 #pragma GCC optimize (\"no-tree-slp-vectorize\")
 #endif
