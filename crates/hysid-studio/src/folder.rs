@@ -156,12 +156,9 @@ impl Folder {
 
     /// Removes a file of the project if it is one that Hysid wrote or took, and nobody changed. True if another stays.
     pub fn remove_if(&self, path: &Path, is_as_it_was: impl FnOnce(fs::File) -> io::Result<bool>) -> bool {
-        if fs::symlink_metadata(path).is_err() {
-            return false;
-        }
         let is_plain = self.check_file(path).is_ok();
         if is_plain && fs::File::open(path).and_then(is_as_it_was).unwrap_or(false) {
-            self.remove(path);
+            let _ = fs::remove_file(path);
         }
         fs::symlink_metadata(path).is_ok()
     }

@@ -64,8 +64,10 @@ impl<'d> NewFile<'d> {
         self.flush().map_err(refused())?;
         let Sink::Beside(file, target) = self.sink else { return Ok(None) };
         let mut kept = None;
-        // Without a seal the file counts as changed, so nothing is lost.
-        let _ = seal::seal(file.path());
+        if destination.kind.is_kept() {
+            // Without a seal the file counts as changed, so nothing is lost.
+            let _ = seal::seal(file.path());
+        }
         if destination.check_old(&target)? {
             take_over(file.as_file(), &target).map_err(refused())?;
             file.as_file().sync_all().map_err(refused())?;

@@ -35,7 +35,6 @@ struct ReadModel {
 /// What tells that a file is another than the one that was read.
 #[derive(PartialEq)]
 struct State {
-    path: PathBuf,
     bytes: u64,
     changed: Option<SystemTime>,
 }
@@ -43,7 +42,7 @@ struct State {
 impl State {
     fn of(path: &Path) -> Option<Self> {
         let found = fs::symlink_metadata(path).ok()?;
-        Some(Self { path: path.into(), bytes: found.len(), changed: found.modified().ok() })
+        Some(Self { bytes: found.len(), changed: found.modified().ok() })
     }
 }
 

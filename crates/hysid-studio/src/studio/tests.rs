@@ -15,6 +15,13 @@ fn opened(path: &Path) -> Arc<Studio> {
     Arc::new(Studio::open(Folder::open(Some(path)).unwrap()).unwrap())
 }
 
+/// With training and test data as files 1 and 2.
+fn with_specimen(path: &Path) -> Arc<Studio> {
+    let studio = opened(path);
+    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    studio
+}
+
 fn shown(studio: &Studio) -> Value {
     serde_json::to_value(studio.shown()).unwrap()
 }
@@ -120,8 +127,7 @@ fn a_file_that_killed_the_studio_is_held_back_until_it_is_read_again() {
 fn a_model_that_cannot_be_stored_stays_until_it_is() {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("p");
-    let studio = opened(&path);
-    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    let studio = with_specimen(&path);
     // As with a full disk: nothing can be written to the folder of models.
     let (models, away) = (path.join("models"), path.join("models-away"));
     fs::rename(&models, &away).unwrap();
@@ -146,8 +152,7 @@ fn a_model_that_cannot_be_stored_stays_until_it_is() {
 fn a_studio_that_was_killed_between_model_and_project_takes_the_finished_model() {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("p");
-    let studio = opened(&path);
-    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    let studio = with_specimen(&path);
     let id = fit(&studio).made.unwrap();
     let stored = studio.stored_model(id).unwrap();
     let finished = studio.folder.finished(id);
@@ -183,8 +188,7 @@ fn a_studio_that_was_killed_between_model_and_project_takes_the_finished_model()
 fn a_file_without_a_model_is_read_once_until_it_changes() {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("p");
-    let studio = opened(&path);
-    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    let studio = with_specimen(&path);
     let id = fit(&studio).made.unwrap();
     let model = studio.model_file(id).unwrap();
     let text = fs::read_to_string(&model).unwrap();
@@ -206,8 +210,7 @@ fn a_file_without_a_model_is_read_once_until_it_changes() {
 fn what_somebody_changed_or_others_wrote_stays_when_it_is_removed_from_the_project() {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("p");
-    let studio = opened(&path);
-    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    let studio = with_specimen(&path);
     let (first, second) = (fit(&studio).made.unwrap(), fit(&studio).made.unwrap());
     let stored = |id: u64| studio.stored_model(id).unwrap();
     let (model, report) = (studio.folder.models(&stored(first).file), stored(first).report.unwrap());
@@ -234,8 +237,7 @@ fn what_somebody_changed_or_others_wrote_stays_when_it_is_removed_from_the_proje
 fn a_model_that_cannot_be_stored_goes_nowhere_that_a_link_leads_to() {
     let place = tempfile::tempdir().unwrap();
     let (path, other) = (place.path().join("p"), place.path().join("other"));
-    let studio = opened(&path);
-    studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
+    let studio = with_specimen(&path);
     fs::create_dir(&other).unwrap();
     fs::remove_dir_all(path.join("models")).unwrap();
     std::os::unix::fs::symlink(&other, path.join("models")).unwrap();
