@@ -4,8 +4,11 @@ use super::branch::Reading;
 use super::significance;
 use super::{PictureCurve, Piece, Verdict};
 
-/// A property holds if no difference can be larger than so many times the effect that matters.
-const BOUND: f64 = 2.0;
+/// A property holds if no difference can be larger than so many times the effect that matters. Designed.
+pub(crate) const BOUND: f64 = 3.0;
+
+/// The same where one turning point decides: return points and congruency. Designed.
+pub(crate) const NARROW_BOUND: f64 = 2.0;
 
 /// A property does not hold if a gap, which is read at one point, is so many times its limit. Designed.
 const CLEAR_GAP: f64 = 1.2;
@@ -96,7 +99,9 @@ fn are_doubtful_together(comparisons: &[Comparison], effect: f64) -> bool {
 }
 
 /// Judges comparisons: a difference counts if it is above `effect` and cannot be noise, theory.md (10.3).
-pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement> {
+///
+/// `bound` is [`BOUND`] or [`NARROW_BOUND`].
+pub(crate) fn judge(comparisons: &[Comparison], effect: f64, bound: f64) -> Option<Judgement> {
     let count = comparisons.len();
     let (critical, doubtful) = (significance::critical_value(count), significance::doubtful_value(count));
     let limit = |c: &Comparison| (effect + UNSURE * (c.bend + c.other)).max(critical * c.deviation);
@@ -110,15 +115,15 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
         false => doubtful,
     };
     let is_doubtful = |c: &Comparison| c.index > (CLOSE * effect).max(in_doubt(c) * c.deviation);
-    let bound = |c: &Comparison| (c.index + UP_TO * c.deviation + c.bend).max(2.0 * c.other);
-    let mut bounds: Vec<f64> = comparisons.iter().map(bound).collect();
+    let at_most = |c: &Comparison| (c.index + UP_TO * c.deviation + c.bend).max(2.0 * c.other);
+    let mut bounds: Vec<f64> = comparisons.iter().map(at_most).collect();
     let clearly = if deciding.freedom > GAP { 1.0 } else { CLEAR_GAP };
     let verdict = if excess(deciding) > clearly {
         Verdict::No
     } else if excess(deciding) > 1.0
         || comparisons.iter().any(is_doubtful)
         || are_doubtful_together(comparisons, effect)
-        || significance::median(&mut bounds) > BOUND * effect
+        || significance::median(&mut bounds) > bound * effect
     {
         Verdict::NotTestable
     } else {

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::branch::{Branch, BranchSet};
-use super::comparison::{Comparison, SHAPE, judge};
+use super::comparison::{Comparison, NARROW_BOUND, SHAPE, judge};
 use super::{Finding, PictureCurve, Property, Verdict};
 
 /// A difference of shape that matters, as a share of the height.
@@ -47,7 +47,7 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool, needs_loops_apart: boo
             }
         }
     }
-    let Some(judgement) = judge(&comparisons, EFFECT) else {
+    let Some(judgement) = judge(&comparisons, EFFECT, NARROW_BOUND) else {
         let statement =
             "no two branches begin at the same input, in the same direction, with a different past";
         return Finding::not_testable(Property::Congruency, statement, EXPERIMENT);

@@ -4,7 +4,7 @@
 //! `|y(t + T) - y(t)| / R`                                                          theory.md (10.10)
 
 use super::branch::BranchSet;
-use super::comparison::{Comparison, judge};
+use super::comparison::{BOUND, Comparison, judge};
 use super::cycles::repeated;
 use super::{Cycle, Finding, Property, Verdict};
 
@@ -27,7 +27,7 @@ pub(crate) fn test<'c>(survey: &BranchSet, cycles: &'c [Cycle], may_fade: bool) 
         let step = later.len().div_ceil(MOST).max(1);
         let comparisons: Vec<Comparison> =
             later.into_iter().step_by(step).filter_map(|cycle| gap(survey, cycle)).collect();
-        judge(&comparisons, EFFECT).map(|judgement| (judgement, comparisons))
+        judge(&comparisons, EFFECT, BOUND).map(|judgement| (judgement, comparisons))
     };
     // The first period still remembers what was before.
     let Some((mut judgement, comparisons)) = judged(&|group| group[1..].to_vec()) else {
@@ -86,7 +86,7 @@ fn moves(survey: &BranchSet, groups: &[Vec<&Cycle>]) -> bool {
         Some(Comparison::of_readings(survey.height(), [before, after], wander))
     };
     let moves: Vec<Comparison> = groups.iter().filter_map(moved).collect();
-    judge(&moves, EFFECT).is_some_and(|judgement| judgement.verdict == Verdict::No)
+    judge(&moves, EFFECT, BOUND).is_some_and(|judgement| judgement.verdict == Verdict::No)
 }
 
 /// The gap between a branch and the next that begins at the same turning point: both are then at the same speed.

@@ -4,7 +4,7 @@
 //! `(|x - x_a|/2, |y - y_a|/2)` of each own part against that of the longest          theory.md (10.6)
 
 use super::branch::{Branch, BranchSet, is_one_speed};
-use super::comparison::{Comparison, SHAPE, judge};
+use super::comparison::{BOUND, Comparison, SHAPE, judge};
 use super::{Finding, Property, Verdict};
 
 /// A difference that matters, as a share of the height.
@@ -72,7 +72,7 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
         let statement = format!("{branches} shorter than the longest, within known loops; 2 are needed");
         return Finding::not_testable(Property::Masing, statement, EXPERIMENT);
     }
-    let mut judgement = judge(&comparisons, EFFECT).expect("there are comparisons");
+    let mut judgement = judge(&comparisons, EFFECT, BOUND).expect("there are comparisons");
     if judgement.verdict == Verdict::Yes && (comparisons.len() as f64) < MOST_OF_THEM * candidates as f64 {
         judgement.verdict = Verdict::NotTestable;
         judgement.doubt = "noise or widely spaced rows hide most of the branches";

@@ -4,7 +4,7 @@
 //! `rms(y_up(x) + y_down(2 x_c - x) - mean) / R`,  half the mean is the offset       theory.md (10.7)
 
 use super::branch::{Branch, BranchSet};
-use super::comparison::{Comparison, SHAPE, judge};
+use super::comparison::{BOUND, Comparison, SHAPE, judge};
 use super::{Finding, Property, Verdict};
 
 /// A difference that matters, as a share of the range of the output.
@@ -34,7 +34,7 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
     let step = pairs.len().div_ceil(MOST).max(1);
     let comparisons: Vec<Comparison> =
         pairs.into_iter().step_by(step).filter_map(|pair| compare(survey, centre, half, pair)).collect();
-    let Some(judgement) = judge(&comparisons, EFFECT) else {
+    let Some(judgement) = judge(&comparisons, EFFECT, BOUND) else {
         let statement = "no successive rising and falling branches over the whole range";
         return Finding::not_testable(Property::OddSymmetry, statement, EXPERIMENT);
     };

@@ -12,7 +12,7 @@ mod varying_speed;
 use std::collections::HashMap;
 
 use super::branch::{Branch, BranchSet, Reading};
-use super::comparison::{Comparison, SHAPE, judge};
+use super::comparison::{BOUND, Comparison, SHAPE, judge};
 use super::{Finding, Property, Verdict};
 use delay::Delay;
 use varying_speed::Remainders;
@@ -184,7 +184,7 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
     }
     let courses = courses(survey);
     let comparisons: Vec<Comparison> = courses.iter().filter_map(|speeds| compare(survey, speeds)).collect();
-    let Some(mut judgement) = judge(&comparisons, EFFECT) else {
+    let Some(mut judgement) = judge(&comparisons, EFFECT, BOUND) else {
         return (of_varying_speed(survey), None);
     };
     let ratio = courses.iter().map(Speeds::ratio).fold(0.0, f64::max);

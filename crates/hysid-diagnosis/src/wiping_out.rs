@@ -4,7 +4,7 @@
 //! `|y(return to x_a) - y(x_a)| / R`                                                 theory.md (10.4)
 
 use super::branch::{Branch, BranchSet, Closing};
-use super::comparison::{Comparison, GAP, judge};
+use super::comparison::{Comparison, GAP, NARROW_BOUND, judge};
 use super::{Evidence, Finding, Picture, Property, Verdict};
 
 /// A gap that matters, as a share of the range of the output.
@@ -34,7 +34,7 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
             EXPERIMENT,
         );
     }
-    let judgement = judge(&comparisons, EFFECT).expect("there are comparisons");
+    let judgement = judge(&comparisons, EFFECT, NARROW_BOUND).expect("there are comparisons");
     let percent = 100.0 * judgement.index;
     let statement = match judgement.verdict {
         Verdict::Yes => format!("excursions close: the largest gap is {percent:.2} % of the output's range"),

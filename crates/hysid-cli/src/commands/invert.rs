@@ -224,8 +224,11 @@ fn warnings(inverted: &Inverted) -> Vec<String> {
 fn expected(model: &Model) -> (&Errors, &'static str) {
     let provenance = model.provenance();
     match &provenance.validation {
-        Some(errors) => (errors, "held-out rows"),
-        None => (provenance.trained_error(), "training rows; on other inputs it may be larger"),
+        Some(errors) => (errors, "held-out rows, with the noise of their outputs"),
+        None => (
+            provenance.trained_error(),
+            "training rows, with the noise of their outputs; on other inputs it may be larger",
+        ),
     }
 }
 

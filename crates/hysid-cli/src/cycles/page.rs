@@ -10,7 +10,7 @@ use super::{Cycles, curves, over_amplitude, pictures};
 const AT_EACH_END: usize = 100;
 
 /// Figures that the page leaves to the file: when and where a cycle is, and the deviation of its energy.
-const PLACES: [&str; 4] = ["start_time", "input_min", "input_max", "energy_deviation"];
+const PLACES: [&str; 5] = ["start_time", "input_min", "input_max", "energy_deviation", "width_deviation"];
 
 pub fn page(cycles: &Cycles) -> Page {
     let lead = match cycles.of_model {

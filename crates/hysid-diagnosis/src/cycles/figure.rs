@@ -91,6 +91,7 @@ figures! {
     coercive_input, "coercive field", Input, &[Magnet];
     remanent_output, "remanence", Output, &[Magnet];
     width, "width", Output, &[Actuator];
+    width_deviation, "deviation of width", Output, &[Actuator];
     width_percent, "width", Percent, &[Actuator];
     width_at_input, "widest at", Input, &[Actuator];
     hold_duration, "hold", Time, &[Actuator];

@@ -66,6 +66,8 @@ pub struct CycleRow {
     pub remanent_output: Option<f64>,
     /// Largest difference of the outputs of both branches at equal input.
     pub width: Option<f64>,
+    /// Standard deviation of the width from the noise of the output.
+    pub width_deviation: Option<f64>,
     /// The same in percent of the loop's range of the output.
     pub width_percent: Option<f64>,
     /// The input where it is.

@@ -597,6 +597,7 @@ impl Reader<'_> {
             return;
         }
         row.width = Some(widest.apart);
+        row.width_deviation = Some(widest.deviation);
         row.width_at_input = Some(widest.x);
         let (low, high) = range(&path.y);
         row.width_percent = Some(100.0 * widest.apart / (high - low)).filter(|percent| percent.is_finite());

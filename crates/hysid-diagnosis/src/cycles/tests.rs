@@ -379,7 +379,7 @@ fn noise_makes_no_cycles_and_its_deviation_of_the_energy_is_what_it_is() {
         |row: usize, of: u64| (0..12).map(|k| uniform(12 * row as u64 + k + (of << 40))).sum::<f64>();
     let noisy_x: Vec<f64> = x.iter().enumerate().map(|(row, x)| x + 0.01 * normal(row, 1)).collect();
     let noisy_y: Vec<f64> = exact.iter().enumerate().map(|(row, y)| y + 0.03 * normal(row, 2)).collect();
-    let table = table_of(&data(noisy_x, noisy_y), Field::Structure);
+    let table = table_of(&data(noisy_x, noisy_y.clone()), Field::Structure);
     let rows: Vec<&CycleRow> = table.complete().collect();
     assert_eq!(rows.len(), 4);
     for row in &rows[1..] {
@@ -390,6 +390,13 @@ fn noise_makes_no_cycles_and_its_deviation_of_the_energy_is_what_it_is() {
         assert_relative_eq!(row.secant_stiffness.unwrap(), 1.0 / 3.0, max_relative = 0.03);
     }
     assert_eq!(table.backbone.len(), 2, "{:?}", table.backbone);
+    let widths = table_of(&data(x, noisy_y), Field::Actuator);
+    for row in widths.complete().skip(1) {
+        let (width, deviation) = (row.width.unwrap(), row.width_deviation.unwrap());
+        println!("{width} {deviation}");
+        assert!((1e-3..0.03).contains(&deviation), "{deviation}");
+        assert!((width - 2.0).abs() < 4.0 * deviation, "{width} with a deviation of {deviation}");
+    }
 }
 
 #[test]

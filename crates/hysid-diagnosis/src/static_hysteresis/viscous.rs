@@ -18,6 +18,8 @@ const CURVE: usize = 4;
 
 /// All of them: with drift, the rate and the relaxed input.
 const COLUMNS: usize = CURVE + 3;
+const RATE: usize = CURVE + 1;
+const RELAXED: usize = CURVE + 2;
 
 /// Remainders below this share of what a curve of the input leaves are explained.
 const EXPLAINED: f64 = 0.1;
@@ -59,11 +61,17 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
         products
     };
     let first = products(step);
-    let without_memory = first.remainder(CURVE);
-    let least =
-        (0..TIMES).map(|k| products(step * factor.powi(k)).remainder(COLUMNS)).fold(f64::INFINITY, f64::min);
-    let noise = NOISE * survey.output_noise.deviation() / survey.height();
-    least.sqrt() <= (EXPLAINED * without_memory.sqrt()).max(noise)
+    let (without_memory, _) = first.fit(CURVE);
+    let output_noise = survey.output_noise.deviation() / survey.height();
+    let input_noise = 2.0 * survey.input_noise.deviation() / survey.width();
+    let rate_noise = input_noise / (SQRT_2 * beside as f64);
+    (0..TIMES).any(|k| {
+        let products = products(step * factor.powi(k));
+        let (left, weights) = products.fit(COLUMNS);
+        let through_input = products.mean_square_slope(&weights).sqrt() * input_noise;
+        let noise = output_noise.hypot(through_input).hypot(weights[RATE] * rate_noise);
+        left.sqrt() <= (EXPLAINED * without_memory.sqrt()).max(NOISE * noise)
+    })
 }
 
 /// Rows before and after one over which its rate is taken: as many as the noise of the input needs.
@@ -87,15 +95,18 @@ fn between_turns(survey: &BranchSet, record: usize, near: usize) -> Vec<bool> {
 /// Products of all columns and the output, and the number of rows.
 struct Products {
     sums: [[f64; COLUMNS + 1]; COLUMNS + 1],
+    /// Sums of the scaled input and its powers.
+    powers: [f64; 4],
     rows: f64,
 }
 
 impl Products {
     fn new() -> Self {
-        Self { sums: [[0.0; COLUMNS + 1]; COLUMNS + 1], rows: 0.0 }
+        Self { sums: [[0.0; COLUMNS + 1]; COLUMNS + 1], powers: [0.0; 4], rows: 0.0 }
     }
 
-    /// Adds the rows of a record whose input relaxes in a time.
+    /// Adds the rows of a record whose input relaxes in a time, without what an unknown force at its first row,
+    /// which fades in the same time, explains.
     fn add(&mut self, survey: &BranchSet, record: &Record, on_branches: &[bool], beside: usize, time: f64) {
         let Some(stamps) = record.time() else {
             return;
@@ -103,18 +114,23 @@ impl Products {
         let (x, y) = (&record.inputs()[0], record.output());
         let scale = 2.0 / survey.width();
         let middle = 0.5 * (survey.input.0 + survey.input.1);
-        let speed = survey.width() / (stamps[stamps.len() - 1] - stamps[0]) * stamps.len() as f64;
+        let mean_step = survey.time_step();
         let mut relaxation = 0.0;
+        let mut fading = 1.0;
+        let mut of_fading = [0.0; COLUMNS + 1];
+        let mut fading_square = f64::MIN_POSITIVE;
         for row in 0..x.len().min(MOST_ROWS) {
             if row > 0 {
                 let (step, change) = (stamps[row] - stamps[row - 1], x[row] - x[row - 1]);
-                relaxation = advance(relaxation, change, decay(step, time));
+                let factors = decay(step, time);
+                relaxation = advance(relaxation, change, factors);
+                fading *= factors.0;
             }
             if !on_branches[row] || y[row].is_nan() {
                 continue;
             }
             let (before, after) = (row - beside, row + beside);
-            let rate = (x[after] - x[before]) / (stamps[after] - stamps[before]) / speed;
+            let rate = scale * (x[after] - x[before]) / (stamps[after] - stamps[before]) * mean_step;
             let u = scale * (x[row] - middle);
             let columns = [
                 1.0,
@@ -129,12 +145,21 @@ impl Products {
             for (sums, a) in self.sums.iter_mut().zip(columns) {
                 sums.iter_mut().zip(columns).for_each(|(sum, b)| *sum += a * b);
             }
+            of_fading.iter_mut().zip(columns).for_each(|(sum, a)| *sum += a * fading);
+            fading_square += fading * fading;
+            self.powers
+                .iter_mut()
+                .zip([u, u * u, u * u * u, u * u * u * u])
+                .for_each(|(sum, power)| *sum += power);
             self.rows += 1.0;
+        }
+        for (sums, a) in self.sums.iter_mut().zip(of_fading) {
+            sums.iter_mut().zip(of_fading).for_each(|(sum, b)| *sum -= a * b / fading_square);
         }
     }
 
-    /// Mean square of the output, as a share of its range, that the first so many columns leave.
-    fn remainder(&self, columns: usize) -> f64 {
+    /// Mean square of the output, as a share of its range, that the first so many columns leave, and their weights.
+    fn fit(&self, columns: usize) -> (f64, Vec<f64>) {
         /// Ridge for nearly collinear columns.
         const RIDGE: f64 = 1e-12;
         let matrix = Symmetric::from_fn(columns, |i, j| {
@@ -143,11 +168,18 @@ impl Products {
         let right: Vec<f64> = (0..columns).map(|i| self.sums[i][COLUMNS]).collect();
         let total = self.sums[COLUMNS][COLUMNS];
         let Some(factor) = matrix.cholesky(StopCheck::never()) else {
-            return total / self.rows;
+            return (total / self.rows, vec![0.0; columns]);
         };
         let mut weights = right.clone();
         factor.solve(&mut weights);
         let explained: f64 = weights.iter().zip(&right).map(|(w, b)| w * b).sum();
-        (total - explained).max(0.0) / self.rows
+        ((total - explained).max(0.0) / self.rows, weights)
+    }
+
+    /// Mean square of the slope by the scaled input `u`, at constant time: of the curve and of the relaxed input.
+    fn mean_square_slope(&self, weights: &[f64]) -> f64 {
+        let [a, b, c] = [weights[1] + weights[RELAXED], 2.0 * weights[2], 3.0 * weights[3]];
+        let [u, square, cube, fourth] = self.powers.map(|sum| sum / self.rows);
+        a * a + 2.0 * a * b * u + (b * b + 2.0 * a * c) * square + 2.0 * b * c * cube + c * c * fourth
     }
 }
