@@ -6,7 +6,7 @@ pub mod dilated_space;
 
 use pulp::{Simd, WithSimd};
 
-use crate::simd;
+use crate::simd::{self, LANES, multiply_add_lanes, sum_of_lanes};
 use crate::stop_check::{Pace, StopCheck};
 
 /// Fewest and most rows of a [`Batch`]; with few columns it has more rows.
@@ -113,24 +113,47 @@ impl Gram {
         second: usize,
         right: [&[S::f64s]; N],
     ) {
-        let length = left[0].len();
-        let left = left.map(|column| &column[..length]);
-        let right = right.map(|column| &column[..length]);
-        let mut sums = [[simd.splat_f64s(0.0); N]; TILE];
-        for k in 0..length {
-            let b: [S::f64s; N] = std::array::from_fn(|j| right[j][k]);
-            for (sums, left) in sums.iter_mut().zip(left) {
-                for j in 0..N {
-                    sums[j] = simd.mul_add_e_f64s(left[k], b[j], sums[j]);
-                }
-            }
-        }
+        let sums = products_of_columns(simd, left, right);
         for (i, sums) in sums.into_iter().enumerate() {
             for (j, sum) in sums.into_iter().enumerate() {
-                self.data[(first + i) * self.stride + second + j] += simd.reduce_sum_f64s(sum);
+                self.data[(first + i) * self.stride + second + j] += sum;
             }
         }
     }
+}
+
+/// Scalar products of `M` columns with `N` others, in whole groups of [`LANES`] rows, all sums in registers.
+///
+/// Vectors that are shorter than a group take its parts in turns, so that the partial sums are the same.
+#[inline(always)]
+fn products_of_columns<S: Simd, const M: usize, const N: usize>(
+    simd: S,
+    left: [&[S::f64s]; M],
+    right: [&[S::f64s]; N],
+) -> [[f64; N]; M] {
+    let length = left[0].len();
+    let left = left.map(|column| &column[..length]);
+    let right = right.map(|column| &column[..length]);
+    let parts = LANES / S::F64_LANES;
+    let mut lanes = [[[0.0; LANES]; N]; M];
+    for part in 0..parts {
+        let mut sums = [[simd.splat_f64s(0.0); N]; M];
+        for k in (part..length).step_by(parts) {
+            let b: [S::f64s; N] = std::array::from_fn(|j| right[j][k]);
+            for (sums, left) in sums.iter_mut().zip(left) {
+                for j in 0..N {
+                    sums[j] = multiply_add_lanes(simd, left[k], b[j], sums[j]);
+                }
+            }
+        }
+        if parts == 1 {
+            return sums.map(|sums| sums.map(|sum| simd.reduce_sum_f64s(sum)));
+        }
+        for (lanes, sums) in lanes.iter_mut().flatten().zip(sums.into_iter().flatten()) {
+            S::as_mut_simd_f64s(lanes).0[part] = sums;
+        }
+    }
+    lanes.map(|lanes| lanes.map(sum_of_lanes))
 }
 
 struct AddBatch<'a, 's> {
@@ -340,37 +363,37 @@ mod tests {
         ((row * 31 + column * 17) as f64 * 0.7).sin() + if row % 7 == column % 7 { 1.0 } else { 0.0 }
     }
 
-    struct Fill<'a>(&'a mut Gram, usize);
+    /// The Gram matrix of so many columns and rows.
+    struct Fill(usize, usize);
 
-    impl pulp::WithSimd for Fill<'_> {
-        type Output = ();
+    impl pulp::WithSimd for Fill {
+        type Output = Gram;
         #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) {
-            let n = self.0.n;
+        fn with_simd<S: Simd>(self, simd: S) -> Gram {
+            let Self(n, rows) = self;
             let (mut batch, mut pace) = (Batch::new(n), Pace::new(StopCheck::never()));
-            for row in 0..self.1 {
+            let mut gram = Gram::new(n);
+            for row in 0..rows {
                 if batch.free() == 0 {
-                    self.0.add(simd, &mut batch, &mut pace);
+                    gram.add(simd, &mut batch, &mut pace);
                 }
                 let columns: Vec<[f64; 1]> = (0..n).map(|column| [value(row, column)]).collect();
                 batch.append(columns.iter(), 1);
             }
-            self.0.add(simd, &mut batch, &mut pace);
+            gram.add(simd, &mut batch, &mut pace);
+            gram
         }
     }
 
     #[test]
     fn gram_is_the_matrix_of_scalar_products() {
         for (n, rows) in [(1, 1), (5, 700), (13, 256), (8, 257)] {
-            let mut widest = Gram::new(n);
-            simd::run(Fill(&mut widest, rows));
-            let mut scalar = Gram::new(n);
-            pulp::WithSimd::with_simd(Fill(&mut scalar, rows), pulp::Scalar::new());
+            let grams = simd::run_with_all(|| Fill(n, rows));
             for i in 0..n {
                 for j in 0..n {
                     let exact: f64 = (0..rows).map(|row| value(row, i) * value(row, j)).sum();
-                    approx::assert_relative_eq!(widest.at(i, j), exact, epsilon = 1e-10);
-                    approx::assert_relative_eq!(scalar.at(i, j), exact, epsilon = 1e-10);
+                    approx::assert_relative_eq!(grams[0].at(i, j), exact, epsilon = 1e-10);
+                    assert!(grams.iter().all(|gram| gram.at(i, j) == grams[0].at(i, j)), "{i} {j} of {n}");
                 }
             }
         }
@@ -409,9 +432,7 @@ mod tests {
     #[test]
     fn rows_can_be_taken_out_of_a_gram_matrix() {
         let n = 6;
-        let (mut all, mut some) = (Gram::new(n), Gram::new(n));
-        simd::run(Fill(&mut all, 40));
-        simd::run(Fill(&mut some, 15));
+        let (mut all, some) = (simd::run(Fill(n, 40)), simd::run(Fill(n, 15)));
         all.add_multiple(&some, -1.0);
         let exact: f64 = (15..40).map(|row| value(row, 4) * value(row, 2)).sum();
         approx::assert_relative_eq!(all.at(2, 4), exact, epsilon = 1e-10);

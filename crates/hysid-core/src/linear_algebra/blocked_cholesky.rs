@@ -9,8 +9,8 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::dot;
-use crate::simd;
+use super::{dot, products_of_columns};
+use crate::simd::{self, LANES};
 use crate::stop_check::{Pace, StopCheck};
 
 /// Rows from which on blocks pay.
@@ -70,24 +70,17 @@ impl WithSimd for Factorise<'_, '_> {
 fn divide_tile<S: Simd>(simd: S, tile: &mut [f64], n: usize, column: usize, others: [&[f64]; TILE]) {
     let mut sums = [[0.0; TILE]; TILE];
     {
-        let left: [(&[S::f64s], &[f64]); TILE] =
-            std::array::from_fn(|k| S::as_simd_f64s(&tile[k * n..k * n + column]));
-        let right = others.map(|row| S::as_simd_f64s(&row[..column]));
-        let length = left[0].0.len();
-        let (a, b) = (left.map(|row| &row.0[..length]), right.map(|row| &row.0[..length]));
-        let mut lanes = [[simd.splat_f64s(0.0); TILE]; TILE];
-        for k in 0..length {
-            let b: [S::f64s; TILE] = std::array::from_fn(|j| b[j][k]);
-            for (lanes, a) in lanes.iter_mut().zip(a) {
-                for j in 0..TILE {
-                    lanes[j] = simd.mul_add_e_f64s(a[k], b[j], lanes[j]);
-                }
-            }
-        }
+        let whole = column / LANES * LANES;
+        let left: [&[f64]; TILE] = std::array::from_fn(|k| &tile[k * n..k * n + column]);
+        let lanes = products_of_columns(
+            simd,
+            left.map(|row| S::as_simd_f64s(&row[..whole]).0),
+            others.map(|row| S::as_simd_f64s(&row[..whole]).0),
+        );
         for i in 0..TILE {
             for j in 0..TILE {
-                let ends = left[i].1.iter().zip(right[j].1).map(|(a, b)| a * b).sum::<f64>();
-                sums[i][j] = simd.reduce_sum_f64s(lanes[i][j]) + ends;
+                let ends = left[i][whole..].iter().zip(&others[j][whole..column]).map(|(a, b)| a * b);
+                sums[i][j] = lanes[i][j] + ends.sum::<f64>();
             }
         }
     }
@@ -124,4 +117,34 @@ fn factorise_group(group: &mut [f64], n: usize, first: usize) -> bool {
         row[end] = pivot.sqrt();
     }
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Factor(usize);
+
+    impl WithSimd for Factor {
+        type Output = Vec<f64>;
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
+            let n = self.0;
+            let entry = |i: usize, j: usize| {
+                ((i * 31 + j * 17) as f64 * 0.7).sin() + if i == j { 2.0 * n as f64 } else { 0.0 }
+            };
+            let mut data: Vec<f64> = (0..n * n).map(|k| entry(k / n, k % n)).collect();
+            let factorise = Factorise { data: &mut data, n, pace: Pace::new(StopCheck::never()) };
+            assert!(factorise.with_simd(simd));
+            data
+        }
+    }
+
+    #[test]
+    fn instruction_sets_agree_to_the_last_bit() {
+        for n in [200, 331] {
+            let factors = simd::run_with_all(|| Factor(n));
+            assert!(factors.iter().all(|factor| *factor == factors[0]), "{n}");
+        }
+    }
 }

@@ -18,7 +18,7 @@ use crate::network::memory::{BLOCK, Row};
 use crate::network::readout::{Backward, Readout};
 use crate::network::sweep::{Block, Drive, TakeBlock, Walk};
 use crate::network::{Architecture, Layout};
-use crate::simd;
+use crate::simd::{self, multiply_add_lanes};
 use crate::stop_check::StopCheck;
 
 /// Partial sums of each component, so that a sum over rows is SIMD code.
@@ -128,7 +128,7 @@ fn add_products<S: Simd>(simd: S, a: &Row, b: &[Row], sums: &mut [[f64; LANES]])
         let sum = S::as_mut_simd_f64s(sum).0;
         for (a, b) in a.chunks_exact(sum.len()).zip(S::as_simd_f64s(&b.0).0.chunks_exact(sum.len())) {
             for ((sum, &a), &b) in sum.iter_mut().zip(a).zip(b) {
-                *sum = simd.mul_add_e_f64s(a, b, *sum);
+                *sum = multiply_add_lanes(simd, a, b, *sum);
             }
         }
     }

@@ -14,7 +14,7 @@ use crate::network::memory::{BLOCK, LANES, Lanes, Row};
 use crate::network::sweep::Block;
 use crate::network::tanh::tanh;
 use crate::network::{Architecture, Layout};
-use crate::simd::multiply_add;
+use crate::simd::{multiply_add, multiply_add_lanes};
 
 /// Vectors that a kernel keeps in registers for each neuron.
 const VECTORS: usize = 4;
@@ -239,7 +239,7 @@ fn add_weighted<S: Simd, const K: usize, const V: usize>(
         for k in 0..K {
             let weight = simd.splat_f64s(weights[k][j]);
             for v in 0..V {
-                total[k][v] = simd.mul_add_e_f64s(weight, row[v], total[k][v]);
+                total[k][v] = multiply_add_lanes(simd, weight, row[v], total[k][v]);
             }
         }
     }
@@ -295,7 +295,7 @@ impl SampleReadout {
             for (weights, &z) in weights[1..].iter().zip(z) {
                 let z = simd.splat_f64s(z);
                 for (sum, &weight) in sums.iter_mut().zip(S::as_simd_f64s(weights).0) {
-                    *sum = simd.mul_add_e_f64s(weight, z, *sum);
+                    *sum = multiply_add_lanes(simd, weight, z, *sum);
                 }
             }
         }
