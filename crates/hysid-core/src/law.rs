@@ -385,16 +385,3 @@ macro_rules! for_each_law {
 }
 
 for_each_law!(any_of);
-
-impl ClassicalState {
-    /// From now on the arithmetic is that which every machine has: only some laws use another.
-    pub(crate) fn become_portable(&mut self) {
-        match self {
-            Self::DuhemNn(memory) => memory.become_portable(),
-            Self::HystereticOscillator(motion) | Self::HystereticStateSpace(motion) => {
-                motion.become_portable()
-            }
-            _ => {}
-        }
-    }
-}

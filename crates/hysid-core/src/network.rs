@@ -48,6 +48,8 @@ mod architecture;
 mod decay;
 pub mod free_run;
 mod gradient;
+#[cfg(test)]
+mod instruction_sets;
 mod jacobian;
 mod memory;
 mod parameters;
@@ -136,7 +138,6 @@ impl Network {
             output: self.output.clone(),
             inputs: vec![0.0; self.architecture.channels()],
             neurons: vec![0.0; self.architecture.memory_neurons()],
-            portable: false,
             u: vec![Row([0.0; BLOCK]); self.architecture.channels()],
             z: vec![Row([0.0; BLOCK]); self.architecture.memory_neurons()],
             h: vec![Row([0.0; BLOCK]); self.architecture.hidden],
@@ -157,7 +158,6 @@ pub struct Simulator {
     /// Inputs and outputs of the memory neurons in one row.
     inputs: Vec<f64>,
     neurons: Vec<f64>,
-    portable: bool,
     /// The same in a block of rows, and outputs of the tanh neurons.
     u: Vec<Row>,
     z: Vec<Row>,
@@ -165,12 +165,6 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// The same with rounded products and sums, as exported source code computes them to the last bit; slower.
-    #[must_use]
-    pub fn portable(self) -> Self {
-        Self { portable: true, ..self }
-    }
-
     /// The present memory.
     pub fn state(&self) -> &MemoryState {
         &self.state
@@ -199,21 +193,13 @@ impl Simulator {
         assert_eq!(u.len(), self.u.len(), "one slice for each channel");
         assert!(u.iter().all(|u| u.len() == y.len()), "as many inputs as outputs");
         assert!(steps.len() == y.len() || steps.is_empty(), "as many time steps as outputs");
-        let run = Run { simulator: self, u, steps, y };
-        match run.simulator.portable {
-            true => run.with_simd(pulp::Scalar::new()),
-            false => simd::run(run),
-        }
+        simd::run(Run { simulator: self, u, steps, y });
     }
 
     /// Simulates one sample and returns its scaled output: [`Simulator::run`] with one row.
     pub fn step(&mut self, u: &[f64], step: f64) -> f64 {
         assert_eq!(u.len(), self.inputs.len(), "one value for each channel");
-        let step = Step { simulator: self, u, step };
-        match step.simulator.portable {
-            true => step.with_simd(pulp::Scalar::new()),
-            false => simd::run(step),
-        }
+        simd::run(Step { simulator: self, u, step })
     }
 
     #[inline(always)]

@@ -16,6 +16,14 @@ pub(super) enum RowUse<'a> {
 }
 
 impl RowUse<'_> {
+    /// All entries of the Gram matrix, row by row.
+    #[cfg(test)]
+    pub fn entries(self) -> Option<Vec<f64>> {
+        let Self::Gram(GramOfRows { gram, waiting, .. }) = self else { return None };
+        let n = waiting.len();
+        Some((0..n * n).map(|k| gram.at(k / n, k % n)).collect())
+    }
+
     /// Takes the columns of one row.
     #[inline(always)]
     pub fn take<S: Simd>(&mut self, simd: S, row: &[f64]) {

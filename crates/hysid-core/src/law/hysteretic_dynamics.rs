@@ -21,6 +21,8 @@
 
 mod element;
 mod hold;
+#[cfg(test)]
+mod instruction_sets;
 mod parameters;
 mod propagation;
 mod sensitivities;
@@ -167,9 +169,7 @@ impl Dynamics {
 
     /// Goes to the next sample and returns the output there, in its unit.
     pub(crate) fn step(&self, motion: &mut Motion, sample: Sample) -> f64 {
-        let is_portable = motion.is_portable;
-        let row = Row { dynamics: self, motion, sample };
-        let y = if is_portable { row.with_simd(pulp::Scalar::new()) } else { simd::run(row) };
+        let y = simd::run(Row { dynamics: self, motion, sample });
         self.output_offset + self.output_scale * y
     }
 

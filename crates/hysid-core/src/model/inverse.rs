@@ -190,10 +190,9 @@ impl<'m> Inverse<'m> {
         Ok(self)
     }
 
-    /// The same with portable arithmetic ([`Stepper::portable`]) and without closed inverses, as exports compute it.
+    /// The same without closed inverses: every step searches, as in exports.
     #[must_use]
-    pub fn portable(mut self) -> Self {
-        self.stepper = self.stepper.portable();
+    pub fn by_search(mut self) -> Self {
         self.is_search = true;
         self
     }

@@ -87,13 +87,6 @@ impl<'m> Stepper<'m> {
         &self.model
     }
 
-    /// The same with the arithmetic that every machine has: see [`Simulator::portable`].
-    #[must_use]
-    pub fn portable(mut self) -> Self {
-        self.state.become_portable();
-        self
-    }
-
     /// Advances to the next sample and returns the output there, in the user's unit. A trial that is not committed is
     /// forgotten.
     ///
@@ -175,14 +168,6 @@ impl State {
             seen: Vec::with_capacity(model.inputs() + model.preprocessing.added_inputs()),
             last: None,
             excursion: None,
-        }
-    }
-
-    fn become_portable(&mut self) {
-        match &mut self.memory {
-            Memory::Network(simulator, _) => **simulator = simulator.as_ref().clone().portable(),
-            Memory::Law(state) => state.become_portable(),
-            Memory::Ensemble(ensemble) => ensemble.members.iter_mut().for_each(Self::become_portable),
         }
     }
 

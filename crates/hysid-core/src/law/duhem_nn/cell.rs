@@ -102,15 +102,6 @@ pub struct Memory {
     pub(super) elapsed: f64,
     /// The input of the last sample; `None` before the first.
     x: Option<f64>,
-    /// True for the arithmetic that every machine has.
-    pub(super) is_portable: bool,
-}
-
-impl Memory {
-    /// From now on the arithmetic is that which every machine has.
-    pub(crate) fn become_portable(&mut self) {
-        self.is_portable = true;
-    }
 }
 
 impl Cell {
@@ -156,7 +147,6 @@ impl Cell {
             moved: 0.0,
             elapsed: 0.0,
             x: None,
-            is_portable: false,
         }
     }
 

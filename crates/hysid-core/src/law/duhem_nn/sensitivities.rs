@@ -53,6 +53,15 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// The entries of [`Run::gram`] with each instruction set of the machine.
+    #[cfg(test)]
+    pub(super) fn grams_of_all(self) -> Vec<Vec<f64>> {
+        let count = self.columns();
+        let rows = || RowUse::Gram(GramOfRows::new(count, self.stop));
+        let grams = simd::run_with_all(|| Sweep { run: self, rows: rows() }).into_iter().flatten();
+        grams.filter_map(RowUse::entries).collect()
+    }
+
     /// The rows as they were used; `None` once stopped.
     fn sweep(self, rows: RowUse<'a>) -> Option<RowUse<'a>> {
         simd::run(Sweep { run: self, rows })

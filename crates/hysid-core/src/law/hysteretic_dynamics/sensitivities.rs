@@ -95,6 +95,14 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// The entries of [`Run::gram`] with each instruction set of the machine.
+    #[cfg(test)]
+    pub(super) fn grams_of_all(self, layout: &Layout) -> Vec<Vec<f64>> {
+        let rows = || RowUse::Gram(GramOfRows::new(layout.count() + 1, self.stop));
+        let grams = simd::run_with_all(|| Sweep { run: self, layout: Some(layout), rows: rows() });
+        grams.into_iter().flatten().filter_map(RowUse::entries).collect()
+    }
+
     /// The rows as they were used; `None` once stopped.
     fn sweep(self, layout: Option<&Layout>, rows: RowUse<'a>) -> Option<RowUse<'a>> {
         simd::run(Sweep { run: self, layout, rows })

@@ -49,7 +49,7 @@ fn element(numbers: &mut Numbers, shape: Shape, modes: usize, size: f64) -> Elem
 }
 
 /// A model with random coefficients, whose modes have frequencies of 1, 2, ... radians per unit of time.
-fn model(seed: u64, modes: usize, elements: usize, shape: Shape, size: f64) -> Dynamics {
+pub(super) fn model(seed: u64, modes: usize, elements: usize, shape: Shape, size: f64) -> Dynamics {
     let mut numbers = Numbers::new(seed);
     let mode = |i: usize, numbers: &mut Numbers| Mode {
         frequency: 1.0 + i as f64,
@@ -70,7 +70,7 @@ fn model(seed: u64, modes: usize, elements: usize, shape: Shape, size: f64) -> D
     }
 }
 
-fn drive(seed: u64, rows: usize, step: f64) -> Drive {
+pub(super) fn drive(seed: u64, rows: usize, step: f64) -> Drive {
     let mut numbers = Numbers::new(seed);
     let phases = numbers.many(5, std::f64::consts::PI);
     let tones =
@@ -83,7 +83,7 @@ fn drive(seed: u64, rows: usize, step: f64) -> Drive {
     }
 }
 
-fn samples(drive: &Drive) -> Vec<Sample> {
+pub(super) fn samples(drive: &Drive) -> Vec<Sample> {
     let rows = drive.x.iter().zip(&drive.steps);
     rows.map(|(&x, &step)| Sample { x, rate: 0.0, step }).collect()
 }
@@ -93,10 +93,10 @@ fn outputs(dynamics: &Dynamics, samples: &[Sample]) -> Vec<f64> {
     samples.iter().map(|&sample| dynamics.step(&mut motion, sample)).collect()
 }
 
-const SHAPE: Shape = Shape { stops: 2, states: 2, neurons: 9, deteriorates: true };
+pub(super) const SHAPE: Shape = Shape { stops: 2, states: 2, neurons: 9, deteriorates: true };
 
 /// A run over records that begin in mid-motion.
-fn in_motion<'a>(dynamics: &'a Dynamics, drives: &'a [Drive], beginnings: &'a [f64]) -> Run<'a> {
+pub(super) fn in_motion<'a>(dynamics: &'a Dynamics, drives: &'a [Drive], beginnings: &'a [f64]) -> Run<'a> {
     Run { dynamics, drives, beginnings, is_in_motion: true, stop: StopCheck::never() }
 }
 
@@ -328,16 +328,5 @@ fn what_does_not_fit_together_is_refused() {
         change(&mut changed);
         let error = changed.check("test").unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
-    }
-}
-
-#[test]
-fn arithmetic_without_fused_products_agrees_to_rounding() {
-    let dynamics = model(8, 2, 2, SHAPE, 0.5);
-    let samples = samples(&drive(2, 100, 0.1));
-    let mut portable = dynamics.virgin();
-    portable.become_portable();
-    for (y, sample) in outputs(&dynamics, &samples).iter().zip(&samples) {
-        assert!((dynamics.step(&mut portable, *sample) - y).abs() < 1e-9);
     }
 }

@@ -56,8 +56,6 @@ pub struct Motion {
     pub(super) step: f64,
     propagations: Vec<Propagation>,
     has_begun: bool,
-    /// True for the arithmetic that every machine has.
-    pub(super) is_portable: bool,
 }
 
 /// The equal steps of a row.
@@ -92,12 +90,7 @@ impl Motion {
             step: f64::NAN,
             propagations: vec![Propagation::new(1.0, 1.0, 0.0); modes],
             has_begun: false,
-            is_portable: false,
         }
-    }
-
-    pub(crate) fn become_portable(&mut self) {
-        self.is_portable = true;
     }
 
     /// The forces of the elements where they are, such as those of virgin elements before the first sample.
