@@ -56,7 +56,7 @@ impl Inverse {
         let (low, high) = options.limits.unwrap_or(model.trained_ranges().inputs[0]);
         let limits = (rounded(low), rounded(high));
         let slew = options.slew.map(rounded);
-        let mut inverse = model.inverse().portable().limits(limits.0, limits.1).map_err(refused)?;
+        let mut inverse = model.inverse().by_search().limits(limits.0, limits.1).map_err(refused)?;
         if let Some(slew) = slew {
             inverse = inverse.slew(slew).map_err(refused)?;
         }

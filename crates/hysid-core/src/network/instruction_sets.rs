@@ -13,9 +13,14 @@ struct Case {
 
 impl Case {
     fn new() -> Self {
-        let architecture =
-            Architecture::new(Family::XpnnPlus, Sizes { stops: 19, hidden: 11, relaxation: 2 }, 2, true, true)
-                .unwrap();
+        let architecture = Architecture::new(
+            Family::XpnnPlus,
+            Sizes { stops: 19, hidden: 11, relaxation: 2 },
+            2,
+            true,
+            true,
+        )
+        .unwrap();
         let number = |k: u64| 2.0 * (mix(k) >> 11) as f64 / (1_u64 << 53) as f64 - 1.0;
         let numbers = |seed: u64, count: usize| (0..count as u64).map(move |k| number(seed << 32 | k));
         let mut parameters: Vec<f64> =
@@ -91,8 +96,7 @@ fn gram_matrices_are_equal() {
         stop: StopCheck::never(),
     });
     let n = columns.count();
-    let numbers =
-        grams.iter().map(|gram| (0..n * n).map(|k| gram.at(k / n, k % n)).collect::<Vec<f64>>());
+    let numbers = grams.iter().map(|gram| (0..n * n).map(|k| gram.at(k / n, k % n)).collect::<Vec<f64>>());
     must_be_equal(&numbers.collect::<Vec<_>>());
 }
 

@@ -1,10 +1,10 @@
-//! Networks of all families, with the operations of the library's portable kernel in their order.
+//! Networks of all families, with the operations of the library's kernels in their order.
 
 use hysid_core::network::scaling::Scaling;
 use hysid_core::network::{Layout, Network};
 
 use crate::description::Sample;
-use crate::program::expression::Real;
+use crate::program::expression::{Real, fused};
 use crate::program::{Array, Builder, Precision};
 
 /// Largest magnitude of a scaled input in each precision.
@@ -41,7 +41,7 @@ pub(super) fn step(
             builder.constants(&format!("{name}_linear"), parameters[layout.linear.clone()].to_vec());
         let mut sum = Real::Constant(0.0);
         for (channel, u) in u.iter().enumerate() {
-            sum = sum + weights.at(channel) * u;
+            sum = fused(weights.at(channel), u, sum);
         }
         builder.set(z, 0_usize, sum);
     }
@@ -84,7 +84,7 @@ fn stops(
     builder.each(0_usize, a.stops, |builder, j| {
         let mut sum = weights[0].at(&j) * &u[0];
         for (weights, u) in weights.iter().zip(u).skip(1) {
-            sum = weights.at(&j) * u + sum;
+            sum = fused(weights.at(&j), u, sum);
         }
         builder.set(v, &j, sum);
     });
@@ -113,7 +113,7 @@ fn stops(
         if let Some((slip, inverse_beta)) = deterioration {
             let sum = builder.value(slip.at(&j) + (&after - &before).abs());
             builder.set(slip, &j, &sum);
-            let strength = builder.value(-sum * inverse_beta.at(&j) + 1.0);
+            let strength = builder.value(fused(-sum, inverse_beta.at(&j), 1.0));
             output = output * strength.above(0.0).choose(&strength, 0.0);
         }
         builder.set(z, j + first, output);
@@ -183,22 +183,32 @@ fn decay(builder: &mut Builder, phi: Real) -> (Real, Real) {
     let phi = builder.value(phi);
     let phi = builder.value(phi.above(0.0).choose(&phi, 0.0));
     let bounded = builder.value(phi.below(longest).choose(&phi, longest));
-    let k = builder.value((&bounded * -std::f64::consts::LOG2_E).rounded());
+    let k = nearest_whole(builder, &bounded, -std::f64::consts::LOG2_E);
     let power = builder.value(k.power_of_two());
-    let s = builder.value(-&k * LN_2[1] + (-&k * LN_2[0] + -&bounded));
+    let s = builder.value(fused(-&k, LN_2[1], fused(-&k, LN_2[0], -&bounded)));
     let square = polynomial(builder, &SQUARE_AND_UP, &s);
-    let m = builder.value(&s * &s * square + &s);
-    let left = builder.value(&power * &m + &power);
-    let lost = builder.value(-&power * &m + (1.0 - &power));
+    let m = builder.value(fused(&s * &s, square, &s));
+    let left = builder.value(fused(&power, &m, &power));
+    let lost = builder.value(fused(-&power, &m, 1.0 - &power));
     let stress = builder.value(phi.below(longest).choose(left, 0.0));
     let increment = builder.value(phi.above(0.0).choose(lost / &phi, 1.0));
     (stress, increment)
 }
 
+/// The whole number next to `a * b`, whose magnitude is below 1000; halves go to the even one. Its derivative is 0.
+fn nearest_whole(builder: &mut Builder, a: &Real, b: f64) -> Real {
+    // Adding this constant leaves no digits behind the point.
+    let round = match builder.precision() {
+        Precision::Double => 6_755_399_441_055_744.0 + 1023.0,
+        Precision::Single => 12_582_912.0 + 127.0,
+    };
+    builder.value((fused(a, b, round) - round).detached())
+}
+
 fn polynomial(builder: &mut Builder, coefficients: &[f64], x: &Real) -> Real {
     let mut value = Real::Constant(coefficients[0]);
     for &coefficient in &coefficients[1..] {
-        value = builder.value(value * x + coefficient);
+        value = builder.value(fused(value, x, coefficient));
     }
     value
 }
@@ -215,15 +225,15 @@ pub(super) fn tanh(builder: &mut Builder, x: &Real) -> Real {
     ];
     let magnitude = builder.value(x.abs());
     let a = builder.value(magnitude.below(20.0).choose(&magnitude, 20.0));
-    let k = builder.value((&a * (2.0 * std::f64::consts::LOG2_E)).rounded());
+    let k = nearest_whole(builder, &a, 2.0 * std::f64::consts::LOG2_E);
     let power = builder.value(k.power_of_two());
-    let s = builder.value(-&k * (0.5 * std::f64::consts::LN_2) + &a);
+    let s = builder.value(fused(-&k, 0.5 * std::f64::consts::LN_2, &a));
     let square = builder.value(&s * &s);
     let cubic = polynomial(builder, &CUBIC_AND_UP, &square);
-    let t = builder.value(&square * &s * cubic + &s);
+    let t = builder.value(fused(&square * &s, cubic, &s));
     let less = builder.value(&power - 1.0);
     let more = builder.value(&power + 1.0);
-    builder.value(((&more * &t + &less) / (&less * &t + &more)).copysign(x))
+    builder.value((fused(&more, &t, &less) / fused(&less, &t, &more)).copysign(x))
 }
 
 /// The scaled output of the memory neurons' outputs `z`.
@@ -247,7 +257,7 @@ fn readout(builder: &mut Builder, name: &str, network: &Network, z: Array) -> Re
         builder.each(0_usize, memory, |builder, j| {
             let z = builder.value(z.at(&j));
             builder.each(0_usize, a.hidden, |builder, i| {
-                builder.set(h, &i, weights.at(&j * a.hidden + &i) * &z + h.at(&i));
+                builder.set(h, &i, fused(weights.at(&j * a.hidden + &i), &z, h.at(&i)));
             });
         });
         builder.each(0_usize, a.hidden, |builder, i| {
@@ -256,7 +266,7 @@ fn readout(builder: &mut Builder, name: &str, network: &Network, z: Array) -> Re
             builder.set(h, &i, value);
         });
         builder.each(0_usize, a.hidden, |builder, i| {
-            builder.assign(y, output.at(&i) * h.at(&i) + Real::from(y));
+            builder.assign(y, fused(output.at(&i), h.at(&i), y));
         });
     }
     if direct.is_empty() {
@@ -265,7 +275,7 @@ fn readout(builder: &mut Builder, name: &str, network: &Network, z: Array) -> Re
     let weights = builder.constants(&format!("{name}_direct"), direct.to_vec());
     let of_memory = builder.variable(0.0);
     builder.each(0_usize, direct.len(), |builder, j| {
-        builder.assign(of_memory, weights.at(&j) * z.at(&j) + Real::from(of_memory));
+        builder.assign(of_memory, fused(weights.at(&j), z.at(&j), of_memory));
     });
     Real::from(y) + Real::from(of_memory)
 }

@@ -1,6 +1,6 @@
 //! Turns choices inside expressions into statements, for languages that have no such expression.
 
-use crate::program::expression::{Real, RealVariable, Truth, Whole};
+use crate::program::expression::{Real, RealVariable, Truth, Whole, fused};
 use crate::program::{Program, Statement};
 
 /// The program without [`Real::Choice`].
@@ -74,6 +74,10 @@ impl Next {
             Real::Binary(function, a, b) => {
                 let a = self.real(a, before);
                 Real::Binary(*function, Box::new(a), Box::new(self.real(b, before)))
+            }
+            Real::Fused(a, b, c) => {
+                let [a, b, c] = [a, b, c].map(|part| self.real(part, before));
+                fused(a, b, c)
             }
             Real::Choice(condition, yes, no) => {
                 let condition = self.truth(condition, before);

@@ -29,8 +29,6 @@ pub enum Unary {
     InverseSinh,
     /// The smallest whole number that is not below `a`.
     Ceiling,
-    /// The whole number next to `a`, whose magnitude is below 1000; halves go to the even one. Its derivative is 0.
-    Rounded,
     /// `2^a` for a whole number `a` whose magnitude is below 1000. Its derivative is 0.
     PowerOfTwo,
     /// `a`, whose derivative counts as 0.
@@ -76,6 +74,8 @@ pub(crate) enum Real {
     Element(Array, Box<Whole>),
     Unary(Unary, Box<Real>),
     Binary(Binary, Box<Real>, Box<Real>),
+    /// `a * b + c`, see [`fused`].
+    Fused(Box<Real>, Box<Real>, Box<Real>),
     /// The first number where the condition holds, otherwise the second. Only that one is computed.
     Choice(Box<Truth>, Box<Real>, Box<Real>),
     OfWhole(Box<Whole>),
@@ -220,6 +220,11 @@ whole_operator!(Add, add, Sum);
 whole_operator!(Sub, sub, Difference);
 whole_operator!(Mul, mul, Product);
 
+/// `a * b + c`: in one rounding in double precision, where the target can do it; in two otherwise.
+pub(crate) fn fused(a: impl Into<Real>, b: impl Into<Real>, c: impl Into<Real>) -> Real {
+    Real::Fused(Box::new(a.into()), Box::new(b.into()), Box::new(c.into()))
+}
+
 impl Real {
     pub fn apply(self, function: Unary) -> Self {
         Self::Unary(function, Box::new(self))
@@ -260,10 +265,6 @@ impl Real {
 
     pub fn ceil(&self) -> Self {
         self.clone().apply(Unary::Ceiling)
-    }
-
-    pub fn rounded(&self) -> Self {
-        self.clone().apply(Unary::Rounded)
     }
 
     pub fn power_of_two(&self) -> Self {

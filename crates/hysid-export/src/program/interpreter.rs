@@ -7,8 +7,7 @@ use std::cell::Cell;
 use crate::program::expression::{Binary, Real, Truth, Unary, Whole};
 use crate::program::{Array, Precision, Program, Statement, Storage};
 
-/// Adding this and subtracting it rounds to a whole number; the low bits of the sum are that number plus the exponent
-/// bias 1023.
+/// The low bits of the sum of this and a whole number are that number plus the exponent bias 1023.
 const ROUND: f64 = 6_755_399_441_055_744.0 + 1023.0;
 
 /// The same in single precision, with the bias 127.
@@ -139,6 +138,15 @@ impl<'p> Machine<'p> {
                     Precision::Single => f64::from(binary_single(*function, a as f32, b as f32)),
                 }
             }
+            Real::Fused(a, b, c) => {
+                self.count();
+                self.count();
+                let [a, b, c] = [a, b, c].map(|part| self.real(part));
+                match precision {
+                    Precision::Double => a.mul_add(b, c),
+                    Precision::Single => f64::from(a as f32 * b as f32 + c as f32),
+                }
+            }
             Real::Choice(condition, yes, no) => self.real(if self.holds(condition) { yes } else { no }),
             Real::OfWhole(value) => self.whole(value) as f64,
         }
@@ -186,7 +194,6 @@ fn unary(function: Unary, a: f64) -> f64 {
         Unary::Tanh => a.tanh(),
         Unary::InverseSinh => a.asinh(),
         Unary::Ceiling => a.ceil(),
-        Unary::Rounded => (a + ROUND) - ROUND,
         Unary::PowerOfTwo => f64::from_bits((a + ROUND).to_bits() << 52),
     }
 }
@@ -216,7 +223,6 @@ fn unary_single(function: Unary, a: f32) -> f32 {
         Unary::Tanh => a.tanh(),
         Unary::InverseSinh => a.asinh(),
         Unary::Ceiling => a.ceil(),
-        Unary::Rounded => (a + ROUND_SINGLE) - ROUND_SINGLE,
         Unary::PowerOfTwo => f32::from_bits((a + ROUND_SINGLE).to_bits() << 23),
     }
 }

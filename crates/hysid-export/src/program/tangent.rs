@@ -98,7 +98,7 @@ impl Active {
     fn depends(&self, value: &Real) -> bool {
         match value {
             Real::Constant(_) | Real::OfWhole(_) => false,
-            Real::Unary(Unary::Ceiling | Unary::Rounded | Unary::PowerOfTwo | Unary::Detached, _) => false,
+            Real::Unary(Unary::Ceiling | Unary::PowerOfTwo | Unary::Detached, _) => false,
             Real::Variable(variable) => self.variables.contains(variable),
             // Of the arguments, only the first.
             Real::Element(array @ Array(0), index) => {
@@ -107,6 +107,7 @@ impl Active {
             Real::Element(array, _) => self.arrays.contains(array),
             Real::Unary(_, a) => self.depends(a),
             Real::Binary(_, a, b) | Real::Choice(_, a, b) => self.depends(a) || self.depends(b),
+            Real::Fused(a, b, c) => [a, b, c].into_iter().any(|part| self.depends(part)),
         }
     }
 }
@@ -177,6 +178,10 @@ impl Derivative {
             Real::Binary(function, a, b) => {
                 of_binary(*function, (a, self.of(program, a)), (b, self.of(program, b)))
             }
+            Real::Fused(a, b, c) => {
+                let product = of_binary(Binary::Product, (a, self.of(program, a)), (b, self.of(program, b)));
+                sum(product, self.of(program, c))
+            }
             Real::Choice(condition, yes, no) => match (self.of(program, yes), self.of(program, no)) {
                 (None, None) => None,
                 (yes, no) => Some(Truth::clone(condition).choose(or_zero(yes), or_zero(no))),
@@ -189,6 +194,13 @@ fn or_zero(slope: Option<Real>) -> Real {
     slope.unwrap_or(Real::Constant(0.0))
 }
 
+fn sum(first: Option<Real>, second: Option<Real>) -> Option<Real> {
+    match (first, second) {
+        (Some(first), Some(second)) => Some(first + second),
+        (first, second) => first.or(second),
+    }
+}
+
 fn of_unary(function: Unary, a: &Real, slope: Real) -> Option<Real> {
     match function {
         Unary::Negative => Some(-slope),
@@ -199,7 +211,7 @@ fn of_unary(function: Unary, a: &Real, slope: Real) -> Option<Real> {
         Unary::LnOnePlus => Some(slope / (1.0 + a)),
         Unary::Tanh => Some((1.0 - a.tanh() * a.tanh()) * slope),
         Unary::InverseSinh => Some(slope / (1.0 + a * a).sqrt()),
-        Unary::Ceiling | Unary::Rounded | Unary::PowerOfTwo | Unary::Detached => None,
+        Unary::Ceiling | Unary::PowerOfTwo | Unary::Detached => None,
     }
 }
 
@@ -208,10 +220,6 @@ fn of_binary(
     (a, slope_a): (&Real, Option<Real>),
     (b, slope_b): (&Real, Option<Real>),
 ) -> Option<Real> {
-    let sum = |first: Option<Real>, second: Option<Real>| match (first, second) {
-        (Some(first), Some(second)) => Some(first + second),
-        (first, second) => first.or(second),
-    };
     match function {
         Binary::Sum => sum(slope_a, slope_b),
         Binary::Difference => sum(slope_a, slope_b.map(|slope| -slope)),

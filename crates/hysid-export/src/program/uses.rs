@@ -13,6 +13,8 @@ pub(crate) struct Uses {
     pub arrays: BTreeSet<Array>,
     pub unary: BTreeSet<Unary>,
     pub binary: BTreeSet<Binary>,
+    /// [`Real::Fused`]
+    pub fused: bool,
     pub infinity: bool,
 }
 
@@ -66,6 +68,10 @@ impl Uses {
                 self.binary.insert(*function);
                 self.real(a);
                 self.real(b);
+            }
+            Real::Fused(a, b, c) => {
+                self.fused = true;
+                [a, b, c].into_iter().for_each(|part| self.real(part));
             }
             Real::Choice(condition, yes, no) => {
                 self.truth(condition);

@@ -103,12 +103,7 @@ end
     text
 }
 
-const OWN_FUNCTIONS: &str = "function a = rounded(a)
-% The next whole number: the sum has no digits behind the point.
-a = (a + 6755399441056767.0) - 6755399441056767.0;
-end
-
-function a = with_sign(a, b)
+const OWN_FUNCTIONS: &str = "function a = with_sign(a, b)
 % The magnitude of a with the sign of b.
 a = abs(a);
 if b < 0 || (b == 0 && 1 / b < 0)
@@ -377,7 +372,6 @@ impl Language for Matlab {
             Unary::Tanh => "tanh",
             Unary::InverseSinh => "asinh",
             Unary::Ceiling => "ceil",
-            Unary::Rounded => "rounded",
             Unary::PowerOfTwo => "pow2",
         })
     }

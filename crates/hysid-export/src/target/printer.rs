@@ -28,6 +28,10 @@ pub(crate) trait Language {
     fn unary(&self, function: Unary) -> Option<&'static str>;
     /// A function of two numbers; `None` for an infix operator. A quotient by a constant has its operator in any case.
     fn binary(&self, function: Binary) -> Option<&'static str>;
+    /// A product and a sum in one rounding; `None` for two operators.
+    fn fused(&self) -> Option<&'static str> {
+        None
+    }
 }
 
 /// How a language writes what is the same for all its programs.
@@ -165,6 +169,16 @@ impl<'a, L: Language> Printer<'a, L> {
                 Some(name) => {
                     let (a, b) = (self.real(a, Binding::Choice), self.real(b, Binding::Choice));
                     (format!("{name}({a}, {b})"), Binding::Atom)
+                }
+            },
+            Real::Fused(a, b, c) => match language.fused() {
+                None => {
+                    let (a, b) = (self.real(a, Binding::Product), self.real(b, Binding::Sign));
+                    (format!("{a} * {b} + {}", self.real(c, Binding::Product)), Binding::Sum)
+                }
+                Some(name) => {
+                    let [a, b, c] = [a, b, c].map(|part| self.real(part, Binding::Choice));
+                    (format!("{name}({a}, {b}, {c})"), Binding::Atom)
                 }
             },
             Real::Choice(condition, yes, no) => {

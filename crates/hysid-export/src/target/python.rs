@@ -144,10 +144,6 @@ def _ceil(a):
     return float(math.ceil(a)) if math.isfinite(a) else a
 
 
-def _rounded(a):
-    return (a + 6755399441056767.0) - 6755399441056767.0
-
-
 def _power_of_two(a):
     return math.ldexp(1.0, int(a))
 
@@ -425,7 +421,6 @@ impl Language for Python {
             Unary::Tanh => "math.tanh",
             Unary::InverseSinh => "_asinh",
             Unary::Ceiling => "_ceil",
-            Unary::Rounded => "_rounded",
             Unary::PowerOfTwo => "_power_of_two",
         })
     }

@@ -25,7 +25,7 @@ fn agrees(name: &str, model: &Model) {
     for source in [RateSource::Backward, RateSource::Argument] {
         let description = Description::of(model, source, Precision::Double);
         let mut machine = Machine::new(&description.program);
-        let mut stepper = model.stepper().portable();
+        let mut stepper = model.stepper();
         let mut time = 0.0;
         for (row, inputs) in path(2500, model.names().inputs.len()).iter().enumerate() {
             let before = time;
@@ -60,7 +60,7 @@ fn outputs_are_equal_and_finite_on_wild_paths() {
         let description = Description::of(model, RateSource::Backward, Precision::Double);
         let tangent = with_tangent(&description.program);
         let mut machine = Machine::new(&tangent);
-        let mut stepper = model.stepper().portable();
+        let mut stepper = model.stepper();
         let (mut bits, mut time) = (7, 0.0);
         let mut x = 40.0;
         for row in 0..ROWS {
@@ -124,7 +124,7 @@ fn trials_of_the_library_agree_with_the_program() {
         let description = Description::of(model, RateSource::Backward, Precision::Double);
         let tangent = with_tangent(&description.program);
         let mut machine = Machine::new(&tangent);
-        let (mut stepper, mut plain) = (model.stepper().portable(), model.stepper().portable());
+        let (mut stepper, mut plain) = (model.stepper(), model.stepper());
         let (mut time, mut near, rows) = (0.0, 0, 300);
         for (row, inputs) in path(rows, model.names().inputs.len()).iter().enumerate() {
             let before = time;

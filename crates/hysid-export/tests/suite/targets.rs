@@ -5,6 +5,7 @@ mod case;
 mod closed_loop;
 mod fmu;
 mod foreign;
+mod fused;
 mod invalid;
 mod inverse;
 mod inverse_case;

@@ -6,7 +6,7 @@ use super::prandtl_ishlinskii::follow;
 use super::tanh_layer::{Slice, layer, partial_sums, product};
 use crate::description::Sample;
 use crate::description::network::tanh;
-use crate::program::expression::{Real, Whole};
+use crate::program::expression::{Real, Whole, fused};
 use crate::program::{Array, Builder};
 
 /// Scaled inputs are limited to this magnitude, as in the library.
@@ -54,7 +54,7 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &DuhemNn, sample: &Sa
         let first = Whole::from(inputs);
         let target = product(builder, (targets, &row), (terms, &first), (neurons, sums));
         let target = match (&gains, &rate) {
-            (Some(gains), Some(rate)) => builder.value(gains.at(&i) * rate + target),
+            (Some(gains), Some(rate)) => builder.value(fused(gains.at(&i), rate, target)),
             _ => target,
         };
         let of_path = path_leaks.at(&i) * &moved;
@@ -66,7 +66,7 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &DuhemNn, sample: &Sa
         let t = tanh(builder, &half);
         let leak = builder.value(2.0 * &t / (1.0 + &t));
         let before = builder.value(states.at(&i));
-        let after = builder.value(leak * (target - &before) + &before);
+        let after = builder.value(fused(leak, target - &before, &before));
         builder.set(states, &i, &after);
         builder.set(terms, &i + first_state, &after);
     });
@@ -103,7 +103,7 @@ fn stops(
     builder.each(0_usize, shape.stops, |builder, i| {
         let drive = builder.value(weights.at(&i) * from_origin);
         let drive = match rate {
-            Some(rate) => builder.value(weights.at(&i + shape.stops) * rate + drive),
+            Some(rate) => builder.value(fused(weights.at(&i + shape.stops), rate, drive)),
             None => drive,
         };
         let play = follow(builder, plays, &i, &drive, &Real::Constant(1.0));

@@ -8,7 +8,7 @@ mod propagation;
 use hysid_core::law::hysteretic_dynamics::Dynamics;
 
 use crate::description::Sample;
-use crate::program::expression::{Real, Whole};
+use crate::program::expression::{Real, Whole, fused};
 use crate::program::{Array, Builder};
 use element::ElementParts;
 use input::Steps;
@@ -144,7 +144,7 @@ impl<'l> Parts<'l> {
             let count = elements.count();
             builder.each(0_usize, count, |builder, e| {
                 let place = if count == 1 { mode.clone() } else { mode * count + &e };
-                let sum = elements.compliances.at(place) * elements.forces.at(&e) + Real::from(force);
+                let sum = fused(elements.compliances.at(place), elements.forces.at(&e), force);
                 builder.assign(force, sum);
             });
         }
@@ -160,7 +160,7 @@ impl<'l> Parts<'l> {
             let ahead = builder.value(self.gains.at(&i) * input);
             let moved = |of: usize| {
                 let [a, b, c, d] = [0, 1, 2, 3].map(|k| self.factors.at(of + k, &i));
-                a * &q + (b * &p + (c * &force + d * &ahead))
+                fused(a, &q, fused(b, &p, fused(c, &force, d * &ahead)))
             };
             builder.set(self.displacements_alone, &i, moved(0));
             builder.set(self.velocities_alone, &i, moved(4));
@@ -171,8 +171,8 @@ impl<'l> Parts<'l> {
     fn move_modes(&self, builder: &mut Builder) {
         builder.each(0_usize, self.modes, |builder, i| {
             let force = self.with_elements(builder, &i, 0.0);
-            let q = self.factors.at(3, &i) * &force + self.displacements_alone.at(&i);
-            let p = self.factors.at(7, &i) * &force + self.velocities_alone.at(&i);
+            let q = fused(self.factors.at(3, &i), &force, self.displacements_alone.at(&i));
+            let p = fused(self.factors.at(7, &i), &force, self.velocities_alone.at(&i));
             builder.set(self.displacements, &i, q);
             builder.set(self.velocities, &i, p);
         });
@@ -181,12 +181,12 @@ impl<'l> Parts<'l> {
     fn output(&self, builder: &mut Builder, newest: &Real) -> Real {
         let y = builder.variable(self.law.direct * newest);
         for (i, mode) in self.law.modes.iter().enumerate() {
-            let of_mode = mode.velocity_in_output * self.velocities.at(i) + self.displacements.at(i);
+            let of_mode = fused(mode.velocity_in_output, self.velocities.at(i), self.displacements.at(i));
             builder.assign(y, Real::from(y) + of_mode);
         }
         if let Some(elements) = &self.elements {
             for (e, element) in self.law.elements.iter().enumerate() {
-                builder.assign(y, element.in_output * elements.forces.at(e) + Real::from(y));
+                builder.assign(y, fused(element.in_output, elements.forces.at(e), y));
             }
         }
         y.into()

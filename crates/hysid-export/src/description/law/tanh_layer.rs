@@ -1,7 +1,7 @@
 //! A layer of tanh neurons and scalar products, as in the library's `law::tanh_layer`.
 
 use crate::description::network::tanh;
-use crate::program::expression::{Real, Whole};
+use crate::program::expression::{Real, Whole, fused};
 use crate::program::{Array, Builder};
 
 /// Partial sums of the library's vectors.
@@ -30,7 +30,7 @@ pub(super) fn layer(
         let input = builder.value(inputs.at(&k));
         builder.each(0_usize, width, |builder, i| {
             let at = place(builder, &i);
-            builder.set(neurons, &at, weights.at(&k * width + &i) * &input + neurons.at(&at));
+            builder.set(neurons, &at, fused(weights.at(&k * width + &i), &input, neurons.at(&at)));
         });
     });
     builder.each(0_usize, width, |builder, i| {
@@ -52,7 +52,7 @@ pub(super) fn product(
     let rest = builder.variable(0.0);
     let add_rest = |builder: &mut Builder| {
         builder.each(whole, length, |builder, k| {
-            builder.assign(rest, a.at(from_a + &k) * b.at(from_b + &k) + Real::from(rest));
+            builder.assign(rest, fused(a.at(from_a + &k), b.at(from_b + &k), rest));
         });
     };
     if whole == 0 {
@@ -63,7 +63,7 @@ pub(super) fn product(
     builder.each(0_usize, whole / LANES, |builder, group| {
         builder.each(0_usize, LANES, |builder, l| {
             let k = Whole::from(builder.whole_variable(&group * LANES + &l));
-            builder.set(sums, &l, a.at(from_a + &k) * b.at(from_b + &k) + sums.at(&l));
+            builder.set(sums, &l, fused(a.at(from_a + &k), b.at(from_b + &k), sums.at(&l)));
         });
     });
     add_rest(builder);

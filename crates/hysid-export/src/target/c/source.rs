@@ -30,6 +30,9 @@ pub(super) const EXACT: &str = "#if defined __GNUC__ && !defined __clang__ && __
 
 ";
 
+/// A product and a sum in one rounding.
+const FUSED: &str = include_str!("fused.c.txt");
+
 /// The text of the source file.
 pub(super) fn source(subject: &Subject<'_>) -> String {
     let name = subject.name();
@@ -38,16 +41,20 @@ pub(super) fn source(subject: &Subject<'_>) -> String {
     let functions = Uses::of(&[step, tangent]);
 
     let mut text = format!("/* {name}.c: see {name}.h. */\n\n");
-    if functions.infinity || uses_math(&functions) {
+    let is_fused = functions.fused && subject.precision() == Precision::Double;
+    if functions.infinity || is_fused || uses_math(&functions) {
         text += "#include <math.h>\n";
     }
-    if functions.unary.contains(&Unary::PowerOfTwo) {
+    if is_fused || functions.unary.contains(&Unary::PowerOfTwo) {
         text += "#include <stdint.h>\n";
     }
     text += &format!("#include <string.h>\n\n#include \"{name}.h\"\n\n");
     text += EXACT;
     text += &format!("typedef {name}_real real;\n\n");
     text += &prelude(&functions, subject.precision());
+    if is_fused {
+        text += FUSED;
+    }
     text += &constants(&c, &[step, tangent]);
     text += &initial_state(&c, name, step);
     text += &function(&c, name, step, "advance", false);
@@ -67,7 +74,7 @@ real {name}_half_width(const {name}_model *model)
 }
 
 fn uses_math(functions: &Uses) -> bool {
-    let own = [Unary::Negative, Unary::Rounded, Unary::PowerOfTwo, Unary::Detached];
+    let own = [Unary::Negative, Unary::PowerOfTwo, Unary::Detached];
     let infix = [Binary::Sum, Binary::Difference, Binary::Product, Binary::Quotient];
     functions.unary.iter().any(|function| !own.contains(function))
         || functions.binary.iter().any(|function| !infix.contains(function))
@@ -214,17 +221,6 @@ fn prelude(functions: &Uses, precision: Precision) -> String {
         Precision::Single => ("f", "12583039.0f", "uint32_t", 23),
     };
     let mut text = String::new();
-    if functions.unary.contains(&Unary::Rounded) {
-        text += &format!(
-            "/* The next whole number: the sum has no digits behind the point. */
-static real rounded(real a)
-{{
-    return (a + {round}) - {round};
-}}
-
-"
-        );
-    }
     if functions.unary.contains(&Unary::PowerOfTwo) {
         text += &format!(
             "/* 2^a of a whole number: it becomes the exponent. */
@@ -318,7 +314,6 @@ impl Language for C {
         Some(match function {
             Unary::Negative => return None,
             Unary::Detached => "",
-            Unary::Rounded => "rounded",
             Unary::PowerOfTwo => "power_of_two",
             Unary::InverseSinh => "inverse_sinh",
             Unary::Magnitude => self.of_precision("fabs", "fabsf"),
@@ -339,5 +334,9 @@ impl Language for C {
             Binary::CopySign => Some(self.of_precision("copysign", "copysignf")),
             Binary::Hypotenuse => Some(self.of_precision("hypot", "hypotf")),
         }
+    }
+
+    fn fused(&self) -> Option<&'static str> {
+        (self.precision == Precision::Double).then_some("fused")
     }
 }

@@ -311,7 +311,7 @@ impl<'a> Compiler<'a> {
                 Statement::Set(array, index, value) => self.set_row(*array, index, value),
                 Statement::Assign(variable, value) => {
                     if let Some(addend) = lanes::addend(*variable, value) {
-                        let addend = self.real(addend);
+                        let addend = self.real(&addend);
                         let sum = self.name();
                         let keep = vec![Attribute::integer("keepdims", 0)];
                         self.add("ReduceSum", &[&addend], vec![sum.clone()], keep);
@@ -553,6 +553,11 @@ impl<'a> Compiler<'a> {
                 let (a, b) = (self.real(a), self.real(b));
                 self.binary(*function, &a, &b)
             }
+            Real::Fused(a, b, c) => {
+                let [a, b, c] = [a, b, c].map(|part| self.real(part));
+                let product = self.node("Mul", &[&a, &b]);
+                self.node("Add", &[&product, &c])
+            }
             Real::Choice(condition, yes, no) => {
                 let condition = self.truth(condition);
                 let (yes, no) = (self.real(yes), self.real(no));
@@ -578,7 +583,6 @@ impl<'a> Compiler<'a> {
             Unary::Tanh => self.node("Tanh", &[a]),
             Unary::InverseSinh => self.inverse_sinh(a),
             Unary::Ceiling => self.node("Ceil", &[a]),
-            Unary::Rounded => self.node("Round", &[a]),
             Unary::PowerOfTwo => {
                 let two = self.constant(2.0);
                 self.node("Pow", &[&two, a])

@@ -32,12 +32,15 @@ fn sums_are_apart(body: &[Statement]) -> bool {
     sums.iter().all(|sum| is_distinct(sum) && !body.iter().any(|statement| reads(statement, *sum)))
 }
 
-/// What a sum adds: `E` of `v + E` or `E + v`.
-pub(super) fn addend(variable: RealVariable, value: &Real) -> Option<&Real> {
+/// What a sum adds: `E` of `v + E` or `E + v`, and `a * b` of `a * b + v`.
+pub(super) fn addend(variable: RealVariable, value: &Real) -> Option<Real> {
     let is_it = |value: &Real| *value == Real::Variable(variable);
     match value {
-        Real::Binary(Binary::Sum, a, b) if is_it(a) && !mentions(b, variable) => Some(b),
-        Real::Binary(Binary::Sum, a, b) if is_it(b) && !mentions(a, variable) => Some(a),
+        Real::Binary(Binary::Sum, a, b) if is_it(a) && !mentions(b, variable) => Some((**b).clone()),
+        Real::Binary(Binary::Sum, a, b) if is_it(b) && !mentions(a, variable) => Some((**a).clone()),
+        Real::Fused(a, b, c) if is_it(c) && !mentions(a, variable) && !mentions(b, variable) => {
+            Some(Real::Binary(Binary::Product, a.clone(), b.clone()))
+        }
         _ => None,
     }
 }
@@ -76,7 +79,7 @@ impl Lanes {
                 is_first && self.is_step(index)
             }
             Statement::Assign(variable, value) => {
-                let is_sum = addend(*variable, value).is_some_and(|addend| self.varies(addend));
+                let is_sum = addend(*variable, value).is_some_and(|addend| self.varies(&addend));
                 is_sum && !self.own.contains(variable)
             }
             _ => false,
@@ -111,6 +114,7 @@ impl Lanes {
             Real::Element(_, index) | Real::OfWhole(index) => !self.is_fixed(index),
             Real::Unary(_, a) => self.varies(a),
             Real::Binary(_, a, b) | Real::Choice(_, a, b) => self.varies(a) || self.varies(b),
+            Real::Fused(a, b, c) => [a, b, c].into_iter().any(|part| self.varies(part)),
         }
     }
 
@@ -131,6 +135,7 @@ impl Lanes {
             }
             Real::Unary(_, a) => self.real(a),
             Real::Binary(_, a, b) => self.real(a) && self.real(b),
+            Real::Fused(a, b, c) => [a, b, c].into_iter().all(|part| self.real(part)),
             Real::Choice(condition, a, b) => self.truth(condition) && self.real(a) && self.real(b),
         }
     }

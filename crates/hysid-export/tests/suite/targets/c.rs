@@ -74,7 +74,7 @@ fn the_header_is_good_for_cpp() {
 }
 
 /// Reads rows of arguments in binary, and does with each what `step` says; ARGUMENTS stands for them.
-fn driver(arguments: usize, step: &str) -> String {
+pub fn driver(arguments: usize, step: &str) -> String {
     let given: String = (0..arguments).map(|index| format!(", row[{index}]")).collect();
     let step = step.replace("ARGUMENTS", &given);
     format!(
@@ -94,7 +94,7 @@ int main(void)
     )
 }
 
-const OUTPUTS: &str = "double y = actuator_step(&modelARGUMENTS); fwrite(&y, sizeof y, 1, stdout);";
+pub const OUTPUTS: &str = "double y = actuator_step(&modelARGUMENTS); fwrite(&y, sizeof y, 1, stdout);";
 
 const BAND: &str = "double pair[2];
         pair[0] = actuator_trial(&modelARGUMENTS);

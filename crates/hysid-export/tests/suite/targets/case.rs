@@ -27,7 +27,7 @@ impl Case {
     /// A path of so many rows, with rates by backward differences.
     pub fn of(model: &Model, rows: usize) -> Self {
         let arguments = Description::of(model, RateSource::Backward, Precision::Double).arguments;
-        let mut stepper = model.stepper().portable();
+        let mut stepper = model.stepper();
         let mut time = 0.0;
         let mut case = Self { arguments, rows: Vec::new(), expected: Vec::new() };
         for (row, inputs) in path(rows, model.names().inputs.len()).iter().enumerate() {

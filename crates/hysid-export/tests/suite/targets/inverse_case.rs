@@ -46,11 +46,11 @@ impl InverseCase {
         let ranges = model.trained_ranges();
         let (low, high) = options.limits.unwrap_or(ranges.inputs[0]);
         let (least, most) = ranges.output;
-        let mut inverse = model.inverse().portable().limits(low, high).unwrap();
+        let mut inverse = model.inverse().by_search().limits(low, high).unwrap();
         if let Some(slew) = options.slew {
             inverse = inverse.slew(slew).unwrap();
         }
-        let mut specimen = model.stepper().portable();
+        let mut specimen = model.stepper();
         let mut unit = unit();
         let (mut time, mut time_on_path, mut wanted) = (0.0, 0.0, 0.5 * (least + most));
         let mut case = Self { arguments, rows: Vec::new(), expected: Vec::new() };

@@ -4,7 +4,7 @@ use hysid_core::law::hysteretic_dynamics::{Dynamics, Element, Shape};
 
 use crate::description::law::tanh_layer::{Slice, layer, partial_sums, product};
 use crate::description::network::tanh;
-use crate::program::expression::{Real, Whole};
+use crate::program::expression::{Real, Whole, fused};
 use crate::program::{Array, Builder};
 
 /// Travel below which the mean decay is that of a straight line, to rounding.
@@ -162,9 +162,9 @@ impl<'l> ElementParts<'l> {
         builder.each(0_usize, self.element.of_displacements.len(), |builder, i| {
             let (q, p) = (displacements.at(&i), builder.value(velocities.at(&i)));
             let of_displacement = builder.value(self.of_displacements.at(&i));
-            builder.assign(displacement, &of_displacement * q + Real::from(displacement));
-            builder.assign(displacement, self.of_velocities.at(&i) * &p + Real::from(displacement));
-            builder.assign(velocity, of_displacement * p + Real::from(velocity));
+            builder.assign(displacement, fused(&of_displacement, q, displacement));
+            builder.assign(displacement, fused(self.of_velocities.at(&i), &p, displacement));
+            builder.assign(velocity, fused(of_displacement, p, velocity));
         });
         let moved = builder.value(Real::from(displacement) - self.point.at(0_usize));
         builder.set(self.inputs, 0_usize, 1.0);
@@ -182,7 +182,7 @@ impl<'l> ElementParts<'l> {
         let stops = self.shape.stops;
         let of_velocity = builder.value(velocity - self.point.at(VELOCITY));
         builder.each(0_usize, stops, |builder, i| {
-            let driven = builder.value(parts.velocities.at(&i) * &of_velocity + moved);
+            let driven = builder.value(fused(parts.velocities.at(&i), &of_velocity, moved));
             let free = builder.value(parts.point.at(&i) + driven);
             let threshold = builder.value(parts.thresholds.at(&i));
             let elongation = builder.value(free.clone().clamp(-&threshold, &threshold));
@@ -221,7 +221,7 @@ impl<'l> ElementParts<'l> {
             let first = builder.value(&mean - &kept);
             let target = target(builder, &i, self.point_neurons);
             let before = builder.value(self.point.at(&i + (MEMORY + stops)));
-            let ahead = (1.0 - &kept) * (&target - &before) + &before;
+            let ahead = fused(1.0 - &kept, &target - &before, &before);
             builder.set(self.inputs, &i + (3 + stops), ahead);
             builder.set(self.path_step, entry(0, &i), kept);
             builder.set(self.path_step, entry(1, &i), first.max(0.0));
@@ -233,7 +233,11 @@ impl<'l> ElementParts<'l> {
             let ahead = target(builder, &i, self.neurons);
             let [kept, first, last, target] = [0, 1, 2, 3].map(|what| self.path_step.at(entry(what, &i)));
             let before = self.point.at(&i + (MEMORY + stops));
-            builder.set(self.inputs, &i + (3 + stops), kept * before + (first * target + last * ahead));
+            builder.set(
+                self.inputs,
+                &i + (3 + stops),
+                fused(kept, before, fused(first, target, last * ahead)),
+            );
         });
     }
 

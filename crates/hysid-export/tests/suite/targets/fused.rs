@@ -1,0 +1,118 @@
+//! Products and sums in one rounding in C: by the instruction, by the C library and in software, which are equal to the
+//! last bit.
+
+use std::fs;
+use std::process::Command;
+
+use hysid_export::{Options, Target};
+
+use super::c::{OUTPUTS, STRICT, compilers, driver};
+use super::case::{Case, MODELS, NAME, written};
+use super::tools::succeeds;
+
+/// Kinds of models whose kernels fuse, and one that has some of them as members.
+const FUSING: [&str; 6] =
+    ["gpnn", "xpnn ", "xpnn+", "duhem-nn", "hysteretic-oscillator starts=1 epochs=3", "auto"];
+
+fn has_instruction() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return std::arch::is_x86_feature_detected!("fma");
+    #[cfg(not(target_arch = "x86_64"))]
+    false
+}
+
+/// Options of compilers, each with the way that products and sums then go.
+fn ways() -> Vec<&'static [&'static str]> {
+    let in_software: &[&str] = &["-DHYSID_SOFTWARE_FMA"];
+    let with_instruction: [&[&str]; 3] = [
+        &["-mfma"],
+        &["-O3", "-march=native", "-ffp-contract=off"],
+        &["-O3", "-mfma", "-DHYSID_SOFTWARE_FMA"],
+    ];
+    let with_instruction = with_instruction.into_iter().filter(|_| has_instruction());
+    [&[], in_software].into_iter().chain(with_instruction).collect()
+}
+
+#[test]
+fn outputs_do_not_depend_on_the_instruction() {
+    for kind in FUSING {
+        let (name, model) = MODELS.iter().find(|(name, _)| name.starts_with(kind)).unwrap();
+        let case = Case::of(model, 2000);
+        let folder = written(model, Target::C, &Options::named(NAME));
+        fs::write(folder.path().join("driver.c"), driver(case.arguments.len(), OUTPUTS)).unwrap();
+        let input = folder.path().join("rows");
+        fs::write(&input, case.bytes()).unwrap();
+        for compiler in compilers() {
+            for way in ways() {
+                let mut command = Command::new(&compiler);
+                command.current_dir(folder.path()).args(STRICT).args(way);
+                succeeds(command.args(["actuator.c", "driver.c", "-lm", "-o", "driver"]));
+                let mut run = Command::new(folder.path().join("driver"));
+                let output = succeeds(run.stdin(fs::File::open(&input).unwrap()));
+                case.must_equal(&format!("{name}, {compiler} {way:?}"), &output.stdout);
+            }
+        }
+        println!("{name}: {} ways are equal", compilers().len() * ways().len());
+    }
+}
+
+/// Compares with the function of the C library over numbers of random bits, terms that nearly cancel, ties, small results
+/// and special numbers.
+const COMPARED: &str = "#define HYSID_SOFTWARE_FMA
+#include \"actuator.c\"
+#include <stdio.h>
+static uint64_t state = 7;
+static uint64_t next(void)
+{
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return state * UINT64_C(2685821657736338717);
+}
+/* A number with this digits mask and an exponent from `first` on. */
+static double number(uint64_t digits, uint64_t first, uint64_t count)
+{
+    return fused_value((next() & (fused_sign | (digits & 0xfffffffffffff))) | (first + next() % count) << 52);
+}
+int main(void)
+{
+    const double special[] = {0.0, -0.0, 1.0, -1.5, 5e-324, 1e-200, 1e-300, 1e200, 1.7976931348623157e308, HUGE_VAL,
+                              -HUGE_VAL, HUGE_VAL - HUGE_VAL, 2.2250738585072014e-308, 2.225073858507201e-308};
+    long k;
+    for (k = 0; k < 2000000; k++) {
+        double a = fused_value(next()), b = fused_value(next()), c = fused_value(next()), exact, found;
+        switch (k % 8) {
+        case 1: c = -(a * b); break;
+        case 2: c = fused_value(fused_bits(-(a * b)) + next() % 7 - 3); break;
+        case 3: a = number(~0ULL, 483, 60); b = number(~0ULL, 503, 60); c = number(~0ULL, 0, 2); break;
+        case 4: a = number(~0ULL << 30, 900, 200); b = number(~0ULL << 28, 900, 200); c = ldexp(a * b, -(int)(next() % 120)); break;
+        case 5: c = a * b * ldexp(1.0, (int)(next() % 240) - 120); break;
+        case 6: a = number(~0ULL << 30, 1019, 8); b = number(~0ULL << 28, 1019, 8); c = number(~0ULL << 32, 963, 120); break;
+        case 7: a = special[next() % 14]; b = special[next() % 14]; c = special[next() % 14]; break;
+        default: break;
+        }
+        exact = fma(a, b, c);
+        found = fused(a, b, c);
+        if (fused_bits(exact) != fused_bits(found) && (exact == exact || found == found))
+            return printf(\"%a * %a + %a: %a, not %a\\n\", a, b, c, found, exact), 1;
+    }
+    return 0;
+}
+";
+
+#[test]
+fn products_and_sums_in_software_are_rounded_once() {
+    if !cfg!(all(target_os = "linux", target_env = "gnu")) {
+        return;
+    }
+    let model = &MODELS.iter().find(|(name, _)| name.starts_with("pnn")).unwrap().1;
+    let folder = written(model, Target::C, &Options::named(NAME));
+    fs::write(folder.path().join("compared.c"), COMPARED).unwrap();
+    for compiler in compilers() {
+        for level in ["-O0", "-O2", "-O3"] {
+            let files = ["-std=gnu99", level, "compared.c", "-lm", "-o", "compared"];
+            succeeds(Command::new(&compiler).current_dir(folder.path()).args(files));
+            succeeds(&mut Command::new(folder.path().join("compared")));
+        }
+    }
+}
