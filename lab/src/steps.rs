@@ -17,6 +17,10 @@ use serde_json::json;
 const ROWS: usize = 10_000;
 const REPEATS: usize = 7;
 
+/// Ways of products and sums in one rounding on x86-64 Linux, with the option of the compiler for each.
+const WAYS: [(&str, &str); 3] =
+    [("the instruction", "-mfma"), ("the C library", "-O3"), ("software", "-DHYSID_SOFTWARE_FMA")];
+
 /// Runs the command.
 pub fn run() {
     let small = [("stops", json!(10)), ("hidden", json!(10)), ("starts", json!(1)), ("epochs", json!(20))];
@@ -28,14 +32,18 @@ pub fn run() {
         [("xpnn of 10 stops and 10 tanh neurons", xpnn), ("auto with its defaults", Fit::new().seed(1))];
     for (name, fit) in measured {
         let model = fit.run(&models::data(1)).unwrap();
-        let (library, c) = (of_stepper(&model), of_c(&model));
-        println!("{name}: Stepper::step {library:.1} ns, C {c:.1} ns, ratio {:.2}", c / library);
+        let library = of_stepper(&model);
+        for (way, option) in WAYS {
+            let c = of_c(&model, option);
+            println!("{name}: Stepper::step {library:.1} ns, C by {way} {c:.1} ns, ratio {:.2}", c / library);
+        }
         let wanted = wanted(&model);
-        let ((library, trials), c) = (of_inverse(&model, &wanted), of_c_inverse(&model, &wanted));
-        println!(
-            "{name}: Inverse::step {library:.0} ns, C {c:.0} ns, ratio {:.2}; {trials:.1} model steps on average",
-            c / library
-        );
+        let (library, trials) = of_inverse(&model, &wanted);
+        println!("{name}: {trials:.1} model steps in a step of the inverse on average");
+        for (way, option) in WAYS {
+            let c = of_c_inverse(&model, &wanted, option);
+            println!("{name}: Inverse::step {library:.0} ns, C by {way} {c:.0} ns, ratio {:.2}", c / library);
+        }
     }
     println!("time of exports in ms, the C compiler left out:");
     for (name, model) in models::all() {
@@ -99,7 +107,7 @@ fn of_inverse(model: &Model, wanted: &[(f64, f64)]) -> (f64, f64) {
 }
 
 /// Nanoseconds of a step of the exported C code.
-fn of_c(model: &Model) -> f64 {
+fn of_c(model: &Model, option: &str) -> f64 {
     let arguments = arguments(model);
     let rows: Vec<f64> = models::path(ROWS, 1)
         .iter()
@@ -114,11 +122,11 @@ fn of_c(model: &Model) -> f64 {
         })
         .collect();
     let step = Step { of: "model", prepare: "", call: "sum += actuator_step(&model", behind: "" };
-    timed(model, &rows, arguments.len(), &step)
+    timed(model, &rows, arguments.len(), &step, option)
 }
 
 /// The same of the exported inverse.
-fn of_c_inverse(model: &Model, wanted: &[(f64, f64)]) -> f64 {
+fn of_c_inverse(model: &Model, wanted: &[(f64, f64)], option: &str) -> f64 {
     let count = arguments(model).len();
     let rows: Vec<f64> =
         wanted.iter().flat_map(|(wanted, step)| [*wanted, *step].into_iter().take(count)).collect();
@@ -128,7 +136,7 @@ fn of_c_inverse(model: &Model, wanted: &[(f64, f64)]) -> f64 {
         call: "sum += actuator_inverse_step(&model",
         behind: ", &input, &output",
     };
-    timed(model, &rows, count, &step)
+    timed(model, &rows, count, &step, option)
 }
 
 fn arguments(model: &Model) -> Vec<Argument> {
@@ -144,7 +152,7 @@ struct Step {
 }
 
 /// Nanoseconds of a row in a C program.
-fn timed(model: &Model, rows: &[f64], arguments: usize, step: &Step) -> f64 {
+fn timed(model: &Model, rows: &[f64], arguments: usize, step: &Step, option: &str) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let options = Options { inverse: Some(InverseOptions::default()), ..Options::named("actuator") };
     for file in export(model, Target::C, &options).unwrap().files {
@@ -156,7 +164,7 @@ fn timed(model: &Model, rows: &[f64], arguments: usize, step: &Step) -> f64 {
     let compiler = ["-std=gnu99", "-O3", "-ffp-contract=off", "driver.c", "actuator.c", "actuator_inverse.c"];
     let mut command = Command::new("cc");
     let compiled =
-        command.current_dir(&folder).args(compiler).args(["-lm", "-o", "driver"]).status().unwrap();
+        command.current_dir(&folder).args(compiler).args([option, "-lm", "-o", "driver"]).status().unwrap();
     assert!(compiled.success());
     let output = Command::new(Path::new(folder.path()).join("driver")).current_dir(&folder).output().unwrap();
     String::from_utf8(output.stdout).unwrap().trim().parse().unwrap()

@@ -51,6 +51,12 @@ fn usage(subject: &Subject<'_>) -> String {
         Some(inverse) => (inverse::usage(name, inverse), format!(" {name}_inverse.c")),
         None => Default::default(),
     };
+    let fast = match source::is_fused(subject) {
+        true => {
+            " On x86-64, `-mfma` makes the code several times faster, for processors that have this instruction."
+        }
+        false => "",
+    };
     format!(
         "```c
 #include \"{name}.h\"
@@ -63,8 +69,8 @@ y = {name}_step(&model, x);      /* further arguments: see {name}.h */
 A solver that iterates calls `{name}_trial` or `{name}_trial_tangent` as often as it needs, each time from the committed
 state, and `{name}_commit` once it accepts.
 {inverse}
-Compile with `-ffp-contract=off` where the machine fuses products and sums: the outputs then equal those of Hysid to
-the last bit, if the C library computes `exp` and its like as that of Hysid does. `-ffast-math` is refused.
+Compile with `-ffp-contract=off`: the outputs then equal those of Hysid to the last bit, if the C library computes
+`exp` and its like as that of Hysid does. `-ffast-math` is refused.{fast}
 
 ```
 cc -std=c99 -O3 -ffp-contract=off -o {name}_test {name}_test.c {name}.c{more} -lm && ./{name}_test

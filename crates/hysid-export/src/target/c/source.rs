@@ -41,7 +41,7 @@ pub(super) fn source(subject: &Subject<'_>) -> String {
     let functions = Uses::of(&[step, tangent]);
 
     let mut text = format!("/* {name}.c: see {name}.h. */\n\n");
-    let is_fused = functions.fused && subject.precision() == Precision::Double;
+    let is_fused = is_fused(subject);
     if functions.infinity || is_fused || uses_math(&functions) {
         text += "#include <math.h>\n";
     }
@@ -71,6 +71,11 @@ real {name}_half_width(const {name}_model *model)
         );
     }
     text
+}
+
+/// True if the code has products and sums in one rounding.
+pub(super) fn is_fused(subject: &Subject<'_>) -> bool {
+    subject.precision() == Precision::Double && Uses::of(&[subject.program()]).fused
 }
 
 fn uses_math(functions: &Uses) -> bool {
