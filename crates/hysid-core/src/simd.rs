@@ -4,8 +4,7 @@
 //! widest that this machine has. Its results are the same to the last bit with each of them:
 //!
 //! - products are added in one rounding everywhere, in software where the hardware has no such instruction;
-//! - sums over rows or columns have [`LANES`] partial sums, however long the vectors are, and [`sum_of_lanes`] adds these
-//!   in one order;
+//! - sums over rows or columns have eight partial sums, however long the vectors are, which are added in one order;
 //! - everything else is computed number by number.
 
 mod fused;
