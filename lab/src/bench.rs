@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
@@ -68,10 +68,16 @@ pub struct Request {
     /// Print the result as one JSON object
     #[arg(long)]
     json: bool,
+    /// Use a narrower instruction set than this machine has: AVX2 or baseline
+    #[arg(long, value_name = "SET")]
+    instructions: Option<String>,
 }
 
 /// Runs the command.
 pub fn run(request: &Request) -> Result<()> {
+    if let Some(set) = &request.instructions {
+        ensure!(hysid::simd::narrow_to(set), "no instruction set {set} on this machine");
+    }
     let instructions = hysid::simd::instruction_set();
     if !request.json {
         eprintln!("measuring, a minute or two (instruction set: {instructions})\n");

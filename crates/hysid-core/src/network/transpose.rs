@@ -25,6 +25,11 @@ pub(crate) fn transpose<'a, S: Simd>(
         }
         return;
     }
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = (&simd as &dyn std::any::Any).downcast_ref::<pulp::x86::V3>() {
+        store_tiles(*simd, rows, columns);
+        return;
+    }
     let _ = simd;
     for (index, column) in columns.enumerate() {
         *column = from_fn(|row| rows[row][index]);
@@ -38,6 +43,58 @@ fn store<'a>(turned: [std::arch::x86_64::__m512d; 8], columns: impl Iterator<Ite
     for (column, turned) in columns.zip(turned) {
         pulp::x86::V4::as_mut_simd_f64s(column).0[0] = pulp::cast(turned);
     }
+}
+
+/// Edge of the tiles that vectors of 256 bits turn.
+#[cfg(target_arch = "x86_64")]
+const EDGE: usize = 4;
+
+/// Turns tiles of four by four numbers, of the columns that there are.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn store_tiles<'a>(
+    simd: pulp::x86::V3,
+    rows: &[[f64; 8]; 8],
+    mut columns: impl ExactSizeIterator<Item = &'a mut [f64; 8]>,
+) {
+    let mut first = 0;
+    while columns.len() > 0 {
+        let upper = tile_by_shuffles(simd, rows, 0, first);
+        let lower = tile_by_shuffles(simd, rows, EDGE, first);
+        for k in 0..EDGE {
+            let Some(column) = columns.next() else { return };
+            let column = pulp::x86::V3::as_mut_simd_f64s(column).0;
+            column[0] = pulp::cast(upper[k]);
+            column[1] = pulp::cast(lower[k]);
+        }
+        first += EDGE;
+    }
+}
+
+/// The columns of the tile of four by four numbers that begins at a row and a column.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn tile_by_shuffles(
+    simd: pulp::x86::V3,
+    rows: &[[f64; 8]; 8],
+    row: usize,
+    column: usize,
+) -> [std::arch::x86_64::__m256d; EDGE] {
+    const LOWER: i32 = 0x20;
+    const UPPER: i32 = 0x31;
+    let avx = simd.avx;
+    let mut r = [avx._mm256_setzero_pd(); EDGE];
+    for k in 0..EDGE {
+        r[k] = pulp::cast(pulp::x86::V3::as_simd_f64s(&rows[row + k][column..column + EDGE]).0[0]);
+    }
+    let even = [avx._mm256_unpacklo_pd(r[0], r[1]), avx._mm256_unpacklo_pd(r[2], r[3])];
+    let odd = [avx._mm256_unpackhi_pd(r[0], r[1]), avx._mm256_unpackhi_pd(r[2], r[3])];
+    [
+        avx._mm256_permute2f128_pd::<LOWER>(even[0], even[1]),
+        avx._mm256_permute2f128_pd::<LOWER>(odd[0], odd[1]),
+        avx._mm256_permute2f128_pd::<UPPER>(even[0], even[1]),
+        avx._mm256_permute2f128_pd::<UPPER>(odd[0], odd[1]),
+    ]
 }
 
 #[cfg(target_arch = "x86_64")]
