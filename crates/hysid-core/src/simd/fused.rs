@@ -15,7 +15,7 @@ pub(super) fn in_software(a: f64, b: f64, c: f64) -> f64 {
     let product = a * b;
     let is_common = a.abs() < LARGE && b.abs() < LARGE && product.abs() < LARGE && c.abs() < LARGE;
     if !(is_common && product.abs() > SMALL) {
-        return by_integers(a, b, c);
+        return if a == 0.0 || b == 0.0 { product + c } else { by_integers(a, b, c) };
     }
     let halves = |x: f64| {
         let scaled = SPLIT * x;
@@ -27,15 +27,12 @@ pub(super) fn in_software(a: f64, b: f64, c: f64) -> f64 {
     let (sum, of_sum) = sum_and_error(c, error);
     let (total, of_total) = sum_and_error(product, sum);
     let (rest, of_rest) = sum_and_error(of_sum, of_total);
-    // To odd: if it is not exact and its last bit is 0, it is the neighbour on the side of the error.
+    // To odd: if it is not exact and its last bit is 0, it is the neighbour on the side of the error. Without branches,
+    // which would be taken at random.
     let bits = rest.to_bits();
-    let away = (of_rest > 0.0) == (rest > 0.0);
-    let is_even = bits & 1 == 0;
-    let odd = match (of_rest != 0.0 && is_even, away) {
-        (false, _) => rest,
-        (true, true) => f64::from_bits(bits + 1),
-        (true, false) => f64::from_bits(bits - 1),
-    };
+    let goes = u64::from(of_rest != 0.0) & !bits & 1;
+    let back = goes & u64::from((of_rest > 0.0) != (rest > 0.0));
+    let odd = f64::from_bits(bits.wrapping_add(goes).wrapping_sub(2 * back));
     total + odd
 }
 
