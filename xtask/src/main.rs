@@ -1,4 +1,4 @@
-//! Developer commands: `cargo xtask check | test | python | site | sdist`.
+//! Developer commands: `cargo xtask check | test | python | site | sdist | same-arithmetic`.
 
 mod browser;
 mod cargo;
@@ -9,6 +9,7 @@ mod markdown;
 mod proofs;
 mod python;
 mod repository;
+mod same_arithmetic;
 mod site;
 mod test;
 mod tidy;
@@ -41,6 +42,8 @@ enum DeveloperCommand {
     Site,
     /// Build the Python package's source distribution and install it alone (some minutes)
     Sdist,
+    /// Compare models and exported C to the last bit with several instruction sets, some of them emulated
+    SameArithmetic,
     /// Check the house rules; a part of `check`
     Tidy,
 }
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
         DeveloperCommand::Python => python::build_and_test(),
         DeveloperCommand::Site => site::run(),
         DeveloperCommand::Sdist => python::source_distribution(),
+        DeveloperCommand::SameArithmetic => same_arithmetic::run(),
         DeveloperCommand::Tidy => tidy::run(),
     };
     match outcome {

@@ -56,6 +56,15 @@ fn quieten_readers() {
 pub fn run() -> ExitCode {
     quieten_readers();
     interrupt::survive_limits_of_files();
+    if let Some(set) = std::env::var_os("HYSID_INSTRUCTIONS")
+        && !set.to_str().is_some_and(hysid::simd::narrow_to)
+    {
+        insist(format_args!(
+            "HYSID_INSTRUCTIONS={}: no instruction set of this machine (AVX2, baseline)",
+            set.display()
+        ));
+        return ExitCode::from(2);
+    }
     let arguments = match Arguments::typed() {
         Ok(arguments) => arguments,
         Err(error) => return refuse(error),
