@@ -12,6 +12,7 @@
 //! `theory.md (1.5)` on these pages is the number of an equation in `docs/theory.md` of the repository.
 
 pub mod data;
+pub mod elementary;
 pub mod error;
 pub mod law;
 pub mod linear_algebra;
