@@ -357,10 +357,11 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::{cos, sin};
     use crate::simd;
 
     fn value(row: usize, column: usize) -> f64 {
-        ((row * 31 + column * 17) as f64 * 0.7).sin() + if row % 7 == column % 7 { 1.0 } else { 0.0 }
+        sin((row * 31 + column * 17) as f64 * 0.7) + if row % 7 == column % 7 { 1.0 } else { 0.0 }
     }
 
     /// The Gram matrix of so many columns and rows.
@@ -417,7 +418,7 @@ mod tests {
         let product = |i: usize, j: usize| (0..n + 23).map(|row| value(row, i) * value(row, j)).sum::<f64>();
         let entry = |i: usize, j: usize| product(i, j) + if i == j { 3.0 } else { 0.0 };
         let matrix = Symmetric::from_fn(n, entry);
-        let exact: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
+        let exact: Vec<f64> = (0..n).map(|i| cos(i as f64)).collect();
         let mut b = matrix.times(&exact);
         for i in [0, n / 2, n - 1] {
             let product: f64 = (0..n).map(|j| entry(i, j) * exact[j]).sum();

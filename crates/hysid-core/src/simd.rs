@@ -63,6 +63,7 @@ pub(crate) fn nearest_power<S: Simd>(a: f64, b: f64) -> (f64, f64) {
 
 /// `a * b + c` in one rounding.
 #[inline(always)]
+#[allow(clippy::disallowed_methods, reason = "networks fuse where the hardware does")]
 pub(crate) fn multiply_add<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
     if S::IS_SCALAR || cfg!(target_family = "wasm") { fused::in_software(a, b, c) } else { a.mul_add(b, c) }
 }

@@ -140,6 +140,7 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::{cos, sin};
 
     #[test]
     fn courses_are_told_apart() {
@@ -153,7 +154,7 @@ mod tests {
         assert_eq!(of(&|k| (k / 10.0).floor()), Course::CountsInSteps);
         assert_eq!(of(&|k| f64::from(k > 10.0)), Course::Varies);
         assert_eq!(of(&|_| 20.0), Course::Constant);
-        assert_eq!(of(&|k| k.sin()), Course::Varies);
+        assert_eq!(of(&|k| sin(k)), Course::Varies);
         // Every record begins anew.
         let count: Vec<f64> = (0..30).map(|k| f64::from(k % 10)).collect();
         assert_eq!(Course::of(count.chunks(10)), Course::Counts);
@@ -164,9 +165,9 @@ mod tests {
     #[test]
     fn one_signal_is_told_from_two() {
         let column = |value: &dyn Fn(f64) -> f64| (0..200).map(|k| value(0.1 * f64::from(k))).collect();
-        let command: Vec<f64> = column(&f64::sin);
-        let measured: Vec<f64> = column(&|k| -2.0 * (k - 0.02).sin() + 0.01 * (7.0 * k).cos() + 5.0);
-        let other: Vec<f64> = column(&|k| (k - 0.5).sin());
+        let command: Vec<f64> = column(&sin);
+        let measured: Vec<f64> = column(&|k| -2.0 * sin(k - 0.02) + 0.01 * cos(7.0 * k) + 5.0);
+        let other: Vec<f64> = column(&|k| sin(k - 0.5));
         assert!(one_signal(&command, &measured).unwrap() < -0.99);
         assert_eq!(one_signal(&command, &other), None);
         assert_eq!(one_signal(&command, &[1.0; 200]), None);

@@ -118,6 +118,7 @@ pub fn noise(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::{cos, sin};
     use crate::random::mix;
 
     fn column(values: &[f64], tolerance: f64) -> Column<'_> {
@@ -142,8 +143,8 @@ mod tests {
     fn every_row_is_met_within_the_tolerance() {
         let steps: Vec<f64> = (0..5000).map(|k| 0.01 * (1.0 + 0.5 * f64::from(k % 3))).collect();
         let time: Vec<f64> = (0..steps.len()).map(|row| steps[1..=row].iter().sum()).collect();
-        let x: Vec<f64> = time.iter().map(|t| t.sin() + 0.3 * (2.7 * t).sin()).collect();
-        let rate: Vec<f64> = time.iter().map(|t| t.cos() + 0.81 * (2.7 * t).cos()).collect();
+        let x: Vec<f64> = time.iter().map(|t| sin(*t) + 0.3 * sin(2.7 * t)).collect();
+        let rate: Vec<f64> = time.iter().map(|t| cos(*t) + 0.81 * cos(2.7 * t)).collect();
         let columns = [column(&x, 1e-3), column(&rate, 1e-2)];
         let rows = polyline(&columns, |row| steps[row], |row| row % 701 == 5);
         assert!(rows.len() < 1500, "{}", rows.len());
@@ -184,7 +185,7 @@ mod tests {
         let uniform = |seed: u64| mix(seed) as f64 / u64::MAX as f64 - 0.5;
         let normal = |row: usize| (0..12).map(|k| uniform(12 * row as u64 + k)).sum::<f64>();
         let smooth: Vec<f64> =
-            (0..50_000).map(|k| (std::f64::consts::TAU / 20.0 * f64::from(k)).sin()).collect();
+            (0..50_000).map(|k| sin(std::f64::consts::TAU / 20.0 * f64::from(k))).collect();
         assert!(noise(&smooth) < 2e-3, "{}", noise(&smooth));
         let noisy: Vec<f64> = smooth.iter().enumerate().map(|(row, x)| x + 0.02 * normal(row)).collect();
         assert!((noise(&noisy) / 0.02 - 1.0).abs() < 0.05, "{}", noise(&noisy));

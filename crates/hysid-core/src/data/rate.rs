@@ -164,9 +164,10 @@ fn slope_of_parabola(time: &[f64], x: &[f64], centre: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::{sin, square};
 
     fn uneven(n: usize) -> Vec<f64> {
-        (0..n).map(|k| k as f64 + 0.3 * (1.7 * k as f64).sin()).collect()
+        (0..n).map(|k| k as f64 + 0.3 * sin(1.7 * k as f64)).collect()
     }
 
     /// Central differences and Savitzky-Golay are exact for a parabola, whatever the steps.
@@ -202,7 +203,7 @@ mod tests {
         let time = uneven(400);
         let noise = |k: usize| ((k * 7919 % 101) as f64 / 101.0 - 0.5) * 0.1;
         let x: Vec<f64> = time.iter().enumerate().map(|(k, t)| 3.0 * t + noise(k)).collect();
-        let error = |rate: Vec<f64>| rate[10..390].iter().map(|r| (r - 3.0f64).powi(2)).sum::<f64>();
+        let error = |rate: Vec<f64>| rate[10..390].iter().map(|r| square(r - 3.0f64)).sum::<f64>();
         assert!(
             error(rate(RateMethod::SavitzkyGolay, &time, &x))
                 < 0.1 * error(rate(RateMethod::Central, &time, &x))

@@ -3,6 +3,7 @@
 use crate::data::record::{Copy, Dataset, Record, copies};
 use crate::data::turning_points::turning_points;
 use crate::data::warning::Warning;
+use crate::elementary::square;
 
 /// Reversals below this share of the range of the input count as noise.
 const SMALLEST_REVERSAL: f64 = 0.02;
@@ -111,7 +112,7 @@ fn is_without_order(values: &[f64]) -> bool {
     const FEWEST: usize = 50;
     let rows = values.len() as f64;
     let mean = values.iter().sum::<f64>() / rows;
-    let variance: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let variance: f64 = values.iter().map(|value| square(value - mean)).sum();
     if values.len() < FEWEST || variance == 0.0 {
         return false;
     }
@@ -138,6 +139,7 @@ fn time_steps(record: &Record) -> Option<(f64, f64, f64)> {
 mod tests {
     use super::*;
     use crate::data::record::ColumnNames;
+    use crate::elementary::sin;
 
     fn data(time: Vec<f64>, x: Vec<f64>, y: Vec<f64>) -> Dataset {
         let record = Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
@@ -156,7 +158,7 @@ mod tests {
     #[test]
     fn rows_that_are_shuffled_are_noticed() {
         let n = 300;
-        let at = |k: usize| (k as f64 * 0.1).sin();
+        let at = |k: usize| sin(k as f64 * 0.1);
         let time = || (0..n).map(|k| k as f64).collect::<Vec<_>>();
         let warned = |x: Vec<f64>| {
             let data = data(time(), x.clone(), x);

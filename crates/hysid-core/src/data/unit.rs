@@ -4,6 +4,7 @@ mod derived;
 mod quantity;
 
 use crate::data::column::Part;
+use crate::elementary::{log10, powi};
 pub use derived::{energy, power, pure_quotient, quotient};
 use quantity::Quantity;
 
@@ -98,7 +99,7 @@ pub fn factor(from: &str, to: &str) -> Option<f64> {
 
 /// The power of ten that a number is, but for roundings; otherwise the number.
 fn rounded(factor: f64) -> f64 {
-    let power = 10f64.powi(factor.log10().round() as i32);
+    let power = powi(10.0, log10(factor).round() as i32);
     if (factor / power - 1.0).abs() < 1e-12 { power } else { factor }
 }
 

@@ -22,6 +22,7 @@ mod degradation;
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::{exp, exp_m1, ln_1p, powf};
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::{ErrorsInside, Facts, Rate};
 use crate::law::properties::ODD;
@@ -206,14 +207,14 @@ impl BoucWen {
         let (mut z, mut by) = (z, by);
         if z < 0.0 {
             let m = 2.0 * self.b - 1.0;
-            let to_zero = if m.abs() < 1e-9 { -z } else { (-m * z).ln_1p() / m };
+            let to_zero = if m.abs() < 1e-9 { -z } else { ln_1p(-m * z) / m };
             if by < to_zero {
-                let way = if m.abs() < 1e-9 { by } else { -(-m * by).exp_m1() / m };
-                return (z * (-m * by).exp() + way).min(0.0);
+                let way = if m.abs() < 1e-9 { by } else { -exp_m1(-m * by) / m };
+                return (z * exp(-m * by) + way).min(0.0);
             }
             (z, by) = (0.0, by - to_zero);
         }
-        1.0 - (1.0 - z) * (-by).exp()
+        1.0 - (1.0 - z) * exp(-by)
     }
 
     /// How much faster than `x/z_u` the element comes to rest at its yield force.
@@ -252,7 +253,7 @@ impl BoucWen {
             self.degradation.map(|degradation| degradation.at(self.n, start.e + 0.5 * by * start.z));
         let slope = |z: f64| {
             let share = if z < 0.0 { 1.0 - 2.0 * self.b } else { 1.0 };
-            let softening = z.abs().powf(self.n) * share;
+            let softening = powf(z.abs(), self.n) * share;
             properties.as_ref().map_or(1.0 - softening, |properties| properties.slope(z, softening))
         };
         // (8.5) and (8.6) keep |z| ≤ 1; this keeps the numbers there as well, whatever the part.

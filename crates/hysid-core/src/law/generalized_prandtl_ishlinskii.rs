@@ -16,6 +16,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::tanh;
 use crate::error::{LARGEST_VALUE, Result};
 use crate::law::facts::{Defaults, ErrorsInside, Facts};
 pub use crate::law::play_weights::PlayWeights;
@@ -46,7 +47,7 @@ impl Envelope {
     /// The envelope at an input.
     #[inline]
     pub fn value(&self, x: f64) -> f64 {
-        self.a0 * (self.a1 * x + self.a2).tanh() + self.a3
+        self.a0 * tanh(self.a1 * x + self.a2) + self.a3
     }
 
     fn parameters(&self, side: char) -> [Parameter; 4] {

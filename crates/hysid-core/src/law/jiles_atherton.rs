@@ -19,6 +19,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::exp;
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::{ErrorsInside, Facts, Origin};
 use crate::law::properties::ODD;
@@ -154,7 +155,7 @@ fn langevin(x: f64) -> (f64, f64) {
         let value = x / 3.0 * (1.0 - square / 15.0 * (1.0 - 2.0 / 21.0 * square));
         return (value, 1.0 / 3.0 - square / 15.0 + 2.0 / 189.0 * square * square);
     }
-    let decline = (-2.0 * x.abs()).exp();
+    let decline = exp(-2.0 * x.abs());
     let rest = 1.0 - decline;
     let value = (1.0 + decline) / rest - 1.0 / x.abs();
     (value.copysign(x), 1.0 / square - 4.0 * decline / (rest * rest))

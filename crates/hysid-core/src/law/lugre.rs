@@ -17,6 +17,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::exp;
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::{ErrorsInside, Facts, Rate};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -93,7 +94,7 @@ impl Lugre {
     /// `g(v)/F_C`: the friction of steady motion divided by the sliding friction, without the viscous part.
     pub fn steady(&self, rate: f64) -> f64 {
         let share = rate / self.stribeck_velocity;
-        1.0 + self.stribeck * (-share * share).exp()
+        1.0 + self.stribeck * exp(-share * share)
     }
 
     /// Advances to the next sample and returns the bristles: the exact solution for a rate that is constant
@@ -105,7 +106,7 @@ impl Lugre {
         let steady = self.steady(sample.rate);
         if by != 0.0 {
             let end = by.signum() * steady;
-            let decay = (-by.abs() / (self.presliding * steady)).exp();
+            let decay = exp(-by.abs() / (self.presliding * steady));
             state.deflection = end + (state.deflection - end) * decay;
         }
         let deflection = state.deflection;
@@ -178,6 +179,7 @@ impl Law for Lugre {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::{cos, sin};
 
     /// A joint with all terms.
     fn joint() -> Lugre {
@@ -199,7 +201,7 @@ mod tests {
             let (law, mut state) = (joint(), LugreState::default());
             let force = law.step(&mut state, Sample { x: 10.0 * f64::signum(v), rate: v, step: 1.0 });
             let share: f64 = v / 0.2;
-            let expected = 0.3 + v.signum() * (2.0 + 1.2 * (-share * share).exp()) + 0.4 * v;
+            let expected = 0.3 + v.signum() * (2.0 + 1.2 * exp(-share * share)) + 0.4 * v;
             assert!((force - expected).abs() < 1e-12, "{v}: {force} and {expected}");
         }
     }
@@ -220,7 +222,7 @@ mod tests {
         let law = joint();
         let (duration, parts) = (2.0, 200_000);
         let step = duration / f64::from(parts);
-        let rate = |t: f64| 0.3 * (2.0 * t).cos();
+        let rate = |t: f64| 0.3 * cos(2.0 * t);
         let slope = |s: f64, t: f64| (rate(t) - rate(t).abs() * s / law.steady(rate(t))) / law.presliding;
         let (mut exact, mut state, mut largest) = (0.0, law.virgin(), 0.0_f64);
         for k in 1..=parts {
@@ -231,7 +233,7 @@ mod tests {
             let k4 = slope(exact + step * k3, t + step);
             exact += step * (k1 + 2.0 * (k2 + k3) + k4) / 6.0;
             let t = t + step;
-            let x = 0.15 * (2.0 * t).sin();
+            let x = 0.15 * sin(2.0 * t);
             let bristles = law.advance(&mut state, Sample { x, rate: rate(t), step });
             largest = largest.max((bristles.deflection - exact).abs());
         }

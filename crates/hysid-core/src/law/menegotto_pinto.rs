@@ -29,6 +29,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::powf;
 use crate::error::{LARGEST_VALUE, Result};
 use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::ODD;
@@ -204,7 +205,7 @@ impl MenegottoPinto {
             (1, Some(down)) => (down.ratio, down.isotropic),
             _ => (1.0, self.isotropic),
         };
-        let excursion = (0.5 * (extremes[0] + extremes[1])).max(0.0).powf(0.8);
+        let excursion = powf((0.5 * (extremes[0] + extremes[1])).max(0.0), 0.8);
         ratio * (1.0 + isotropic * excursion).max(LEAST_STRENGTH)
     }
 
@@ -362,6 +363,7 @@ impl Law for MenegottoPinto {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::powi;
     use crate::law::test_paths::{assert_finite, numbers, refined, run};
 
     fn steel() -> MenegottoPinto {
@@ -393,7 +395,7 @@ mod tests {
                 let shift = if upwards.is_none() {
                     1.0
                 } else {
-                    1.0 + a_1 * ((extremes.1 - extremes.0) / (2.0 * a_2 * yield_strain)).powf(0.8)
+                    1.0 + a_1 * powf((extremes.1 - extremes.0) / (2.0 * a_2 * yield_strain), 0.8)
                 };
                 // Elastic line through the reversal, hardening line through the shifted yield point.
                 let height = sign * strength * shift - hardening * sign * yield_strain * shift;
@@ -406,7 +408,7 @@ mod tests {
                 upwards = Some(rises);
             }
             let share: f64 = (next - reversal.0) / (intersection.0 - reversal.0);
-            let curve = b * share + (1.0 - b) * share / (1.0 + share.powf(exponent)).powf(1.0 / exponent);
+            let curve = b * share + (1.0 - b) * share / powf(1.0 + powf(share, exponent), 1.0 / exponent);
             stress = reversal.1 + curve * (intersection.1 - reversal.1);
             strain = next;
             all.push(stress);
@@ -418,7 +420,7 @@ mod tests {
     fn growing_cycles_are_those_of_steel_02() {
         let law = MenegottoPinto {
             roundness: 15.0,
-            isotropic: 0.04 / 1.7_f64.powf(0.8),
+            isotropic: 0.04 / powf(1.7, 0.8),
             ..MenegottoPinto::steel(200.0, 400.0, 0.015).unwrap()
         };
         let path = refined(&[3.0, -4.0, 6.0, -9.0, 9.5, -15.0, 20.0, -20.5, 30.0], 40);
@@ -476,7 +478,7 @@ mod tests {
     fn few_branches_are_stored_and_those_behind_are_forgotten() {
         let (law, mut state) = (steel(), steel().virgin());
         for k in 0..200 {
-            let x = 10.0 * 0.97_f64.powi(k) * if k % 2 == 0 { 1.0 } else { -1.0 };
+            let x = 10.0 * powi(0.97, k) * if k % 2 == 0 { 1.0 } else { -1.0 };
             law.advance(&mut state, x);
             assert!(state.branches.iter().all(|branches| branches.len() <= MOST_BRANCHES));
         }

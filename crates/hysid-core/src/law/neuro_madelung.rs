@@ -20,6 +20,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::tanh;
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::{Defaults, ErrorsInside, Facts, Rate};
 use crate::law::turning_point_stack::TurningPointStack;
@@ -81,7 +82,7 @@ impl Branch<'_> {
         let seen = &seen[..inputs.len()];
         let mut slope = self.output[0];
         for (neuron, c) in self.hidden.chunks_exact(self.run()).zip(&self.output[1..]) {
-            slope += c * argument(neuron, seen).tanh();
+            slope += c * tanh(argument(neuron, seen));
         }
         self.limited(inputs[2] + (inputs[0] - inputs[1]) * slope)
     }

@@ -35,6 +35,7 @@ mod reloading;
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::powf;
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::ODD;
@@ -228,7 +229,7 @@ impl PeakOriented {
         });
         let target = (peak * (1.0 + growth)).max(far.sqrt().min(1.0));
         let top = if target > 0.0 { strength * self.envelope(target) } else { 0.0 };
-        let stiffness = self.secant(if peak > 0.0 { peak } else { target }, strength).powf(self.unloading);
+        let stiffness = powf(self.secant(if peak > 0.0 { peak } else { target }, strength), self.unloading);
         // `ω` (theory.md (8.40)).
         let room = if target > from { 1.0 - top / ((target - from) * stiffness) } else { 0.0 };
         let height =
@@ -249,7 +250,7 @@ impl PeakOriented {
     fn unloading(&self, loading: &Loading, peak: f64, from: f64) -> Unloading {
         let force = self.force(loading, from);
         let secant = self.secant(peak, loading.strength);
-        let stiffness = secant.powf(self.unloading);
+        let stiffness = powf(secant, self.unloading);
         let curvature = self.curvature * (1.0 - secant / stiffness).clamp(0.0, 1.0);
         // Not beyond the point where the branch began: a small loop dissipates.
         let zero = (from - force / stiffness).max(loading.from).min(from);
@@ -404,6 +405,7 @@ impl Law for PeakOriented {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::{cbrt, exp, powi};
     use crate::law::test_paths::{assert_finite, numbers, refined, run};
 
     fn member() -> PeakOriented {
@@ -453,7 +455,7 @@ mod tests {
     fn monotone_loading_is_the_envelope() {
         let law = member();
         let envelope = |d: f64| {
-            let curve = 0.05 * d + 0.95 * d / (1.0 + d.powi(3)).cbrt();
+            let curve = 0.05 * d + 0.95 * d / cbrt(1.0 + powi(d, 3));
             let beyond = ((d / 4.0 - 1.0) / 1.5).max(0.0);
             curve * (0.3 + 0.7 / (1.0 + beyond * beyond))
         };
@@ -471,7 +473,7 @@ mod tests {
     fn clough_s_member_by_hand() {
         let law = PeakOriented::new(100.0, 10.0).unwrap();
         // The envelope is rounded at the yield point.
-        let corner = 100.0 * 0.5_f64.powf(1.0 / 20.0);
+        let corner = 100.0 * powf(0.5, 1.0 / 20.0);
         let path = [20.0, 15.0, 10.0, 0.0, -10.0, -20.0, -15.0, -10.0, 5.0, 20.0, 30.0];
         let expected = [100.0, 50.0, 0.0, -0.5 * corner, -corner, -100.0, -50.0, 0.0, 50.0, 100.0, 100.0];
         for (force, expected) in run(&law, &path).iter().zip(expected) {
@@ -522,7 +524,7 @@ mod tests {
             law.advance(&mut state, x);
         }
         assert!((state.work - 1.0).abs() < 5e-3, "{}", state.work);
-        let deterioration = 1.0 - (-state.work / 2.0).exp();
+        let deterioration = 1.0 - exp(-state.work / 2.0);
         assert_eq!(state.deterioration, deterioration);
         let [_, down] = law.advance(&mut state, -60.0);
         assert!((down + 1.0 - 0.5 * deterioration).abs() < 1e-6, "{down}");

@@ -8,6 +8,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::exp;
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::{Dimension, Parameter};
 
@@ -52,8 +53,8 @@ impl PlayWeights {
     pub(crate) fn for_each(&self, spacing: f64, first: usize, mut take: impl FnMut(usize, f64)) {
         match self {
             Self::Exponential { plays, rho, tau } => {
-                let ratio = (-tau * spacing).exp();
-                let mut weight = rho * (-tau * spacing * first as f64).exp();
+                let ratio = exp(-tau * spacing);
+                let mut weight = rho * exp(-tau * spacing * first as f64);
                 for index in 0..*plays {
                     take(index, weight);
                     weight *= ratio;

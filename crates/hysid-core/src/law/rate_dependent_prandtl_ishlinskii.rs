@@ -16,6 +16,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::{ln, powf};
 use crate::error::{LARGEST_VALUE, Result};
 use crate::law::facts::{Defaults, ErrorsInside, Facts, Rate};
 pub use crate::law::play_weights::PlayWeights;
@@ -49,7 +50,7 @@ impl Thresholds {
         match *self {
             Self::Linear { beta } => (beta * rate.abs(), 1.0),
             Self::Logarithmic { beta, lambda, epsilon } => {
-                (0.0, (beta + lambda * rate.abs().powf(epsilon)).ln().max(0.0))
+                (0.0, ln(beta + lambda * powf(rate.abs(), epsilon)).max(0.0))
             }
         }
     }

@@ -306,9 +306,10 @@ fn add_multiple(row: &mut [f64], other: &[f64], factor: f64, largest: &mut [f64;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::sin;
 
     fn some(n: usize, seed: usize) -> Vec<f64> {
-        (0..n).map(|i| ((i * 37 + seed * 101 + 1) as f64 * 0.61).sin()).collect()
+        (0..n).map(|i| sin((i * 37 + seed * 101 + 1) as f64 * 0.61)).collect()
     }
 
     /// The product of the dilatations does what the matrix does, and becomes it when they are as many as variables.

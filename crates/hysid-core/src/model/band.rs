@@ -21,6 +21,7 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::{exp, hypot};
 use crate::error::{Error, Result};
 use crate::model::ensemble::Predictions;
 
@@ -106,7 +107,7 @@ impl BandLevel {
     /// `g_k`: times the width of the band for five of ten data sets (theory.md (11.12)).
     fn widening(self) -> f64 {
         let place = self.of_ten.saturating_sub(*BAND_OF_TEN.start()).min(NORMAL_QUANTILES.len() - 1);
-        (SPREAD_OF_WIDTHS * NORMAL_QUANTILES[place]).exp()
+        exp(SPREAD_OF_WIDTHS * NORMAL_QUANTILES[place])
     }
 }
 
@@ -140,7 +141,7 @@ fn of_rows(level: f64, rows: usize) -> f64 {
 fn factors(folds: &[Vec<HeldOutRow>], floor: f64) -> Vec<f64> {
     let scores = |rows: &[HeldOutRow]| {
         let mut scores = Predictions::default();
-        rows.iter().for_each(|row| scores.push(row.error.abs() / floor.hypot(row.disagreement), row.weight));
+        rows.iter().for_each(|row| scores.push(row.error.abs() / hypot(floor, row.disagreement), row.weight));
         (scores, rows.len())
     };
     let mut of_folds: Vec<(Predictions, usize)> =
@@ -204,7 +205,7 @@ impl Band {
 
     /// The typical error of a row with such a disagreement, `√(f² + d²)`, in the output's unit.
     pub(crate) fn scale(&self, disagreement: f64) -> f64 {
-        self.floor.hypot(disagreement)
+        hypot(self.floor, disagreement)
     }
 
     /// Numbers of held-out rows, inside and outside the trained range, of the calibration.
@@ -328,7 +329,7 @@ mod tests {
         }
         let of_nine = BandLevel { probability: 0.9, of_ten: 9 };
         let times = band.half_width(of_nine, 0.0, 0.0) / half;
-        assert!((times - (SPREAD_OF_WIDTHS * 1.281_552).exp()).abs() < 1e-12);
+        assert!((times - exp(SPREAD_OF_WIDTHS * 1.281_552)).abs() < 1e-12);
     }
 
     /// Four folds of small errors and one of errors a hundred times as large: the band is that of the third.

@@ -17,6 +17,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::powf;
 use crate::error::{Error, Result};
 use crate::model::Model;
 
@@ -92,7 +93,7 @@ impl Weights {
         } else if outside == 1.0 {
             self.outside
         } else {
-            self.inside.powf(1.0 - outside) * self.outside.powf(outside)
+            powf(self.inside, 1.0 - outside) * powf(self.outside, outside)
         }
     }
 }

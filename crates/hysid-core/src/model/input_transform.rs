@@ -23,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Excitation, Record};
+use crate::elementary::{asinh, ln, ln_1p, sinh};
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::Origin;
 use crate::network::scaling::SCALES;
@@ -174,7 +175,7 @@ impl Past {
         self.largest = self.largest.max(x.abs());
         self.path += self.last.map_or(0.0, |last| (x - last).abs());
         self.last = Some(x);
-        [self.largest / largest, (10.0 * self.path / longest).ln_1p() / f64::ln(11.0)]
+        [self.largest / largest, ln_1p(10.0 * self.path / longest) / ln(11.0)]
     }
 
     /// Adds the first input at each row of a lead-in.
@@ -212,12 +213,12 @@ impl InputTransform {
     /// The transformed first input.
     pub fn input(&self, x: f64) -> f64 {
         let x = x - self.origin(0);
-        self.companding.map_or(x, |scale| (x / scale).asinh())
+        self.companding.map_or(x, |scale| asinh(x / scale))
     }
 
     /// The first input whose transform this is.
     pub fn original(&self, seen: f64) -> f64 {
-        self.companding.map_or(seen, |scale| scale * seen.sinh()) + self.origin(0)
+        self.companding.map_or(seen, |scale| scale * sinh(seen)) + self.origin(0)
     }
 
     /// Any transformed input; the index 0 is the first.
@@ -227,7 +228,7 @@ impl InputTransform {
 
     /// The transformed rate.
     pub fn rate(&self, rate: f64) -> f64 {
-        self.rate_companding.map_or(rate, |scale| (rate / scale).asinh())
+        self.rate_companding.map_or(rate, |scale| asinh(rate / scale))
     }
 
     /// Writes all transformed inputs of a sample into `seen`.
@@ -371,11 +372,11 @@ mod tests {
         let record = &seen.records()[0];
         // s = 0.2, X = 2, P = 1 + 3 + 2.5; the rates are 0, 1, -3, 2.5 and 99.5 % of three rows stay below 2.5.
         let [u, m, p] = record.inputs() else { panic!("three inputs") };
-        assert_eq!(u[2], f64::asinh(-10.0));
+        assert_eq!(u[2], asinh(-10.0));
         assert_eq!(**m, [0.0, 0.5, 1.0, 1.0]);
-        assert!((p[2] - f64::ln(1.0 + 10.0 * 4.0 / 6.5) / f64::ln(11.0)).abs() < 1e-15);
+        assert!((p[2] - ln(1.0 + 10.0 * 4.0 / 6.5) / ln(11.0)).abs() < 1e-15);
         assert!((p[3] - 1.0).abs() < 1e-15);
-        assert!((record.given_rate().unwrap()[2] - f64::asinh(-3.0 / 1.25)).abs() < 1e-15);
+        assert!((record.given_rate().unwrap()[2] - asinh(-3.0 / 1.25)).abs() < 1e-15);
 
         let (mut past, mut sample) = (Past::default(), Vec::new());
         for (row, &x) in data.records()[0].inputs()[0].iter().enumerate() {

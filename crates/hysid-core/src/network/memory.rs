@@ -16,6 +16,7 @@ use std::ops::{Deref, DerefMut};
 
 use pulp::Simd;
 
+use crate::elementary::exp;
 use crate::network::decay::decay;
 use crate::network::transpose::transpose;
 use crate::network::{Architecture, Layout};
@@ -158,7 +159,7 @@ impl MemoryLayer {
             };
             Group {
                 weights: (0..channels).map(|c| lane(&|j| weights[j * channels + c])).collect(),
-                inverse_beta: lane(&|j| ln_beta.get(j).map_or(0.0, |ln_beta| (-ln_beta).exp())),
+                inverse_beta: lane(&|j| ln_beta.get(j).map_or(0.0, |ln_beta| exp(-ln_beta))),
             }
         };
         let channel_of_input = |input: usize| {
@@ -172,7 +173,7 @@ impl MemoryLayer {
             groups: (0..architecture.stops).step_by(LANES).map(group).collect(),
             linear: architecture.linear.then(|| parameters[layout.linear].to_vec()),
             relaxation: ln_tau
-                .map(|(m, ln_tau)| (channel_of_input(m / architecture.relaxation), (-ln_tau).exp()))
+                .map(|(m, ln_tau)| (channel_of_input(m / architecture.relaxation), exp(-ln_tau)))
                 .collect(),
         }
     }

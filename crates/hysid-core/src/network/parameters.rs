@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::elementary::ln;
 use crate::error::{Error, Result};
 use crate::network::Architecture;
 
@@ -92,9 +93,9 @@ impl Layout {
         if self.stop_weights.contains(&index) {
             (-1e4, 1e4)
         } else if self.ln_beta.contains(&index) {
-            (0.3f64.ln(), 1e7f64.ln())
+            (ln(0.3), ln(1e7))
         } else if self.ln_tau.contains(&index) {
-            (1e-15f64.ln(), 1e15f64.ln())
+            (ln(1e-15), ln(1e15))
         } else {
             (-1e3, 1e3)
         }

@@ -45,6 +45,7 @@ pub(crate) fn tanh<S: Simd>(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::{self, powf};
     use crate::simd;
 
     struct All<'a>(&'a [f64]);
@@ -62,17 +63,17 @@ mod tests {
     }
 
     #[test]
-    fn agrees_with_the_standard_library() {
+    fn agrees_with_the_function_of_one_number() {
         let x: Vec<f64> = (-400_000..=400_000)
             .map(|k| k as f64 * 6.1e-5)
-            .chain((0..1200).map(|k| 10f64.powf(-k as f64 / 4.0)))
+            .chain((0..1200).map(|k| powf(10.0, -k as f64 / 4.0)))
             .chain([0.0, 1e300, f64::MAX])
             .collect();
         let of_all = simd::run_with_all(|| All(&x));
         assert!(of_all.iter().all(|y| *y == of_all[0]), "instruction sets differ");
         let y = &of_all[0];
         for (&x, &y) in x.iter().zip(y) {
-            let exact = x.tanh();
+            let exact = elementary::tanh(x);
             assert!((y - exact).abs() <= 5e-16 * exact.abs(), "tanh({x}) = {y}, not {exact}");
             assert!(y.abs() <= 1.0);
         }

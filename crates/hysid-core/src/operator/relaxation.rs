@@ -20,6 +20,7 @@
 //! Limits: `τ -> ∞` is a spring, `σ = x`; `τ -> 0` is a dashpot, `σ = τ x'`.
 
 use super::{InvalidOperator, is_usable};
+use crate::elementary::{exp, exp_m1};
 
 /// The factors of one time step, `E = e^{-h/τ}` for the present stress and `G = (τ/h) (1 - e^{-h/τ})` for the
 /// increment of the input, both between 0 and 1 (theory.md (1.11)).
@@ -31,7 +32,7 @@ use super::{InvalidOperator, is_usable};
 #[inline(always)]
 pub fn decay(time_step: f64, tau: f64) -> (f64, f64) {
     let steps = time_step / tau;
-    if steps > 0.0 { ((-steps).exp(), -(-steps).exp_m1() / steps) } else { (1.0, 1.0) }
+    if steps > 0.0 { (exp(-steps), -exp_m1(-steps) / steps) } else { (1.0, 1.0) }
 }
 
 /// The stress `E stress + G x_increment` after a step, with the factors of [`decay`], in the unit of `x` (theory.md

@@ -72,9 +72,10 @@ mod tests {
     use super::*;
     use crate::data::rate::RateMethod;
     use crate::data::record::{ColumnNames, Record};
+    use crate::elementary::sin;
 
     fn data(offset: f64) -> Dataset {
-        let x: Vec<f64> = (0..100).map(|row| offset + (0.1 * f64::from(row)).sin()).collect();
+        let x: Vec<f64> = (0..100).map(|row| offset + sin(0.1 * f64::from(row))).collect();
         let record = Record::new("r", vec![x.clone()], x).unwrap();
         Dataset::new(ColumnNames::plain(1), vec![record]).unwrap()
     }

@@ -318,6 +318,7 @@ mod tests {
 
     use super::*;
     use crate::data::record::{ColumnNames, Record};
+    use crate::elementary::sin;
 
     fn chosen(value: Value) -> Result<NamedOptions> {
         let Value::Object(map) = value else { panic!("{value} is no map") };
@@ -466,7 +467,7 @@ mod tests {
         // A sine whose frequency rises, run so many times faster.
         let sweep = |rise: f64| {
             let time: Vec<f64> = (0..1000).map(|row| 0.01 * f64::from(row)).collect();
-            let x: Vec<f64> = time.iter().map(|t| (5.0 * t + rise * t * t).sin()).collect();
+            let x: Vec<f64> = time.iter().map(|t| sin(5.0 * t + rise * t * t)).collect();
             let record = Record::new("r", vec![x.clone()], x).unwrap().with_time(time).unwrap();
             Dataset::new(ColumnNames { time: Some("t".into()), ..ColumnNames::plain(1) }, vec![record])
                 .unwrap()

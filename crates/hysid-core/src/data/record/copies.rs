@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::fmt;
 
 use super::Record;
+use crate::elementary::square;
 
 /// Largest root mean square difference of two columns that count as one, as a share of the standard
 /// deviation. It allows for numbers rounded to three digits; repeated measurements differ more, by their
@@ -127,7 +128,7 @@ impl<'r> Sought<'r> {
             let values = || column.iter().filter(|value| !value.is_nan());
             let count = values().count() as f64;
             let mean = values().sum::<f64>() / count;
-            values().map(|value| (value - mean).powi(2)).sum::<f64>() / count
+            values().map(|value| square(value - mean)).sum::<f64>() / count
         };
         Self {
             record,
@@ -241,14 +242,14 @@ pub(super) fn measurements(records: &[Record]) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::{cos, sin};
 
     /// Growing oscillations with a loop, and noise that is told by a seed.
     fn record(rows: usize, size: f64, noise: f64, seed: u64) -> Record {
         let jitter =
             |k: usize| noise * (crate::random::mix(seed << 32 | k as u64) as f64 / u64::MAX as f64 - 0.5);
-        let x: Vec<f64> =
-            (0..rows).map(|k| size * (0.1 * k as f64).sin() * (0.3 + k as f64 / 400.0)).collect();
-        let y = (0..rows).map(|k| x[k] + 0.3 * size * (0.1 * k as f64).cos() + jitter(k)).collect();
+        let x: Vec<f64> = (0..rows).map(|k| size * sin(0.1 * k as f64) * (0.3 + k as f64 / 400.0)).collect();
+        let y = (0..rows).map(|k| x[k] + 0.3 * size * cos(0.1 * k as f64) + jitter(k)).collect();
         Record::new("r", vec![x], y).unwrap()
     }
 

@@ -7,6 +7,7 @@
 use super::copies::measurements;
 use super::{Record, range};
 use crate::data::turning_points::turning_points;
+use crate::elementary::square;
 
 /// Difference of two inputs that count as one, as a share of their range. Designed.
 const NEAR: f64 = 0.03;
@@ -76,9 +77,9 @@ impl Protocol {
     pub fn difference(&self, records: &[Record]) -> Option<Difference> {
         let (&first, others) = self.runs.split_first()?;
         let first = &records[first];
-        let (mut square, mut shifted, mut count) = (0.0, 0.0, 0.0);
+        let (mut squares, mut shifted, mut count) = (0.0, 0.0, 0.0);
         for other in others.iter().map(|&run| &records[run]) {
-            let x = || first.inputs[0].iter().zip(&*other.inputs[0]).map(|(a, b)| (a - b).powi(2));
+            let x = || first.inputs[0].iter().zip(&*other.inputs[0]).map(|(a, b)| square(a - b));
             let near = SAME_PLACE * extent(&first.inputs[0]);
             if other.len() != first.len() || x().sum::<f64>() > near * near * first.len() as f64 {
                 return None;
@@ -86,14 +87,14 @@ impl Protocol {
             let y = first.output.iter().zip(&other.output).map(|(a, b)| a - b).filter(|d| !d.is_nan());
             let mut before = 0.0;
             for difference in y {
-                square += difference * difference;
+                squares += difference * difference;
                 shifted += difference * before;
                 count += 1.0;
                 before = difference;
             }
         }
-        let deviation = (0.5 * square / count).sqrt();
-        (count > 0.0).then_some(Difference { deviation, is_noise: shifted <= CORRELATED * square })
+        let deviation = (0.5 * squares / count).sqrt();
+        (count > 0.0).then_some(Difference { deviation, is_noise: shifted <= CORRELATED * squares })
     }
 }
 
@@ -200,7 +201,7 @@ impl<'r> Path<'r> {
             // A root mean square difference is smaller than single ones.
             let mut left = 0.25 * near * near * pairs.len() as f64;
             pairs.into_iter().all(|(a, b)| {
-                left -= (a - b).powi(2);
+                left -= square(a - b);
                 left >= 0.0
             })
         })
@@ -219,6 +220,7 @@ fn is_as_fast(one: f64, other: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::sin;
     use crate::random::mix;
 
     /// Growing cycles of a size, so many rows each, with noise in input and output.
@@ -227,8 +229,8 @@ mod tests {
         let phase = |k: usize| std::f64::consts::TAU * k as f64 / rows as f64;
         let amplitude = |k: usize| size * (1.0 + (k / rows) as f64);
         let count = cycles * rows;
-        let x: Vec<f64> = (0..count).map(|k| amplitude(k) * phase(k).sin() + jitter(k)).collect();
-        let y = (0..count).map(|k| amplitude(k) * (phase(k) - 0.4).sin() + jitter(k + count)).collect();
+        let x: Vec<f64> = (0..count).map(|k| amplitude(k) * sin(phase(k)) + jitter(k)).collect();
+        let y = (0..count).map(|k| amplitude(k) * sin(phase(k) - 0.4) + jitter(k + count)).collect();
         let time = (0..count).map(|k| 100.0 * k as f64 / rows as f64).collect();
         Record::new("r", vec![x], y).unwrap().with_time(time).unwrap()
     }

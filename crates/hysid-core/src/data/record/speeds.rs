@@ -121,6 +121,7 @@ impl Grid {
 mod tests {
     use super::*;
     use crate::data::record::ColumnNames;
+    use crate::elementary::sin;
     use crate::random::mix;
 
     const STEP: f64 = 0.02;
@@ -143,7 +144,7 @@ mod tests {
     }
 
     fn sine(phase: f64) -> f64 {
-        (std::f64::consts::TAU * phase).sin()
+        sin(std::f64::consts::TAU * phase)
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Units as multiples of base units, so that numbers can be converted from one to another.
 
 use crate::data::column::{Domain, Part};
+use crate::elementary::powi;
 
 /// Exponents of length, mass, time, electric current, temperature difference and angle.
 pub(super) type Dimension = [i8; 6];
@@ -71,7 +72,7 @@ impl Quantity {
     pub fn times(self, other: Self, power: i8) -> Self {
         let mut dimension = self.dimension;
         dimension.iter_mut().zip(other.dimension).for_each(|(own, more)| *own += power * more);
-        Self { factor: self.factor * other.factor.powi(power.into()), dimension }
+        Self { factor: self.factor * powi(other.factor, power.into()), dimension }
     }
 }
 

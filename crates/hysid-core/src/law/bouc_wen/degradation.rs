@@ -12,6 +12,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::{exp, powf};
 use crate::law::{Dimension, Parameter};
 
 use super::Inner;
@@ -98,7 +99,7 @@ impl Properties {
     /// `h`, theory.md (8.10).
     fn pinching(&self, z: f64) -> f64 {
         let distance = (z - self.centre) / self.zeta_2;
-        1.0 - self.zeta_1 * (-distance * distance).exp()
+        1.0 - self.zeta_1 * exp(-distance * distance)
     }
 }
 
@@ -119,20 +120,20 @@ impl Degradation {
     pub(super) fn at(&self, n: f64, e: f64) -> Properties {
         let e = limited(e);
         let nu = 1.0 + self.delta_nu * e;
-        let zeta_1 = self.zeta_s * (1.0 - (-self.p * e).exp());
+        let zeta_1 = self.zeta_s * (1.0 - exp(-self.p * e));
         Properties {
             a: (1.0 - self.delta_a * e).max(0.0),
             nu,
             eta: 1.0 + self.delta_eta * e,
             zeta_1,
             zeta_2: (self.psi_0 + self.delta_psi * e) * (self.lambda + zeta_1),
-            centre: self.q * nu.powf(-1.0 / n),
+            centre: self.q * powf(nu, -1.0 / n),
         }
     }
 
     /// `z` at which the element yields on the way up.
     fn ultimate(&self, n: f64, e: f64) -> f64 {
-        ((1.0 - self.delta_a * e).max(0.0) / (1.0 + self.delta_nu * e)).powf(1.0 / n)
+        powf((1.0 - self.delta_a * e).max(0.0) / (1.0 + self.delta_nu * e), 1.0 / n)
     }
 
     /// True if the element is so quick that it has come to its yield force and will only follow it.
@@ -184,7 +185,7 @@ impl Degradation {
     /// How much faster the degraded element comes to rest at its yield force than the untouched one.
     pub(super) fn quickness(&self, n: f64, z: f64, e: f64) -> f64 {
         let largest = z.abs().max(self.ultimate(n, e));
-        self.loss_ratio(e) * largest.powf(n - 1.0)
+        self.loss_ratio(e) * powf(largest, n - 1.0)
     }
 
     /// `ν/η`.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::cell::{Cell, Shape};
+use crate::elementary::exp;
 
 /// Positions of the parameters of a cell in the flat vector.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,7 +60,8 @@ impl Layout {
     /// The cell with these parameters and output weights.
     pub fn cell(&self, parameters: &[f64], output: Vec<f64>) -> Cell {
         let part = |range: &Range<usize>| parameters[range.clone()].to_vec();
-        let exponentials = |range: &Range<usize>| parameters[range.clone()].iter().map(|p| p.exp()).collect();
+        let exponentials =
+            |range: &Range<usize>| parameters[range.clone()].iter().copied().map(exp).collect();
         Cell {
             stops: part(&self.stops),
             hidden: part(&self.hidden),

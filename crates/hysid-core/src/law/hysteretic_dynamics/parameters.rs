@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::{DAMPING_RATIOS, Dynamics, Element, LARGEST_WEIGHT, Mode, Shape};
+use crate::elementary::{exp, ln};
 
 /// Which coefficients are free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -143,7 +144,7 @@ impl Layout {
     /// These parameters, with what is not free from a template of as many modes.
     pub fn dynamics(&self, parameters: &[f64], template: &Dynamics) -> Dynamics {
         let mode = |(layout, template): (&ModeLayout, &Mode)| Mode {
-            frequency: parameters[layout.ln_frequency].exp(),
+            frequency: exp(parameters[layout.ln_frequency]),
             damping: within(parameters[layout.ln_damping], DAMPING_RATIOS),
             gain: parameters[layout.gain],
             velocity_in_output: layout
@@ -191,13 +192,13 @@ impl Layout {
         let mut parameters = vec![0.0; self.count];
         parameters[DIRECT] = dynamics.direct;
         for (layout, mode) in self.modes.iter().zip(&dynamics.modes) {
-            parameters[layout.ln_frequency] = mode.frequency.ln();
-            parameters[layout.ln_damping] = mode.damping.ln();
+            parameters[layout.ln_frequency] = ln(mode.frequency);
+            parameters[layout.ln_damping] = ln(mode.damping);
             parameters[layout.gain] = mode.gain;
             parameters[layout.velocity_in_output.clone()].fill(mode.velocity_in_output);
         }
         for (layout, element) in self.elements.iter().zip(&dynamics.elements) {
-            let ln = |values: &[f64]| values.iter().map(|value| value.ln()).collect::<Vec<f64>>();
+            let ln = |values: &[f64]| values.iter().copied().map(ln).collect::<Vec<f64>>();
             let parts: [(&Range<usize>, &[f64]); 14] = [
                 (&layout.of_displacements, &element.of_displacements),
                 (&layout.of_velocities, &element.of_velocities),
@@ -224,5 +225,5 @@ impl Layout {
 
 /// The exponential of a logarithm that was limited to bounds: rounding may put it just outside them.
 fn within(ln: f64, (low, high): (f64, f64)) -> f64 {
-    ln.exp().clamp(low, high)
+    exp(ln).clamp(low, high)
 }

@@ -187,6 +187,7 @@ impl Weights {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::{cos, exp, sin};
 
     /// Every kind of step: short, long, nearly critical, overdamped.
     const STEPS: [(f64, f64); 10] = [
@@ -245,11 +246,11 @@ mod tests {
         let square = 1.0 - damping * damping;
         let w = square.abs().sqrt();
         let (s, cosine) = if square > 0.0 {
-            let decay = (-damping * theta).exp();
-            (decay * (w * theta).sin() / w, decay * (w * theta).cos())
+            let decay = exp(-damping * theta);
+            (decay * sin(w * theta) / w, decay * cos(w * theta))
         } else {
             // -ζ + w = -1/(ζ + w) without cancellation.
-            let (slow, fast) = ((-theta / (damping + w)).exp(), (-theta * (damping + w)).exp());
+            let (slow, fast) = (exp(-theta / (damping + w)), exp(-theta * (damping + w)));
             (0.5 * (slow - fast) / w, 0.5 * (slow + fast))
         };
         [s, cosine - damping * s]
@@ -294,7 +295,7 @@ mod tests {
                 pairs.map(|(up, down)| (up - down) / (2.0 * by)).collect::<Vec<f64>>()
             };
             let at = |ln_frequency: f64, ln_damping: f64| {
-                Propagation::new(theta * ln_frequency.exp(), damping * ln_damping.exp(), 1.0)
+                Propagation::new(theta * exp(ln_frequency), damping * exp(ln_damping), 1.0)
             };
             for (slope, difference) in [
                 (slopes.by_ln_frequency, difference(at(by, 0.0), at(-by, 0.0))),

@@ -1,6 +1,7 @@
 //! Motion against exact laws and itself; derivatives against differences.
 
 use super::*;
+use crate::elementary::{exp, sin};
 use crate::random::mix;
 use crate::stop_check::StopCheck;
 
@@ -31,7 +32,7 @@ fn element(numbers: &mut Numbers, shape: Shape, modes: usize, size: f64) -> Elem
         of_input: numbers.next(),
         compliances: numbers.many(modes, 0.3),
         in_output: numbers.next(),
-        thresholds: numbers.many(stops, 1.0).iter().map(|t| 0.3 * t.exp()).collect(),
+        thresholds: numbers.many(stops, 1.0).iter().map(|t| 0.3 * exp(*t)).collect(),
         stop_velocities: numbers.many(stops, 0.3),
         strength_losses: numbers
             .many(if deteriorates { stops } else { 0 }, 0.2)
@@ -42,7 +43,7 @@ fn element(numbers: &mut Numbers, shape: Shape, modes: usize, size: f64) -> Elem
             .concat(),
         rising: numbers.many(states * neurons, size),
         falling: numbers.many(states * neurons, size),
-        path_leaks: numbers.many(states, 1.0).iter().map(|c| 2.0 * c.exp()).collect(),
+        path_leaks: numbers.many(states, 1.0).iter().map(|c| 2.0 * exp(*c)).collect(),
         initial: numbers.many(states, 0.5),
         force: numbers.many(stops + states + neurons, size),
     }
@@ -53,7 +54,7 @@ pub(super) fn model(seed: u64, modes: usize, elements: usize, shape: Shape, size
     let mut numbers = Numbers::new(seed);
     let mode = |i: usize, numbers: &mut Numbers| Mode {
         frequency: 1.0 + i as f64,
-        damping: 0.05 * numbers.next().exp(),
+        damping: 0.05 * exp(numbers.next()),
         gain: 1.0 + 0.5 * numbers.next(),
         velocity_in_output: 0.5 * numbers.next(),
     };
@@ -74,7 +75,7 @@ pub(super) fn drive(seed: u64, rows: usize, step: f64) -> Drive {
     let mut numbers = Numbers::new(seed);
     let phases = numbers.many(5, std::f64::consts::PI);
     let tones =
-        |t: f64| (1..).zip(&phases).map(|(k, phase)| (0.37 * f64::from(k) * t + phase).sin()).sum::<f64>();
+        |t: f64| (1..).zip(&phases).map(|(k, phase)| sin(0.37 * f64::from(k) * t + phase)).sum::<f64>();
     Drive {
         x: (0..rows).map(|k| tones(k as f64 * step)).collect(),
         steps: (0..rows).map(|k| if k == 0 { 0.0 } else { step }).collect(),
@@ -168,7 +169,7 @@ fn outputs_are_finite_whatever_the_parameters_and_the_steps() {
         let mut numbers = Numbers::new(seed);
         let mut motion = dynamics.virgin();
         for _ in 0..400 {
-            let step = (8.0 * numbers.next()).exp();
+            let step = exp(8.0 * numbers.next());
             let sample = Sample { x: 5.0 * numbers.next().signum(), rate: 0.0, step };
             assert!(dynamics.step(&mut motion, sample).is_finite(), "{seed}");
         }
@@ -183,7 +184,7 @@ fn the_force_of_a_single_element_is_always_found() {
         let mut numbers = Numbers::new(seed);
         let mut motion = dynamics.virgin();
         for k in 0..200 {
-            let step = if k % 20 == 0 { f64::INFINITY } else { (6.0 * numbers.next()).exp() };
+            let step = if k % 20 == 0 { f64::INFINITY } else { exp(6.0 * numbers.next()) };
             dynamics.step(&mut motion, Sample { x: 3.0 * numbers.next(), rate: 0.0, step });
             let (largest, found) = (dynamics.elements[0].bounds().0, &motion);
             let mismatch = found.points[0].force - found.forces[0];

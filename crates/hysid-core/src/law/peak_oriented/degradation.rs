@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::{exp_m1, powf};
 use crate::law::{Dimension, Parameter};
 
 use super::envelope::capped_share;
@@ -67,7 +68,7 @@ impl Degradation {
 
     /// `D`, 0 to 1, after so much work.
     pub(super) fn deterioration(&self, work: f64) -> f64 {
-        -(-(work / self.endurance).powf(self.pace)).exp_m1()
+        -exp_m1(-powf(work / self.endurance, self.pace))
     }
 
     pub(super) fn parameters(&self) -> Vec<Parameter> {

@@ -10,6 +10,8 @@
 //! to one. The curve begins and ends along the lines to the pinch point `(τ_b, φ_ω)`; `w` tells how closely it
 //! follows them.
 
+use crate::elementary::ln_1p;
+
 /// A rational parabola from (0, 0) to (1, 1) with its control point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bend {
@@ -47,7 +49,7 @@ pub(super) fn unloading_area(curvature: f64) -> f64 {
     if curvature < 1e-4 {
         return 0.5 - curvature / 6.0;
     }
-    ((1.0 + curvature) * curvature.ln_1p() - curvature) / (curvature * curvature)
+    ((1.0 + curvature) * ln_1p(curvature) - curvature) / (curvature * curvature)
 }
 
 #[cfg(test)]

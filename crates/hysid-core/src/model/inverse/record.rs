@@ -1,5 +1,6 @@
 //! The inverse along a whole record, and the choice of its preview.
 
+use crate::elementary::{exp2, log2, square};
 use crate::error::{Error, InverseError, Result, SampleError};
 use crate::model::inverse::{Inverse, Inverted, Reach};
 
@@ -69,7 +70,7 @@ impl Inversion {
 
     /// Root mean square deviation of the output of the model from the wanted one, in the unit of the output.
     pub fn rms_deviation(&self, wanted: &[f64]) -> f64 {
-        let sum: f64 = self.output.iter().zip(wanted).map(|(output, wanted)| (output - wanted).powi(2)).sum();
+        let sum: f64 = self.output.iter().zip(wanted).map(|(output, wanted)| square(output - wanted)).sum();
         (sum / self.output.len().max(1) as f64).sqrt()
     }
 
@@ -121,8 +122,8 @@ impl Reference<'_> {
         };
         let shortest = longest / LONGEST / time.len().max(2) as f64;
         let exponents = (longest > 0.0 && longest.is_finite() && shortest > 0.0)
-            .then(|| shortest.log2().ceil() as i32..=longest.log2().floor() as i32);
-        exponents.into_iter().flatten().map(|exponent| f64::from(exponent).exp2())
+            .then(|| log2(shortest).ceil() as i32..=log2(longest).floor() as i32);
+        exponents.into_iter().flatten().map(|exponent| exp2(f64::from(exponent)))
     }
 }
 
@@ -254,7 +255,7 @@ impl Inversion {
 fn standard_deviation(values: &[f64]) -> f64 {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+    (values.iter().map(|value| square(value - mean)).sum::<f64>() / count).sqrt()
 }
 
 fn at_row(row: usize, error: Error) -> Error {
@@ -267,6 +268,7 @@ fn at_row(row: usize, error: Error) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::sin;
 
     #[test]
     fn wanted_outputs_ahead_lie_on_straight_lines() {
@@ -291,7 +293,7 @@ mod tests {
 
     #[test]
     fn an_input_that_runs_to_and_fro_costs_more() {
-        let wanted: Vec<f64> = (0..100).map(|row| (0.1 * f64::from(row)).sin()).collect();
+        let wanted: Vec<f64> = (0..100).map(|row| sin(0.1 * f64::from(row))).collect();
         let cost = |input: Vec<f64>| {
             let is_extrapolated = vec![false; 100];
             let output = wanted.clone();
