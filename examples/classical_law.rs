@@ -1,12 +1,13 @@
 //! A Bouc-Wen damper with known parameters, and the same parameters found again from its data.
 
+use hysid::elementary::sin;
 use hysid::law::bouc_wen::BoucWen;
 use hysid::law::series::{run, samples_of};
 use hysid::{Dataset, Fit, Result};
 
 /// What the example prints.
 pub fn report() -> Result<String> {
-    let x: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k) * (0.1 * f64::from(k)).sin()).collect();
+    let x: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k) * sin(0.1 * f64::from(k))).collect();
     // 5 kN/mm beside 100 kN/mm that yields at 2 mm.
     let damper = BoucWen::new(5.0, 100.0, 2.0)?;
     let force = run(&damper, &samples_of(&x));

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use hysid::elementary::{exp, sin};
 use hysid::specimens::{Specimen, terfenol_actuator};
 use hysid::{Fit, Model, Result};
 
@@ -18,12 +19,12 @@ const KI: f64 = 0.007;
 
 /// The wanted displacement in µm.
 fn reference(time: f64) -> f64 {
-    30.0 + 19.0 * (TAU * 0.5 * time).sin() + 9.0 * (TAU * 1.3 * time).sin()
+    30.0 + 19.0 * sin(TAU * 0.5 * time) + 9.0 * sin(TAU * 1.3 * time)
 }
 
 /// What the model does not know: the actuator warms up and expands by 3 µm.
 fn drift(time: f64) -> f64 {
-    3.0 * (1.0 - (-time / 2.0).exp())
+    3.0 * (1.0 - exp(-time / 2.0))
 }
 
 /// RMS tracking error in µm.

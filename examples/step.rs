@@ -1,11 +1,12 @@
 //! A model sample by sample, as in the loop of a controller: the same outputs, to the last bit, as a free run.
 
+use hysid::elementary::sin;
 use hysid::operator::{Operator, Stop};
 use hysid::{Dataset, Fit, Result};
 
 /// What the example prints.
 pub fn report() -> Result<String> {
-    let x: Vec<f64> = (0..600).map(|k| 0.01 * f64::from(k) * (0.1 * f64::from(k)).sin()).collect();
+    let x: Vec<f64> = (0..600).map(|k| 0.01 * f64::from(k) * sin(0.1 * f64::from(k))).collect();
     let friction = Stop::new(1.0)?.run(&x);
     let y: Vec<f64> = x.iter().zip(friction).map(|(x, friction)| 0.2 * x + friction).collect();
     let model = Fit::new().model("prandtl-ishlinskii").run(&Dataset::from_slices(&x, &y)?)?;

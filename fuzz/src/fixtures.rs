@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::elementary::sin;
 use hysid::fit::identify;
 use hysid::model::Model;
 use hysid::options::ModelName;
@@ -15,7 +16,7 @@ use serde_json::json;
 pub fn data() -> &'static Dataset {
     static DATA: OnceLock<Dataset> = OnceLock::new();
     DATA.get_or_init(|| {
-        let x: Vec<f64> = (0..120).map(|k| (0.19 * k as f64).sin() * (0.3 + 0.007 * k as f64)).collect();
+        let x: Vec<f64> = (0..120).map(|k| sin(0.19 * k as f64) * (0.3 + 0.007 * k as f64)).collect();
         let mut play: f64 = 0.0;
         let y = x.iter().map(|x| {
             play = play.clamp(x - 0.2, x + 0.2);

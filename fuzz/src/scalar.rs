@@ -1,5 +1,6 @@
 //! The networks as theory.md has them, (2.2) to (2.6): one sample and one neuron at a time, from the operators alone.
 
+use hysid::elementary::{exp, tanh};
 use hysid::network::{Drive, Layout, Network};
 use hysid::operator::{DeterioratingStop, Operator, Relaxation};
 
@@ -10,10 +11,10 @@ pub fn outputs(network: &Network, drive: &Drive) -> Vec<f64> {
     let weights: Vec<&[f64]> = all[layout.stop_weights].chunks_exact(a.channels()).collect();
     let linear = &all[layout.linear];
     let hidden: Vec<&[f64]> = all[layout.hidden].chunks_exact(1 + a.memory_neurons()).collect();
-    let beta = |j: usize| all[layout.ln_beta.clone()].get(j).map_or(f64::INFINITY, |ln_beta| ln_beta.exp());
+    let beta = |j: usize| all[layout.ln_beta.clone()].get(j).map_or(f64::INFINITY, |ln_beta| exp(*ln_beta));
     let stop = |j: usize| DeterioratingStop::new(1.0, beta(j)).expect("a capacity above 0");
     let mut stops: Vec<DeterioratingStop> = (0..a.stops).map(stop).collect();
-    let element = |ln_tau: &f64| Relaxation::new(ln_tau.exp()).expect("a time above 0");
+    let element = |ln_tau: &f64| Relaxation::new(exp(*ln_tau)).expect("a time above 0");
     let mut relaxing: Vec<Relaxation> = all[layout.ln_tau].iter().map(element).collect();
 
     let row = |k: usize| {
@@ -28,7 +29,7 @@ pub fn outputs(network: &Network, drive: &Drive) -> Vec<f64> {
             let channel = if input > 0 && a.rate { input + 1 } else { input };
             z.push(element.step(u[channel], drive.steps[k]));
         }
-        let h = hidden.iter().map(|neuron| (neuron[0] + dot(&neuron[1..], &z)).tanh());
+        let h = hidden.iter().map(|neuron| tanh(neuron[0] + dot(&neuron[1..], &z)));
         let mut features = vec![1.0];
         features.extend(h);
         if a.direct || a.hidden == 0 {

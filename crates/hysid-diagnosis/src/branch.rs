@@ -10,6 +10,7 @@ use super::significance;
 use super::smoothing::{Parabola, Place, Points, Smoothed, choose_window, smooth_where_straight};
 use super::{DiagnosisOptions, PictureCurve, Piece};
 use hysid_core::data::record::{Dataset, Record};
+use hysid_core::elementary::hypot;
 pub(crate) use opening::Opening;
 use opening::openings;
 pub(crate) use reversals::ReversalRule;
@@ -305,7 +306,7 @@ impl<'a> BranchSet<'a> {
             let (there, here) = (of.curve.at(branch.from + reach)?, of.curve.at(branch.from)?);
             let rise = there.y - here.y;
             // As far as it is not noise.
-            let clear = (rise.abs() - there.deviation.hypot(here.deviation)).max(0.0);
+            let clear = (rise.abs() - hypot(there.deviation, here.deviation)).max(0.0);
             Some(clear.copysign(rise) / reach)
         };
         // A law may bend within two rows.
@@ -478,7 +479,7 @@ impl Reader<'_> {
         let deviations: Vec<(f64, f64)> =
             (0..points.len()).map(|at| self.through_the_slope(&points, at)).collect();
         for (point, (deviation, bend)) in points.iter_mut().zip(deviations) {
-            point.deviation = point.deviation.hypot(deviation);
+            point.deviation = hypot(point.deviation, deviation);
             point.bend += bend + 0.5 * self.resolutions.1;
         }
         Curve { points }

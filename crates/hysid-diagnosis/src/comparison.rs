@@ -1,5 +1,7 @@
 //! Many comparisons, one verdict: what is larger than the noise, and large enough to matter.
 
+use hysid_core::elementary::{hypot, square};
+
 use super::branch::Reading;
 use super::significance;
 use super::{PictureCurve, Piece, Verdict};
@@ -58,7 +60,7 @@ impl Comparison {
     pub fn of_readings(height: f64, [a, b]: [Reading; 2], wander: f64) -> Self {
         Self {
             index: (a.y - b.y).abs() / height,
-            deviation: a.deviation.hypot(b.deviation).hypot(wander) / height,
+            deviation: hypot(hypot(a.deviation, b.deviation), wander) / height,
             bend: (a.bend + b.bend) / height,
             freedom: GAP,
             other: 0.0,
@@ -92,7 +94,7 @@ fn are_doubtful_together(comparisons: &[Comparison], effect: f64) -> bool {
     let count = comparisons.len() as f64;
     let beyond = |c: &Comparison| (c.index - c.bend - c.other).max(0.0);
     let squares: f64 =
-        comparisons.iter().map(|c| (beyond(c) / c.deviation.max(f64::MIN_POSITIVE)).powi(2)).sum();
+        comparisons.iter().map(|c| square(beyond(c) / c.deviation.max(f64::MIN_POSITIVE))).sum();
     let mean = comparisons.iter().map(beyond).sum::<f64>() / count;
     let spread: f64 = comparisons.iter().map(|c| 2.0 / c.freedom).sum();
     mean > NEAR * effect && squares > count + TOGETHER * spread.sqrt()

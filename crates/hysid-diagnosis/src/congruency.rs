@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use hysid_core::elementary::{hypot, square};
+
 use super::branch::{Branch, BranchSet};
 use super::comparison::{Comparison, NARROW_BOUND, SHAPE, judge};
 use super::{Finding, PictureCurve, Property, Verdict};
@@ -141,15 +143,15 @@ fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Opt
         return None;
     }
     let (start_a, start_b) = (a.curve.at(beginning)?, b.curve.at(beginning)?);
-    let (mut square, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
+    let (mut squares, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
     let (mut low, mut high) = ([start_a.y, start_b.y], [start_a.y, start_b.y]);
     for place in 1..=PLACES {
         let x = beginning + (end - beginning) * place as f64 / PLACES as f64;
         let (Some(y_a), Some(y_b)) = (a.curve.at(x), b.curve.at(x)) else { continue };
         let difference = (y_a.y - start_a.y) - (y_b.y - start_b.y);
-        square += difference * difference;
-        variance += y_a.deviation.powi(2) + y_b.deviation.powi(2);
-        bend += (y_a.bend + y_b.bend).powi(2);
+        squares += difference * difference;
+        variance += square(y_a.deviation) + square(y_b.deviation);
+        bend += square(y_a.bend + y_b.bend);
         places += 1.0;
         for (side, y) in [y_a.y, y_b.y].into_iter().enumerate() {
             low[side] = low[side].min(y);
@@ -161,11 +163,11 @@ fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Opt
         return None;
     }
     // Of the noise, that at the beginning shifts the whole branch.
-    let deviation = (variance / places + start_a.deviation.powi(2) + start_b.deviation.powi(2)).sqrt();
-    let wander = survey.wander_along(a, way).hypot(survey.wander_along(b, way));
+    let deviation = (variance / places + square(start_a.deviation) + square(start_b.deviation)).sqrt();
+    let wander = hypot(survey.wander_along(a, way), survey.wander_along(b, way));
     let comparison = Comparison {
-        index: (square / places).sqrt() / height,
-        deviation: deviation.hypot(wander) / height,
+        index: (squares / places).sqrt() / height,
+        deviation: hypot(deviation, wander) / height,
         bend: ((bend / places).sqrt() + start_a.bend + start_b.bend) / height,
         freedom: SHAPE,
         other: (survey.turn_error(a) + survey.turn_error(b)) / height,

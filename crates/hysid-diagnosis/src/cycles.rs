@@ -40,6 +40,7 @@ use super::significance::{self, MEDIAN_OF_NORMAL};
 use super::static_hysteresis::FULL;
 use super::{DiagnosisOptions, Piece};
 use hysid_core::data::record::Dataset;
+use hysid_core::elementary::square;
 
 /// A cycle closes if the input comes back this close, as a share of its swing.
 pub(crate) const CLOSED: f64 = 0.02;
@@ -194,7 +195,7 @@ fn slow_noise(survey: &BranchSet) -> f64 {
             let readings: Vec<_> = group[1..].iter().filter_map(|c| out(c).curve.at(tip(out(c)))).collect();
             for three in readings.windows(3) {
                 scatter.push((three[2].y - 2.0 * three[1].y + three[0].y).abs());
-                let [first, middle, last] = [0, 1, 2].map(|k: usize| three[k].deviation.powi(2));
+                let [first, middle, last] = [0, 1, 2].map(|k: usize| square(three[k].deviation));
                 variances.push(first + 4.0 * middle + last);
             }
         }

@@ -6,6 +6,7 @@ use super::branch::BranchSet;
 use super::cycles::repeated;
 use super::significance;
 use super::{Cycle, Evidence, Finding, Picture, PictureCurve, Property, Verdict};
+use hysid_core::elementary::hypot;
 use hysid_core::significant::Significant;
 
 /// A loss of energy that matters, as a share of the first cycle's.
@@ -134,7 +135,7 @@ fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Tr
     // A line that noise or drift opens has nothing to lose.
     let (slope, falls) = if first.is_open() { slope_and_falls(&cycles, energy) } else { (0.0, 0.0) };
     let scale = energy(first);
-    let deviation = first.energy_deviation.hypot(cycles[n - 1].energy_deviation) / scale;
+    let deviation = hypot(first.energy_deviation, cycles[n - 1].energy_deviation) / scale;
     let size = n as f64;
     Some(Trend {
         loss: -slope * (size - 1.0) / scale,

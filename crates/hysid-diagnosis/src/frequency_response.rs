@@ -30,6 +30,8 @@ use std::fmt;
 pub use of_model::{AtAmplitude, ModelResponses};
 pub use segments::{Segments, Window, resolution};
 
+use hysid_core::elementary::{atan2, hypot};
+
 use crate::resonance::{Compared, LinearOscillator};
 
 /// The response at a frequency: output per unit of input, a complex number.
@@ -49,12 +51,12 @@ pub struct ResponsePoint {
 impl ResponsePoint {
     /// In the unit of the output divided by that of the input.
     pub fn magnitude(&self) -> f64 {
-        self.real.hypot(self.imaginary)
+        hypot(self.real, self.imaginary)
     }
 
     /// In degrees, from -180 to 180; negative where the output lags behind the input.
     pub fn phase(&self) -> f64 {
-        self.imaginary.atan2(self.real).to_degrees()
+        atan2(self.imaginary, self.real).to_degrees()
     }
 }
 
@@ -125,7 +127,7 @@ impl FrequencyResponse {
 /// Phase in degrees of an oscillator without its direct part: from 0 to -180, or from 180 to 0 for a negative gain.
 fn motion_phase(oscillator: &LinearOscillator, frequency: f64) -> f64 {
     let share = frequency / oscillator.natural_frequency;
-    let lag = (2.0 * oscillator.damping_ratio * share).atan2(1.0 - share * share);
+    let lag = atan2(2.0 * oscillator.damping_ratio * share, 1.0 - share * share);
     let first = if oscillator.gain < 0.0 { 180.0 } else { 0.0 };
     first - lag.to_degrees()
 }

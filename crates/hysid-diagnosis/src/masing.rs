@@ -3,6 +3,8 @@
 //!
 //! `(|x - x_a|/2, |y - y_a|/2)` of each own part against that of the longest          theory.md (10.6)
 
+use hysid_core::elementary::{hypot, square};
+
 use super::branch::{Branch, BranchSet, is_one_speed};
 use super::comparison::{BOUND, Comparison, SHAPE, judge};
 use super::{Finding, Property, Verdict};
@@ -42,7 +44,7 @@ impl OwnPart<'_> {
         let there = self.branch.curve.at(self.branch.from + 2.0 * u * sign)?;
         Some((
             0.5 * sign * (there.y - start.y),
-            0.5 * start.deviation.hypot(there.deviation),
+            0.5 * hypot(start.deviation, there.deviation),
             0.5 * (start.bend + there.bend),
         ))
     }
@@ -113,15 +115,15 @@ fn one_course_of_speed(survey: &BranchSet, a: &OwnPart, b: &OwnPart) -> bool {
 }
 
 fn compare(survey: &BranchSet, longest: &OwnPart, part: &OwnPart) -> Option<Comparison> {
-    let (mut square, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
+    let (mut squares, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
     let mut height: f64 = 0.0;
     let mut curves = [Vec::new(), Vec::new()];
     for place in 1..=PLACES {
         let u = 0.5 * part.length * place as f64 / PLACES as f64;
         let (Some(master), Some(here)) = (longest.at(u), part.at(u)) else { continue };
-        square += (master.0 - here.0).powi(2);
-        variance += master.1.powi(2) + here.1.powi(2);
-        bend += (master.2 + here.2).powi(2);
+        squares += square(master.0 - here.0);
+        variance += square(master.1) + square(here.1);
+        bend += square(master.2 + here.2);
         places += 1.0;
         height = height.max(here.0.abs());
         curves[0].push((u, master.0));
@@ -133,10 +135,10 @@ fn compare(survey: &BranchSet, longest: &OwnPart, part: &OwnPart) -> Option<Comp
     }
     let [master, here] = curves;
     let along = |of: &OwnPart| 0.5 * survey.wander_along(of.branch, part.length);
-    let wander = along(longest).hypot(along(part));
+    let wander = hypot(along(longest), along(part));
     Some(Comparison {
-        index: (square / places).sqrt() / height,
-        deviation: (variance / places).sqrt().hypot(wander) / height,
+        index: (squares / places).sqrt() / height,
+        deviation: hypot((variance / places).sqrt(), wander) / height,
         bend: (bend / places).sqrt() / height,
         freedom: SHAPE,
         other: 0.5 * (survey.turn_error(longest.branch) + survey.turn_error(part.branch)) / height,

@@ -25,12 +25,14 @@ pub(crate) fn lowest(function: &impl Fn(f64) -> f64, mut centre: f64, mut reach:
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::square;
+
     use super::*;
 
     #[test]
     fn the_lowest_of_several_valleys_is_found() {
         // Valleys at -2 and 1, the second deeper by 0.3.
-        let function = |x: f64| ((x + 2.0) * (x - 1.0)).powi(2) - 0.1 * x;
+        let function = |x: f64| square((x + 2.0) * (x - 1.0)) - 0.1 * x;
         let found = lowest(&function, 0.5, 3.0, 4);
         assert!((found - 1.0055).abs() < 1e-3, "{found}");
         assert!(function(found) <= function(found + 1e-3) && function(found) <= function(found - 1e-3));

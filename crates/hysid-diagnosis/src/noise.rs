@@ -10,6 +10,8 @@ mod resolution;
 
 use std::f64::consts::TAU;
 
+use hysid_core::elementary::{cos, powf, sin_cos, square};
+
 pub(crate) use differences::{Run, roughness};
 pub use resolution::resolution;
 
@@ -38,8 +40,8 @@ impl Correlation {
     fn at(self, distance: f64) -> f64 {
         match self {
             Self::White => f64::from(distance == 0.0),
-            Self::Decaying(factor) => factor.powf(distance),
-            Self::Periodic(angle) => (angle * distance).cos(),
+            Self::Decaying(factor) => powf(factor, distance),
+            Self::Periodic(angle) => cos(angle * distance),
             Self::Walking => -0.5 * distance,
         }
     }
@@ -57,7 +59,7 @@ impl Correlation {
                 sum.max(0.0)
             }
             Self::Periodic(angle) => {
-                let (sine, cosine) = angle.sin_cos();
+                let (sine, cosine) = sin_cos(angle);
                 // Σ w_k e^{ikθ}, by Horner from the last row on.
                 let turn =
                     |(re, im): (f64, f64), w: &f64| (w + re * cosine - im * sine, re * sine + im * cosine);
@@ -68,7 +70,7 @@ impl Correlation {
                 // A step moves all rows that are further from the middle than it.
                 let (before, after) = weights.split_at(weights.len() / 2);
                 let steps = |outwards: &mut dyn Iterator<Item = &f64>| {
-                    outwards.fold((0.0, 0.0), |(moved, sum), w| (moved + w, sum + (moved + w).powi(2))).1
+                    outwards.fold((0.0, 0.0), |(moved, sum), w| (moved + w, sum + square(moved + w))).1
                 };
                 steps(&mut before.iter()) + steps(&mut after.iter().skip(1).rev())
             }
@@ -121,7 +123,7 @@ impl Noise {
         };
         let parts: Vec<(f64, f64)> = self.parts.iter().filter_map(periodic).collect();
         let variance: f64 = parts.iter().map(|part| part.1).sum();
-        if variance <= MOSTLY * self.deviation().powi(2) {
+        if variance <= MOSTLY * square(self.deviation()) {
             return None;
         }
         let period = parts.iter().map(|(period, part)| period * part).sum::<f64>() / variance;

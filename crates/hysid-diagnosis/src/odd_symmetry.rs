@@ -3,6 +3,8 @@
 //!
 //! `rms(y_up(x) + y_down(2 x_c - x) - mean) / R`,  half the mean is the offset       theory.md (10.7)
 
+use hysid_core::elementary::{hypot, square};
+
 use super::branch::{Branch, BranchSet};
 use super::comparison::{BOUND, Comparison, SHAPE, judge};
 use super::{Finding, Property, Verdict};
@@ -91,19 +93,19 @@ fn compare(
         let here = branch.curve.at(x)?;
         let (one, other) = (before.curve.at(turned)?, after.curve.at(turned)?);
         let mirrored = 0.5 * (one.y + other.y);
-        let variance = here.deviation.powi(2) + 0.25 * (one.deviation.powi(2) + other.deviation.powi(2));
+        let variance = square(here.deviation) + 0.25 * (square(one.deviation) + square(other.deviation));
         rows.push((x, here.y, mirrored, variance, here.bend + 0.5 * (one.bend + other.bend)));
     }
     let n = rows.len() as f64;
     let mean = rows.iter().map(|row| row.1 + row.2).sum::<f64>() / n;
-    let square = rows.iter().map(|row| (row.1 + row.2 - mean).powi(2)).sum::<f64>() / n;
+    let square = rows.iter().map(|row| square(row.1 + row.2 - mean)).sum::<f64>() / n;
     let variance = rows.iter().map(|row| row.3).sum::<f64>() / n;
     let bend = (rows.iter().map(|row| row.4 * row.4).sum::<f64>() / n).sqrt();
     let wander = survey.wander_along(branch, 2.0 * half);
     let height = survey.height();
     Some(Comparison {
         index: square.sqrt() / height,
-        deviation: variance.sqrt().hypot(wander) / height,
+        deviation: hypot(variance.sqrt(), wander) / height,
         bend: bend / height,
         freedom: SHAPE,
         other: 0.0,

@@ -2,6 +2,8 @@
 //! other, theory.md (10.9): 1 is clockwise, as for a force that dissipates, -1 counter-clockwise, as for an
 //! output that lags behind.
 
+use hysid_core::elementary::square;
+
 use super::branch::BranchSet;
 use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict};
@@ -30,7 +32,7 @@ pub(crate) fn test(survey: &BranchSet) -> Finding {
         return Finding::not_testable(Property::Orientation, "no loop with an area", EXPERIMENT);
     };
     let index = open.iter().map(|opening| opening.signed).sum::<f64>() / total;
-    let noise = open.iter().map(|opening| opening.deviation.powi(2)).sum::<f64>().sqrt() / total;
+    let noise = open.iter().map(|opening| square(opening.deviation)).sum::<f64>().sqrt() / total;
     let (verdict, statement) = if index > CLEAR {
         (
             Verdict::Yes,

@@ -2,6 +2,8 @@
 //! largest slope after it, on loading branches; such loops enclose much less than the parallelogram through their tips
 //! and their crossings of zero load, theory.md (10.51).
 
+use hysid_core::elementary::hypot;
+
 use super::branch::{Branch, BranchSet};
 use super::cycles::CycleRow;
 use super::wiping_out::loops;
@@ -94,7 +96,7 @@ fn softness(branch: &Branch, height: f64) -> Option<Softness<'_>> {
     let slope = |middle: f64| {
         let (from, to) = ((middle - 0.5 * over).max(low), (middle + 0.5 * over).min(high));
         let (a, b) = (branch.curve.at(from)?, branch.curve.at(to)?);
-        (to > from).then(|| ((b.y - a.y) / (to - from), a.deviation.hypot(b.deviation) / (to - from)))
+        (to > from).then(|| ((b.y - a.y) / (to - from), hypot(a.deviation, b.deviation) / (to - from)))
     };
     let steps = ((sense * (branch.to - zero) / over - 0.5).max(0.0) * 2.0) as usize;
     let places: Vec<f64> = (0..=steps).map(|step| zero + sense * 0.5 * over * step as f64).collect();

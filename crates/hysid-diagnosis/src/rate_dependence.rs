@@ -15,6 +15,7 @@ use super::branch::{Branch, BranchSet, Reading};
 use super::comparison::{BOUND, Comparison, SHAPE, judge};
 use super::{Finding, Property, Verdict};
 use delay::Delay;
+use hysid_core::elementary::{hypot, square};
 use varying_speed::Remainders;
 
 /// A difference that matters, as a share of the range of the output.
@@ -107,8 +108,8 @@ impl Speeds<'_> {
             let (mut changes, mut noise, mut places) = (0.0, 0.0, 0.0);
             for x in self.places() {
                 let (late, early) = (latest.curve.at(x)?, earliest.curve.at(x)?);
-                changes += (late.y - early.y).powi(2);
-                noise += late.deviation.powi(2) + early.deviation.powi(2);
+                changes += square(late.y - early.y);
+                noise += square(late.deviation) + square(early.deviation);
                 places += 1.0;
             }
             let clear = changes > NOT_NOISE * noise;
@@ -126,7 +127,7 @@ impl Speeds<'_> {
     /// whose speed is another: a specimen that settles changes most at the beginning. Root mean square along the way.
     fn settling(&self) -> f64 {
         let between = |(alone, next): (&Branch, &Branch)| -> Option<f64> {
-            let squares = self.places().map(|x| Some((alone.curve.at(x)?.y - next.curve.at(x)?.y).powi(2)));
+            let squares = self.places().map(|x| Some(square(alone.curve.at(x)?.y - next.curve.at(x)?.y)));
             let squares: Vec<f64> = squares.collect::<Option<_>>()?;
             Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
         };
@@ -342,29 +343,29 @@ fn mean(set: &[&Branch], x: f64) -> Option<Reading> {
     let n = readings.len() as f64;
     Some(Reading {
         y: readings.iter().map(|reading| reading.y).sum::<f64>() / n,
-        deviation: readings.iter().map(|reading| reading.deviation.powi(2)).sum::<f64>().sqrt() / n,
+        deviation: readings.iter().map(|reading| square(reading.deviation)).sum::<f64>().sqrt() / n,
         bend: readings.iter().map(|reading| reading.bend).sum::<f64>() / n,
     })
 }
 
 fn compare(survey: &BranchSet, speeds: &Speeds) -> Option<Comparison> {
-    let (mut square, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
+    let (mut squares, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
     // How far branches of one speed lie apart, because of their past or their wear.
     let mut own = [0.0, 0.0];
     for x in speeds.places() {
         let (slow, fast) = (mean(&speeds.slow, x)?, mean(&speeds.fast, x)?);
-        square += (slow.y - fast.y).powi(2);
-        variance += slow.deviation.powi(2) + fast.deviation.powi(2);
-        bend += (slow.bend + fast.bend).powi(2);
+        squares += square(slow.y - fast.y);
+        variance += square(slow.deviation) + square(fast.deviation);
+        bend += square(slow.bend + fast.bend);
         places += 1.0;
         for (own, (set, mean)) in own.iter_mut().zip([(&speeds.slow, slow.y), (&speeds.fast, fast.y)]) {
             let squares =
-                set.iter().filter_map(|b| b.curve.at(x)).map(|r| (r.y - mean).powi(2) - r.deviation.powi(2));
+                set.iter().filter_map(|b| b.curve.at(x)).map(|r| square(r.y - mean) - square(r.deviation));
             *own += squares.sum::<f64>().max(0.0) / (set.len() as f64 - 1.0).max(1.0);
         }
     }
     let height = survey.height();
-    let apart = (square / places).sqrt();
+    let apart = (squares / places).sqrt();
     let own = (own[0].max(own[1]) / places).sqrt();
     let (wear, _) = speeds.wear(survey);
     let first = if speeds.may_settle(survey) { SETTLES * survey.height() } else { 0.0 };
@@ -375,7 +376,7 @@ fn compare(survey: &BranchSet, speeds: &Speeds) -> Option<Comparison> {
         pairs.map(|(slow, fast)| survey.rows_between(slow, fast, middle)).fold(f64::INFINITY, f64::min);
     Some(Comparison {
         index: apart / height,
-        deviation: (variance / places).sqrt().hypot(survey.wander(rows)) / height,
+        deviation: hypot((variance / places).sqrt(), survey.wander(rows)) / height,
         bend: (bend / places).sqrt() / height,
         freedom: SHAPE,
         other: own.max(FASTER * wear).max(settling) / height,

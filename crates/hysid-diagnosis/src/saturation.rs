@@ -1,6 +1,8 @@
 //! Saturation: the output hardly grows at the ends of the input. Index: slope over the last tenth of a branch
 //! over the largest slope of the same branch, theory.md (10.8).
 
+use hysid_core::elementary::{hypot, square};
+
 use super::branch::{Branch, BranchSet};
 use super::comparison::{Comparison, GAP};
 use super::wiping_out::loops;
@@ -62,7 +64,7 @@ fn end(survey: &BranchSet, rising: bool) -> Option<Finding> {
         return None;
     }
     let index = comparisons.iter().map(|c| c.index).sum::<f64>() / n;
-    let deviation = comparisons.iter().map(|c| c.deviation.powi(2)).sum::<f64>().sqrt() / n;
+    let deviation = comparisons.iter().map(|c| square(c.deviation)).sum::<f64>().sqrt() / n;
     let side = if rising { "upper" } else { "lower" };
     let share = 100.0 * index;
     let (verdict, statement) = if index + SURE * deviation < SATURATED {
@@ -105,7 +107,7 @@ fn slope_ratio(survey: &BranchSet, branch: &Branch) -> Option<Comparison> {
     if !((readings[PARTS].y - readings[0].y).abs() >= HIGH * survey.height() && largest > 0.0) {
         return None;
     }
-    let last = readings[PARTS - 1].deviation.hypot(readings[PARTS].deviation);
+    let last = hypot(readings[PARTS - 1].deviation, readings[PARTS].deviation);
     Some(Comparison {
         index: rises[PARTS - 1] / largest,
         deviation: last / largest,

@@ -16,6 +16,7 @@
 //! one record into the next. `L` is the lag of Andrews (1991) for this kernel, `ρ` the first autocorrelation, `ν` the
 //! equivalent degrees of freedom of the estimate (Priestley 1981, table 6.2).
 
+use hysid_core::elementary::{cbrt, ln, square};
 use hysid_core::linear_algebra::Symmetric;
 
 /// Windows are at most this share of the rows.
@@ -58,8 +59,8 @@ pub fn correlation_lag(records: &[Vec<f64>]) -> usize {
         // What white noise shows too is no slow part.
         if count >= FEWEST_BLOCKS && (block == 1 || first > 3.0 / (count as f64).sqrt()) {
             let rho = first.clamp(-0.999_999, 0.999_999);
-            let alpha = 4.0 * rho * rho / (1.0 - rho * rho).powi(2);
-            lag = lag.max(block as f64 * 1.1447 * (alpha * count as f64).cbrt());
+            let alpha = 4.0 * rho * rho / square(1.0 - rho * rho);
+            lag = lag.max(block as f64 * 1.1447 * cbrt(alpha * count as f64));
         }
         block *= LONGER;
     }
@@ -173,7 +174,7 @@ impl Autoregression {
             phi.iter_mut().zip(before.iter().rev()).for_each(|(phi, other)| *phi -= partial * other);
             phi.push(partial);
             left *= 1.0 - partial * partial;
-            let criterion = n * left.ln() + (k + 1) as f64 * n.ln();
+            let criterion = n * ln(left) + (k + 1) as f64 * ln(n);
             if criterion < best.0 {
                 best = (criterion, Self { coefficients: phi.clone(), variance: variance * left });
             }
@@ -222,10 +223,12 @@ impl Autoregression {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{powi, sin};
+
     use super::*;
 
     fn record(rows: usize) -> Vec<f64> {
-        (0..rows).map(|k| ((k * k) as f64 * 0.37).sin()).collect()
+        (0..rows).map(|k| sin((k * k) as f64 * 0.37)).collect()
     }
 
     /// Against the sum over lags as Newey and West write it.
@@ -278,7 +281,7 @@ mod tests {
             let mut expected = 0.0;
             for s in 0..50 {
                 for t in 0..50 {
-                    expected += rows[2 * s + i] * rows[2 * t + j] * a.powi(i32::abs(s as i32 - t as i32));
+                    expected += rows[2 * s + i] * rows[2 * t + j] * powi(a, i32::abs(s as i32 - t as i32));
                 }
             }
             assert!((found.at(i, j) - expected).abs() < 1e-4 * expected.abs().max(1.0), "{i} {j}");
@@ -307,8 +310,7 @@ mod tests {
             f64::from((hysid_core::random::mix(k as u64) >> 40) as u32) / f64::from(1u32 << 23) - 1.0
         };
         let white: Vec<f64> = (0..20_000).map(noise).collect();
-        let slow: Vec<f64> =
-            white.iter().enumerate().map(|(k, e)| e + 0.3 * (k as f64 * 0.002).sin()).collect();
+        let slow: Vec<f64> = white.iter().enumerate().map(|(k, e)| e + 0.3 * sin(k as f64 * 0.002)).collect();
         assert!(correlation_lag(&[white]) < 10);
         assert!(correlation_lag(&[slow]) > 200);
     }

@@ -1,5 +1,7 @@
 //! Quantiles of the normal distribution: what is noise, and what is not.
 
+use hysid_core::elementary::ln;
+
 /// A loss up to so many times the one that matters may be hidden by noise where none is found. Designed.
 pub const HIDDEN: f64 = 1.5;
 
@@ -34,7 +36,7 @@ pub fn typical_largest(count: usize) -> f64 {
 /// Value that a standard normal number exceeds with probability `p`, to three digits: rational
 /// approximation of Hastings (Abramowitz and Stegun 26.2.23).
 pub(crate) fn upper_quantile(p: f64) -> f64 {
-    let t = (-2.0 * p.ln()).sqrt();
+    let t = (-2.0 * ln(p)).sqrt();
     let above = 2.515_517 + t * (0.802_853 + t * 0.010_328);
     let below = 1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308));
     t - above / below

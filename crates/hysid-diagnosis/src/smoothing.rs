@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use hysid_core::elementary::square;
+
 use super::noise::Noise;
 use super::significance;
 
@@ -177,13 +179,13 @@ pub(crate) fn choose_window(branches: &[Points]) -> usize {
         let (mut remainder, mut expected) = (0.0, 0.0);
         let mut parts = Vec::new();
         for Points { places, output_noise, .. } in &judged {
-            let variance = output_noise.roughness().powi(2);
+            let variance = square(output_noise.roughness());
             let smoothed = smooth(places, **window);
             let tenth = places.len().div_ceil(10);
             for (rows, values) in places.chunks(tenth).zip(smoothed.chunks(tenth)) {
                 let pairs = || rows.iter().zip(values);
-                let left: f64 = pairs().map(|(place, value)| (place.y - value.y).powi(2)).sum();
-                let free: f64 = pairs().map(|(_, value)| 1.0 - value.deviation.powi(2)).sum();
+                let left: f64 = pairs().map(|(place, value)| square(place.y - value.y)).sum();
+                let free: f64 = pairs().map(|(_, value)| 1.0 - square(value.deviation)).sum();
                 remainder += left;
                 expected += free * variance;
                 if free > 2.0 {
@@ -226,8 +228,8 @@ mod tests {
         // Even spacing, 5 rows: (3/35)(…) weights of Savitzky and Golay, whose middle one is 17/35.
         let places: Vec<Place> = (0..30).map(|k| place(k as f64, 0.0)).collect();
         let smoothed = smooth(&places, 5);
-        assert!((smoothed[10].deviation.powi(2) - 17.0 / 35.0).abs() < 1e-12);
-        assert!((smoothed[0].deviation.powi(2) - 31.0 / 35.0).abs() < 1e-12);
+        assert!((square(smoothed[10].deviation) - 17.0 / 35.0).abs() < 1e-12);
+        assert!((square(smoothed[0].deviation) - 31.0 / 35.0).abs() < 1e-12);
     }
 
     #[test]

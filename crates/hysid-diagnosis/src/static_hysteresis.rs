@@ -4,6 +4,8 @@
 mod shifted;
 mod viscous;
 
+use hysid_core::elementary::{hypot, ln};
+
 use super::branch::BranchSet;
 use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict, significance};
@@ -97,7 +99,7 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
     }
     let rows: usize = shown.rows(survey);
     let between =
-        survey.output_noise.of_mean(survey.window).hypot(survey.output_noise.wander(0.5 * rows as f64));
+        hypot(survey.output_noise.of_mean(survey.window), survey.output_noise.wander(0.5 * rows as f64));
     let noise = OF_A_LINE * between / shown.height;
     let threshold = FULL + significance::critical_value(1) * noise;
     // Loops that tell of a lag: not small, and far fuller than noise makes them.
@@ -244,13 +246,14 @@ fn growth_is_known(large: &[&Opening]) -> bool {
     }
     let mean = |areas: &Vec<f64>| areas.iter().sum::<f64>() / areas.len() as f64;
     let grows = groups.windows(2).all(|pair| mean(&pair[1].1) >= SHRINKS * mean(&pair[0].1));
-    let power = |a: &(f64, Vec<f64>), b: &(f64, Vec<f64>)| (mean(&b.1) / mean(&a.1)).ln() / (b.0 / a.0).ln();
+    let power = |a: &(f64, Vec<f64>), b: &(f64, Vec<f64>)| ln(mean(&b.1) / mean(&a.1)) / ln(b.0 / a.0);
     groups.len() >= SPEEDS && grows && power(&groups[0], &groups[1]) < SLOW_GROWTH
 }
 
 #[cfg(test)]
 mod tests {
     use hysid_core::data::record::Dataset;
+    use hysid_core::elementary::{sin, tanh};
     use hysid_core::operator::{Operator, Play};
 
     use crate::{Diagnosis, DiagnosisOptions, Property, Verdict};
@@ -260,16 +263,16 @@ mod tests {
     #[test]
     fn loops_that_no_single_lag_explains_are_static() {
         let x: Vec<f64> = (0..1200)
-            .map(|row| [0.3, 0.6, 1.0][row / 400] * (std::f64::consts::TAU * row as f64 / 200.0).sin())
+            .map(|row| [0.3, 0.6, 1.0][row / 400] * sin(std::f64::consts::TAU * row as f64 / 200.0))
             .collect();
         let play = Play::new(0.05).unwrap().run(&x);
-        let magnet: Vec<f64> = play.iter().map(|x| (2.0 * x).tanh()).collect();
+        let magnet: Vec<f64> = play.iter().map(|x| tanh(2.0 * x)).collect();
         let late = |function: fn(f64) -> f64| -> Vec<f64> {
             (0..1200).map(|row: usize| function(x[row.saturating_sub(3)])).collect()
         };
         for (y, expected) in [
             (magnet, Verdict::Yes),
-            (late(|x| (2.0 * x).tanh()), Verdict::NotTestable),
+            (late(|x| tanh(2.0 * x)), Verdict::NotTestable),
             // Their loops are not equally wide at equal lags.
             (late(|x| x * x * x), Verdict::NotTestable),
             (late(|x| (x - 0.25).abs()), Verdict::NotTestable),

@@ -146,6 +146,7 @@ fn force_at_tip(record: &Record, cycle: &CycleRow, direction: f64) -> f64 {
 #[cfg(test)]
 pub(crate) mod tests {
     use hysid_core::data::record::{ColumnNames, Dataset, Record};
+    use hysid_core::elementary::{exp, powf, square};
 
     use crate::{Diagnosis, DiagnosisOptions, Property, Verdict};
 
@@ -194,7 +195,7 @@ pub(crate) mod tests {
             ("whole", Verdict::No, None, |_, _| 10.0),
             ("soft", Verdict::Yes, Some(0.30), |largest, _| 10.0 * (1.0 - 0.02 * (largest - 10.0).max(0.0))),
             ("broken", Verdict::Yes, Some(0.70), |_, travel| if travel < 400.0 { 10.0 } else { 3.0 }),
-            ("worn", Verdict::Yes, None, |_, travel| 10.0 * (-travel / 2000.0).exp()),
+            ("worn", Verdict::Yes, None, |_, travel| 10.0 * exp(-travel / 2000.0)),
         ];
         for (name, expected, loss, strength) in strength {
             // The last hides a loss of more than the one that matters.
@@ -268,8 +269,8 @@ pub(crate) mod tests {
         let (mut force, mut worn) = (0.0f64, 0.0);
         let data = member(0.004, |x, dx| {
             // 9 % over a cycle of the largest amplitude, less in small ones.
-            worn += dx.abs() * (x.abs() / 25.0).powi(2) / 33.0;
-            let most = 10.0 * (1.0f64 - 0.09).powf(worn);
+            worn += dx.abs() * square(x.abs() / 25.0) / 33.0;
+            let most = 10.0 * powf(1.0f64 - 0.09, worn);
             force = (force + 5.0 * dx).clamp(-most, most);
             force
         });

@@ -3,6 +3,8 @@
 //!
 //! `|y(return to x_a) - y(x_a)| / R`                                                 theory.md (10.4)
 
+use hysid_core::elementary::hypot;
+
 use super::branch::{Branch, BranchSet, Closing};
 use super::comparison::{Comparison, GAP, NARROW_BOUND, judge};
 use super::{Evidence, Finding, Picture, Property, Verdict};
@@ -59,7 +61,7 @@ fn gap(survey: &BranchSet, returning: usize, closing: &Closing) -> Option<Compar
     let (before, deviation) = match leaving.curve.at(x) {
         // Both branches know the output at their common point; away from it they differ.
         Some(other) if x == closing.x => {
-            (0.5 * (first.y + other.y), 0.5 * first.deviation.hypot(other.deviation))
+            (0.5 * (first.y + other.y), 0.5 * hypot(first.deviation, other.deviation))
         }
         _ => (first.y, first.deviation),
     };
@@ -68,7 +70,7 @@ fn gap(survey: &BranchSet, returning: usize, closing: &Closing) -> Option<Compar
     let apart = survey.rows_between(arriving, back, x);
     Some(Comparison {
         index: (second.y - before).abs() / height,
-        deviation: deviation.hypot(second.deviation).hypot(survey.wander(apart)) / height,
+        deviation: hypot(hypot(deviation, second.deviation), survey.wander(apart)) / height,
         bend: (first.bend + second.bend) / height,
         freedom: GAP,
         other: survey.turn_error(leaving) / height,

@@ -7,6 +7,7 @@ mod ensemble;
 mod law;
 mod network;
 
+use hysid_core::elementary;
 use hysid_core::error::LARGEST_VALUE;
 use hysid_core::model::input_transform::InputTransform;
 use hysid_core::model::{Model, Predictor};
@@ -291,6 +292,6 @@ fn history(builder: &mut Builder, transform: &InputTransform, row: &Row<'_>, lea
     let x = limited(builder, &row.inputs[0]);
     take(builder, x - origin);
     let m = builder.value(largest.at(0_usize) / largest_scale);
-    let p = builder.value((10.0 * path.at(0_usize) / longest).ln_1p() / f64::ln(11.0));
+    let p = builder.value((10.0 * path.at(0_usize) / longest).ln_1p() / elementary::ln(11.0));
     vec![m, p]
 }

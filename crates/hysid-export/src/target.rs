@@ -1,6 +1,6 @@
 //! The targets, one a file: each writes programs in its language.
 
-mod c;
+pub(crate) mod c;
 mod fmu;
 mod matlab;
 mod onnx;

@@ -1,5 +1,7 @@
 //! Test vectors: what is done with a model, and what it must give.
 
+use hysid_core::elementary::{cos, sin};
+
 use crate::description::{Argument, Description};
 use crate::program::Program;
 use crate::program::interpreter::Machine;
@@ -152,12 +154,12 @@ impl Path<'_> {
     /// Arguments of a row; the first input is displaced by this share of half its range.
     fn row(&self, row: usize, displaced: f64) -> Vec<f64> {
         let t = row as f64;
-        let wave = 1.05 * ((0.23 * t).sin() * (0.6 + 0.4 * (0.031 * t).cos()) + 0.15 * (1.9 * t).sin());
+        let wave = 1.05 * (sin(0.23 * t) * (0.6 + 0.4 * cos(0.031 * t)) + 0.15 * sin(1.9 * t));
         let value = |argument: &Argument| match *argument {
             Argument::Input(0) => within(self.inputs[0], wave + displaced),
-            Argument::Input(input) => within(self.inputs[input], (0.11 * t + input as f64).sin()),
-            Argument::TimeStep => 0.01 * (1.0 + 0.5 * (0.7 * t).sin()),
-            Argument::Rate => self.rate * (0.37 * t).cos(),
+            Argument::Input(input) => within(self.inputs[input], sin(0.11 * t + input as f64)),
+            Argument::TimeStep => 0.01 * (1.0 + 0.5 * sin(0.7 * t)),
+            Argument::Rate => self.rate * cos(0.37 * t),
         };
         self.arguments.iter().map(|argument| of_both_precisions(value(argument))).collect()
     }

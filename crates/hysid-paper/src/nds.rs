@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use hysid::elementary::{cos, sin};
 use hysid::operator::{DeterioratingStop, Operator};
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, number};
 
@@ -60,7 +61,7 @@ impl Neuron {
 
     /// What the stop sees of a sine of amplitude 1 at a phase in rad; at rate 0 it sees no rate.
     fn drive(self, rate: f64, phase: f64) -> f64 {
-        self.weight * phase.sin() + self.rate_weight * TAU * rate * phase.cos()
+        self.weight * sin(phase) + self.rate_weight * TAU * rate * cos(phase)
     }
 
     /// Input and output from the virgin state, for so many cycles of a sine.
@@ -68,7 +69,7 @@ impl Neuron {
         let mut stop = self.stop();
         let row = |row: usize| {
             let phase = TAU * row as f64 / ROWS as f64;
-            (phase.sin(), stop.step(self.drive(rate, phase)))
+            (sin(phase), stop.step(self.drive(rate, phase)))
         };
         (0..=cycles * ROWS).map(row).collect()
     }
@@ -204,7 +205,7 @@ fn in_turn(neuron: Neuron) -> Vec<(f64, f64, f64, usize)> {
         for row in 0..=CYCLES * ROWS {
             let cycles = row as f64 / ROWS as f64;
             let y = stop.step(neuron.drive(rate, TAU * cycles));
-            path.push((begun + cycles / rate, (TAU * cycles).sin(), y, index));
+            path.push((begun + cycles / rate, sin(TAU * cycles), y, index));
         }
         begun += CYCLES as f64 / rate;
     }
@@ -240,16 +241,18 @@ fn loops(index: usize, neuron: Neuron) -> Chart {
 
 #[cfg(test)]
 mod tests {
+    use hysid::elementary::{acos, asin, atan2, hypot};
+
     use super::*;
 
     /// Half-way up is output 0, at which the stop's argument `V sin θ` is `1 - V` on the way up if it slides
     /// and 0 if it does not; the input lags behind by the phase of the two weights.
     fn width(neuron: Neuron, rate: f64) -> f64 {
         let across = neuron.rate_weight * TAU * rate;
-        let amplitude = neuron.weight.hypot(across);
-        let lead = across.atan2(neuron.weight);
-        let theta = if amplitude > 1.0 { ((1.0 - amplitude) / amplitude).asin() } else { 0.0 };
-        -2.0 * (theta - lead).sin()
+        let amplitude = hypot(neuron.weight, across);
+        let lead = atan2(across, neuron.weight);
+        let theta = if amplitude > 1.0 { asin((1.0 - amplitude) / amplitude) } else { 0.0 };
+        -2.0 * sin(theta - lead)
     }
 
     #[test]
@@ -273,7 +276,7 @@ mod tests {
             let excess = amplitude - 1.0;
             let halves = ((capacity - excess) / (2.0 * excess)).floor();
             let last = capacity - excess - halves * 2.0 * excess;
-            let cycles = 0.25 + 0.5 * halves + ((amplitude - 2.0 - last) / amplitude).acos() / TAU;
+            let cycles = 0.25 + 0.5 * halves + acos((amplitude - 2.0 - last) / amplitude) / TAU;
             let life = neuron.life(0.1).unwrap();
             assert!((life - cycles).abs() < 2.0 / ROWS as f64, "{life}, {cycles}");
         }

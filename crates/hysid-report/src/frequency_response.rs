@@ -5,6 +5,7 @@ use hysid::diagnosis::frequency_response::{
     AtAmplitude, FrequencyResponse, ModelResponses, ResponsePoint, Segments, Window,
 };
 use hysid::diagnosis::resonance::{Compared, LinearOscillator};
+use hysid::elementary::{log10, powf};
 use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number, unit};
@@ -217,9 +218,9 @@ impl<'a> Section<'a> {
 /// A positive value that is known to a resolution, with the digits that this supports: the last one has the size of the
 /// resolution.
 fn resolved(value: f64, resolution: f64) -> Cell {
-    let size = |number: f64| number.log10().floor();
+    let size = |number: f64| log10(number).floor();
     let digits = (size(value) - size(resolution) + 1.0).clamp(1.0, MOST_DIGITS);
-    let unit = 10f64.powf(size(value) + 1.0 - digits);
+    let unit = powf(10.0, size(value) + 1.0 - digits);
     Cell::number(unit * (value / unit).round(), digits as u8)
 }
 

@@ -3,6 +3,7 @@ use std::ops::ControlFlow;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Record};
 use hysid::diagnosis::resonance::Compared;
+use hysid::elementary::sin;
 use hysid::fit::network::fit;
 use hysid::network::Sizes;
 use hysid::options::network::FitOptions;
@@ -15,7 +16,7 @@ mod balance;
 /// Measured loops of two records with odd names, with blanks.
 fn data(time: bool) -> Dataset {
     let record = |name: &str, size: f64| {
-        let x: Vec<f64> = (0..300).map(|k| size * (0.1 * k as f64).sin()).collect();
+        let x: Vec<f64> = (0..300).map(|k| size * sin(0.1 * k as f64)).collect();
         let mut play = 0.0f64;
         let mut y: Vec<f64> = Vec::new();
         for x in &x {
@@ -113,7 +114,7 @@ fn the_figures_of_the_errors_are_there() {
 fn odd_data_can_be_shown() {
     let model = model(&data(false));
     let odd = |rows: usize| {
-        let x: Vec<f64> = (0..rows).map(|k| (0.01 * k as f64).sin()).collect();
+        let x: Vec<f64> = (0..rows).map(|k| sin(0.01 * k as f64)).collect();
         Record::new(format!("{rows} rows"), vec![x], vec![1.0; rows]).unwrap()
     };
     let names = ColumnNames { time: None, ..ColumnNames::plain(1) };

@@ -68,12 +68,13 @@ fn cycles(data: &Dataset) -> HashMap<String, Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use hysid::data::record::ColumnNames;
+    use hysid::elementary::sin;
 
     use super::*;
 
     #[test]
     fn cycles_are_those_of_the_input() {
-        let x: Vec<f64> = (0..=500).map(|k| (std::f64::consts::TAU * 0.01 * f64::from(k)).sin()).collect();
+        let x: Vec<f64> = (0..=500).map(|k| sin(std::f64::consts::TAU * 0.01 * f64::from(k))).collect();
         let record = Record::new("a", vec![x.clone()], x).unwrap();
         let data = Dataset::new(ColumnNames { time: None, ..ColumnNames::plain(1) }, vec![record]).unwrap();
         let tracks = Tracks::of("training", &data);

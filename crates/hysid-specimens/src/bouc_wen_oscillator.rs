@@ -19,6 +19,7 @@
 use std::f64::consts::TAU;
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::{powf, sin};
 use hysid_core::error::Result;
 
 use super::decimation::decimate;
@@ -110,7 +111,7 @@ impl BoucWenOscillator {
 
     /// `r'` in N/s, and its derivatives by `y'` and by `r`.
     fn hysteretic_rate(&self, velocity: f64, r: f64) -> (f64, f64, f64) {
-        let power = r.abs().powf(self.n - 1.0);
+        let power = powf(r.abs(), self.n - 1.0);
         let rate = self.alpha * velocity
             - self.beta * power * (self.gamma * velocity.abs() * r + self.delta * velocity * r.abs());
         let by_velocity =
@@ -243,7 +244,7 @@ fn swept_sine() -> Vec<f64> {
     let rows = ((last - first) / rate * ROWS_PER_SECOND).round() as usize;
     let force = |step: usize| {
         let t = step as f64 * time_step();
-        amplitude * (TAU * (first + 0.5 * rate * t) * t).sin()
+        amplitude * sin(TAU * (first + 0.5 * rate * t) * t)
     };
     (0..(rows + ROWS_BEYOND) * STEPS_PER_ROW).map(force).collect()
 }
@@ -276,12 +277,14 @@ fn record(name: &str, force: Vec<f64>, displacement: Vec<f64>) -> Result<Record>
 
 #[cfg(test)]
 mod laws {
+    use hysid_core::elementary::{cos, exp, square};
+
     use super::*;
 
     const STEP: f64 = 1.0 / 15_000.0;
 
     fn shaken(count: u32) -> impl Iterator<Item = f64> + Clone {
-        (0..count).map(|k| 60.0 * (0.011 * f64::from(k)).sin() + 30.0 * (0.037 * f64::from(k)).cos())
+        (0..count).map(|k| 60.0 * sin(0.011 * f64::from(k)) + 30.0 * cos(0.037 * f64::from(k)))
     }
 
     /// Constant average acceleration keeps the balance of energy from step to step.
@@ -292,7 +295,7 @@ mod laws {
             let motion: Vec<Motion> = oscillator.motion(shaken(4000), STEP).collect();
             let force: Vec<f64> = shaken(4000).collect();
             let energy = |at: &Motion| {
-                0.5 * (oscillator.mass * at.velocity.powi(2) + oscillator.stiffness * at.displacement.powi(2))
+                0.5 * (oscillator.mass * square(at.velocity) + oscillator.stiffness * square(at.displacement))
             };
             let (mut work, mut dissipated) = (0.0, 0.0);
             for (motion, force) in motion.windows(2).zip(force.windows(2)) {
@@ -317,9 +320,8 @@ mod laws {
             let motion = oscillator.motion((0..).map(|_| 100.0), step);
             let error = |(k, motion): (u32, Motion)| {
                 let t = f64::from(k) * step;
-                let swing = (damped * t).cos() + decay / damped * (damped * t).sin();
-                (motion.displacement / (100.0 / oscillator.stiffness) - 1.0 + (-decay * t).exp() * swing)
-                    .abs()
+                let swing = cos(damped * t) + decay / damped * sin(damped * t);
+                (motion.displacement / (100.0 / oscillator.stiffness) - 1.0 + exp(-decay * t) * swing).abs()
             };
             (0..).zip(motion.take((0.2 / step) as usize)).map(error).fold(0.0, f64::max)
         };
@@ -335,7 +337,7 @@ mod laws {
         let motion = oscillator.motion((0..).map(|_| 100.0), STEP);
         let mut rows = 0;
         for motion in motion.take_while(|motion| motion.velocity >= 0.0) {
-            let expected = oscillator.alpha / b * (1.0 - (-b * motion.displacement).exp());
+            let expected = oscillator.alpha / b * (1.0 - exp(-b * motion.displacement));
             assert!((motion.hysteretic_force - expected).abs() < 2e-3, "{motion:?} {expected}");
             rows += 1;
         }
@@ -352,6 +354,8 @@ mod laws {
 
 #[cfg(test)]
 mod benchmark {
+    use hysid_core::elementary::square;
+
     use super::*;
 
     #[test]
@@ -370,7 +374,7 @@ mod benchmark {
     fn training_has_the_noise_of_the_benchmark() {
         let train = &training(1).unwrap()[0];
         let steady = train.output()[3 * PERIOD..4 * PERIOD].iter().zip(&train.output()[4 * PERIOD..]);
-        let rms = (steady.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / PERIOD as f64 / 2.0).sqrt();
+        let rms = (steady.map(|(a, b)| square(a - b)).sum::<f64>() / PERIOD as f64 / 2.0).sqrt();
         // Four standard errors of a normal sample.
         assert!((rms / NOISE - 1.0).abs() < 4.0 / (2.0 * PERIOD as f64).sqrt(), "{rms}");
     }

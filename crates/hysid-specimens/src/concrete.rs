@@ -20,6 +20,7 @@
 //! unloading keeps the permanent strain, the values of the concrete (typical ones) and the strain history.
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::powf;
 use hysid_core::error::Result;
 
 use super::path;
@@ -54,7 +55,7 @@ impl ConcreteParameters {
         }
         let r = self.modulus / (self.modulus - self.strength / self.strain_at_strength);
         let eta = strain / self.strain_at_strength;
-        self.strength * eta * r / (r - 1.0 + eta.powf(r))
+        self.strength * eta * r / (r - 1.0 + powf(eta, r))
     }
 
     /// Permanent strain `ε_p` in mm/m after unloading from a strain in mm/m on the envelope: `ε_c (0.145 η_u²
@@ -199,7 +200,7 @@ impl Concrete {
             return from.stress * (1.0 - x); // the limit of q without end
         }
         let q = initial / (initial - secant);
-        from.stress * (1.0 - x * q / (q - 1.0 + x.powf(q)))
+        from.stress * (1.0 - x * q / (q - 1.0 + powf(x, q)))
     }
 }
 

@@ -11,6 +11,7 @@
 //! resonance, band and sampling. The displacement is sampled without a filter.
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::powi;
 use hysid_core::error::Result;
 
 use super::draw::Draw;
@@ -68,7 +69,7 @@ impl DuffingOscillator {
     }
 
     fn slope(&self, [y, v]: [f64; 2], force: f64) -> [f64; 2] {
-        let spring = self.stiffness * y + self.cubic_stiffness * y.powi(3);
+        let spring = self.stiffness * y + self.cubic_stiffness * powi(y, 3);
         [v, (force - self.damping * v - spring) / self.mass]
     }
 }
@@ -130,6 +131,8 @@ fn record(name: &str, force: &[f64]) -> Result<Record> {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{cos, exp, sin};
+
     use super::*;
 
     const STEP: f64 = 1e-4;
@@ -141,7 +144,7 @@ mod tests {
         let mut fastest = 0.0f64;
         for Motion { displacement: y, velocity: v } in oscillator.motion(&[200.0; 2001], STEP) {
             let stored = 0.5 * (oscillator.mass * v * v + oscillator.stiffness * y * y)
-                + 0.25 * oscillator.cubic_stiffness * y.powi(4);
+                + 0.25 * oscillator.cubic_stiffness * powi(y, 4);
             assert!((stored - 200.0 * y).abs() < 1e-5, "{y} {v}");
             fastest = fastest.max(v);
         }
@@ -157,8 +160,8 @@ mod tests {
         let damped = (omega * omega - decay * decay).sqrt();
         for (k, motion) in oscillator.motion(&[100.0; 4001], STEP).enumerate() {
             let t = k as f64 * STEP;
-            let swing = (damped * t).cos() + decay / damped * (damped * t).sin();
-            let expected = 100.0 / oscillator.stiffness * (1.0 - (-decay * t).exp() * swing);
+            let swing = cos(damped * t) + decay / damped * sin(damped * t);
+            let expected = 100.0 / oscillator.stiffness * (1.0 - exp(-decay * t) * swing);
             assert!((motion.displacement - expected).abs() < 1e-8, "{t}: {motion:?} {expected}");
         }
     }

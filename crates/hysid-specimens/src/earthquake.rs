@@ -11,6 +11,8 @@
 //! *Published*: the filter and its values for firm soil (Kanai; Tajimi), and the form of the envelope (Jennings, Housner and
 //! Tsai). *Designed*: the times of the envelope, the duration and the sampling.
 
+use hysid_core::elementary::{exp, square};
+
 use super::draw::Draw;
 use super::runge_kutta;
 
@@ -57,11 +59,13 @@ fn surface(rock: &[f64]) -> Vec<f64> {
 
 fn envelope(t: f64) -> f64 {
     let (rises, falls, decay) = ENVELOPE;
-    if t < rises { (t / rises).powi(2) } else { (-(t - falls).max(0.0) / decay).exp() }
+    if t < rises { square(t / rises) } else { exp(-(t - falls).max(0.0) / decay) }
 }
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{hypot, sin};
+
     use super::*;
 
     #[test]
@@ -79,15 +83,15 @@ mod tests {
     fn the_soil_has_the_frequency_response_of_kanai_and_tajimi() {
         let (omega_g, zeta) = SOIL;
         for omega in [6.0f64, 15.6, 40.0] {
-            let rock: Vec<f64> = (0..3000).map(|row| (omega * TIME_STEP * f64::from(row)).sin()).collect();
+            let rock: Vec<f64> = (0..3000).map(|row| sin(omega * TIME_STEP * f64::from(row))).collect();
             let surface = surface(&rock);
             // The amplitude of a sine from its value and its slope.
             let amplitude = |row: usize| {
-                let slope = (surface[row + 1] - surface[row - 1]) / (2.0 * (omega * TIME_STEP).sin());
-                surface[row].hypot(slope)
+                let slope = (surface[row + 1] - surface[row - 1]) / (2.0 * sin(omega * TIME_STEP));
+                hypot(surface[row], slope)
             };
-            let damped = (2.0 * zeta * omega / omega_g).powi(2);
-            let expected = ((1.0 + damped) / ((1.0 - (omega / omega_g).powi(2)).powi(2) + damped)).sqrt();
+            let damped = square(2.0 * zeta * omega / omega_g);
+            let expected = ((1.0 + damped) / (square(1.0 - square(omega / omega_g)) + damped)).sqrt();
             for row in [2000, 2345, 2990] {
                 // The straight lines between the rows flatten the sine by 1 % at 40 rad/s.
                 assert!((amplitude(row) / expected - 1.0).abs() < 0.015, "{omega}: {}", amplitude(row));

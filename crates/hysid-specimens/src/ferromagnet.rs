@@ -20,6 +20,7 @@
 use std::f64::consts::FRAC_2_PI;
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::{atan, exp};
 use hysid_core::error::Result;
 
 use super::path;
@@ -51,8 +52,8 @@ pub struct Everett {
 
 impl Everett {
     fn g(&self, h: f64) -> f64 {
-        let step = 1.0 + 0.5 * ((-self.p1 * h).exp() + (-self.p2 * h).exp());
-        let arctangent = FRAC_2_PI * (self.q * h).atan() + 1.0;
+        let step = 1.0 + 0.5 * (exp(-self.p1 * h) + exp(-self.p2 * h));
+        let arctangent = FRAC_2_PI * atan(self.q * h) + 1.0;
         self.m * self.r * arctangent + 2.0 * self.m * (1.0 - self.r) / step
     }
 

@@ -13,6 +13,7 @@
 //! Source of the values: the programs of Al Janaideh (IEEE Control Systems Magazine lecture, 2022) and of
 //! Basaeri.
 
+use hysid_core::elementary::exp;
 pub use hysid_core::law::generalized_prandtl_ishlinskii::{
     Envelope, GeneralizedPrandtlIshlinskii, PlayWeights,
 };
@@ -68,7 +69,7 @@ impl GeneralizedPlays {
 
     /// Weights `ρ e^{-τ α j}`, `j = 0, 1, ... count - 1`.
     pub fn exponential(count: usize, alpha: f64, rho: f64, tau: f64) -> PlayWeights {
-        PlayWeights::Free((0..count).map(|j| rho * (-tau * (alpha * j as f64)).exp()).collect())
+        PlayWeights::Free((0..count).map(|j| rho * exp(-tau * (alpha * j as f64))).collect())
     }
 
     /// Returns to the initial state.

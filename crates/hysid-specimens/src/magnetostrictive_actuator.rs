@@ -19,6 +19,7 @@
 use std::f64::consts::TAU;
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::{exp, sin, sin_cos};
 use hysid_core::error::Result;
 
 use super::generalized_play::GeneralizedPlays;
@@ -83,7 +84,7 @@ impl MagnetostrictiveActuator {
         // (6.22): around the steady lag behind a ramp, deviations fade.
         let ramp = (current - self.current) / duration;
         let deviation = self.magnetising - (self.current - ramp * self.lag);
-        self.magnetising = current - ramp * self.lag + deviation * (-duration / self.lag).exp();
+        self.magnetising = current - ramp * self.lag + deviation * exp(-duration / self.lag);
         self.current = current;
 
         // (6.23): around the steady lag behind a ramp, deviations swing and fade.
@@ -93,8 +94,8 @@ impl MagnetostrictiveActuator {
         let (d, v) = (self.displacement - (self.drive - behind), self.velocity - ramp);
         let decay = self.damping * self.resonance;
         let damped = self.resonance * (1.0 - self.damping * self.damping).sqrt();
-        let (sine, cosine) = (damped * duration).sin_cos();
-        let fade = (-decay * duration).exp();
+        let (sine, cosine) = sin_cos(damped * duration);
+        let fade = exp(-decay * duration);
         let swing = fade * (d * cosine + (v + decay * d) / damped * sine);
         self.velocity =
             ramp + fade * (v * cosine - (self.resonance * self.resonance * d + decay * v) / damped * sine);
@@ -150,7 +151,7 @@ const LONGEST_STEP: f64 = 1e-5;
 fn sine(frequency: f64) -> Result<Record> {
     let row_time = 1.0 / (frequency * ROWS as f64);
     let steps = (row_time / LONGEST_STEP).ceil().max(1.0);
-    let current = |row: f64| BIAS + AMPLITUDE * (TAU * row / ROWS as f64).sin();
+    let current = |row: f64| BIAS + AMPLITUDE * sin(TAU * row / ROWS as f64);
     let mut actuator = MagnetostrictiveActuator::designed(BIAS);
     let mut displacement = vec![actuator.displacement];
     for row in 1..2 * ROWS {

@@ -9,6 +9,8 @@
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
+use hysid_core::elementary::sin_cos;
+
 use super::draw::Draw;
 
 #[derive(Debug, Clone)]
@@ -42,7 +44,7 @@ impl Multisine {
     fn at_rows(&self, later: f64) -> impl Iterator<Item = f64> {
         let mut spectrum = vec![(0.0, 0.0); self.rows];
         for (line, phase) in self.lines.clone().zip(&self.phases) {
-            let (sin, cos) = (phase + TAU * line as f64 * later).sin_cos();
+            let (sin, cos) = sin_cos(phase + TAU * line as f64 * later);
             spectrum[line] = (self.amplitude * cos, self.amplitude * sin);
         }
         inverse_fourier_sum(spectrum).into_iter().map(|(real, _)| real)
@@ -59,7 +61,7 @@ fn inverse_fourier_sum(spectrum: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let half = |first: usize| inverse_fourier_sum(spectrum.iter().skip(first).step_by(2).copied().collect());
     let (even, odd) = (half(0), half(1));
     let turned = |(n, (re, im)): (usize, &(f64, f64))| {
-        let (sin, cos) = (TAU * n as f64 / count as f64).sin_cos();
+        let (sin, cos) = sin_cos(TAU * n as f64 / count as f64);
         (re * cos - im * sin, re * sin + im * cos)
     };
     let odd: Vec<_> = odd.iter().enumerate().map(turned).collect();
@@ -70,6 +72,8 @@ fn inverse_fourier_sum(spectrum: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::cos;
+
     use super::*;
 
     #[test]
@@ -79,8 +83,7 @@ mod tests {
         assert_eq!(period.len(), 192);
         for (n, value) in period.iter().enumerate() {
             let t = n as f64 / 192.0;
-            let sines =
-                (5..=12).zip(&multisine.phases).map(|(k, phase)| (TAU * f64::from(k) * t + phase).cos());
+            let sines = (5..=12).zip(&multisine.phases).map(|(k, phase)| cos(TAU * f64::from(k) * t + phase));
             let expected = multisine.amplitude * sines.sum::<f64>();
             assert!((value - expected).abs() < 1e-12, "{n}: {value} {expected}");
         }

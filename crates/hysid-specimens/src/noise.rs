@@ -4,6 +4,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use hysid_core::data::record::{Dataset, Record};
+use hysid_core::elementary::{cos, ln, square};
 use hysid_core::error::{OptionError, Result};
 
 /// The data with Gaussian noise on the output. The standard deviation of the noise is `percent` of the
@@ -32,11 +33,11 @@ fn standard_deviation(data: &Dataset) -> f64 {
     let scored = || data.records().iter().flat_map(Record::output).filter(|y| !y.is_nan());
     let count = data.scored().max(1) as f64;
     let mean = scored().sum::<f64>() / count;
-    (scored().map(|y| (y - mean).powi(2)).sum::<f64>() / count).sqrt()
+    (scored().map(|y| square(y - mean)).sum::<f64>() / count).sqrt()
 }
 
 /// A standard normal number, by Box and Muller.
 pub(super) fn normal(generator: &mut impl Rng) -> f64 {
     let (u, v): (f64, f64) = (generator.random(), generator.random());
-    (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+    (-2.0 * ln(1.0 - u)).sqrt() * cos(std::f64::consts::TAU * v)
 }

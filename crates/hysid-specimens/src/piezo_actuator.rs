@@ -14,6 +14,7 @@
 use std::f64::consts::{PI, TAU};
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::{sin, sin_cos};
 use hysid_core::error::Result;
 
 use super::specimen::{Columns, Specimen};
@@ -41,12 +42,12 @@ pub struct PiezoActuator {
 impl PiezoActuator {
     /// The voltage in V at a time in s.
     pub fn voltage(&self, time: f64) -> f64 {
-        VOLTAGE + VOLTAGE * (TAU * self.frequency * time).sin()
+        VOLTAGE + VOLTAGE * sin(TAU * self.frequency * time)
     }
 
     /// The displacement in µm at a time in s: `6 + Y sin(ωt - φ)` (theory.md (6.18)).
     pub fn displacement(&self, time: f64) -> f64 {
-        DISPLACEMENT + self.amplitude() * (TAU * self.frequency * time - self.lag()).sin()
+        DISPLACEMENT + self.amplitude() * sin(TAU * self.frequency * time - self.lag())
     }
 
     /// Amplitude `Y` of the displacement in µm. Designed.
@@ -62,7 +63,7 @@ impl PiezoActuator {
     /// Area of the loop of voltage and displacement in V µm: `π U Y sin φ`, with the amplitude `U` of the
     /// voltage (theory.md (6.19)).
     pub fn loop_area(&self) -> f64 {
-        PI * VOLTAGE * self.amplitude() * self.lag().sin()
+        PI * VOLTAGE * self.amplitude() * sin(self.lag())
     }
 }
 
@@ -71,7 +72,7 @@ impl PiezoActuator {
 /// one sine.
 pub fn periodic_response(voltage: &[f64], period: f64) -> Vec<f64> {
     let rows = voltage.len();
-    let turns: Vec<(f64, f64)> = (0..rows).map(|row| (TAU * row as f64 / rows as f64).sin_cos()).collect();
+    let turns: Vec<(f64, f64)> = (0..rows).map(|row| sin_cos(TAU * row as f64 / rows as f64)).collect();
     let mean = voltage.iter().sum::<f64>() / rows.max(1) as f64;
     let mut displacement = vec![DISPLACEMENT + (mean - VOLTAGE) * DISPLACEMENT / VOLTAGE; rows];
     for order in 1..=rows / 2 {
@@ -84,7 +85,7 @@ pub fn periodic_response(voltage: &[f64], period: f64) -> Vec<f64> {
         let share = if 2 * order == rows { 1.0 } else { 2.0 } / rows as f64;
         let actuator = PiezoActuator { frequency: order as f64 / period };
         let gain = share * actuator.amplitude().max(0.0) / VOLTAGE;
-        let (lag_sine, lag_cosine) = actuator.lag().sin_cos();
+        let (lag_sine, lag_cosine) = sin_cos(actuator.lag());
         for (row, displacement) in displacement.iter_mut().enumerate() {
             let (s, c) = turns[order * row % rows];
             let lagging_sine = s * lag_cosine - c * lag_sine;

@@ -14,6 +14,7 @@
 use std::f64::consts::{PI, TAU};
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::{cos, sin};
 use hysid_core::error::Result;
 
 use super::draw::Draw;
@@ -144,7 +145,7 @@ fn swept_sine() -> Result<Record> {
     let (amplitude, first, last, duration) = SWEEP;
     let voltage = |row: usize| {
         let t = row as f64 * TIME_STEP;
-        amplitude * (TAU * (first + 0.5 * (last - first) * t / duration) * t).sin()
+        amplitude * sin(TAU * (first + 0.5 * (last - first) * t / duration) * t)
     };
     record("swept sine", (0..(duration / TIME_STEP).round() as usize).map(voltage).collect())
 }
@@ -152,7 +153,7 @@ fn swept_sine() -> Result<Record> {
 /// The record of a voltage in V about the bias.
 fn record(name: &str, about_bias: Vec<f64>) -> Result<Record> {
     let time = path::every(TIME_STEP, about_bias.len());
-    let raised = |t: f64| 0.5 * (1.0 - (PI * (t / ONSET).min(1.0)).cos());
+    let raised = |t: f64| 0.5 * (1.0 - cos(PI * (t / ONSET).min(1.0)));
     let voltage: Vec<f64> = time.iter().zip(about_bias).map(|(&t, u)| raised(t) * (BIAS + u)).collect();
     let motion = PiezoStage::designed().motion(voltage.iter().copied(), TIME_STEP, STEPS_PER_ROW);
     let displacement = motion.map(|motion| motion.displacement).collect();
@@ -161,6 +162,8 @@ fn record(name: &str, about_bias: Vec<f64>) -> Result<Record> {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::exp;
+
     use super::*;
 
     /// On a voltage that rises steadily from 0, `h = α d/b (1 - e^{-b u})` with `b = β + γ`; on its way back from `h_r` at
@@ -169,9 +172,9 @@ mod tests {
     fn branches_are_exponentials() {
         let stage = PiezoStage::designed();
         let PiezoStage { stroke, alpha, beta, gamma, .. } = stage;
-        let up = |u: f64| alpha * stroke / (beta + gamma) * (1.0 - (-(beta + gamma) * u).exp());
+        let up = |u: f64| alpha * stroke / (beta + gamma) * (1.0 - exp(-(beta + gamma) * u));
         let (turn, a) = (60.0, alpha * stroke / (beta - gamma));
-        let down = |u: f64| (up(turn) + a) * (-(beta - gamma) * (turn - u)).exp() - a;
+        let down = |u: f64| (up(turn) + a) * exp(-(beta - gamma) * (turn - u)) - a;
         let voltage = (0..=120).map(|k| f64::from(60 - (60_i32 - k).abs()));
         let mut seen = 0;
         for (k, (u, motion)) in voltage.clone().zip(stage.motion(voltage, TIME_STEP, 40)).enumerate() {
@@ -195,9 +198,9 @@ mod tests {
         let ramp = (0..400).map(|row| rate * TIME_STEP * f64::from(row));
         for (row, motion) in stage.motion(ramp, TIME_STEP, 2 * STEPS_PER_ROW).enumerate() {
             let t = row as f64 * TIME_STEP;
-            let swing = 2.0 * zeta / omega * (damped * t).cos()
-                + (2.0 * zeta * zeta - 1.0) / damped * (damped * t).sin();
-            let expected = stage.stroke * rate * (t - 2.0 * zeta / omega + (-zeta * omega * t).exp() * swing);
+            let swing =
+                2.0 * zeta / omega * cos(damped * t) + (2.0 * zeta * zeta - 1.0) / damped * sin(damped * t);
+            let expected = stage.stroke * rate * (t - 2.0 * zeta / omega + exp(-zeta * omega * t) * swing);
             assert!((motion.displacement - expected).abs() < 1e-5, "{t}: {motion:?} {expected}");
         }
     }

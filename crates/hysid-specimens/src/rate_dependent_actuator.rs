@@ -13,6 +13,7 @@
 //! inputs, are not published.
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::exp;
 use hysid_core::error::Result;
 use hysid_core::law::rate_dependent_prandtl_ishlinskii::{
     PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
@@ -40,7 +41,7 @@ impl RateDependentActuator {
     /// The actuator of the catalogue: `n = 10`, `a0 = 0.5`, `a_i = 0.4 e^{-0.12 i}`, `r_i = 0.6 i + 0.002 |v'|`.
     /// Designed.
     pub fn designed() -> Self {
-        Self::new(0.5, (1..=10).map(|i| 0.4 * (-0.12 * f64::from(i)).exp()).collect(), 0.6, 2e-3)
+        Self::new(0.5, (1..=10).map(|i| 0.4 * exp(-0.12 * f64::from(i))).collect(), 0.6, 2e-3)
     }
 
     /// The displacement in µm at the next voltage in V, which changes at `rate` in V/s. The rate between two

@@ -20,6 +20,7 @@
 //! history is designed as well.
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::{exp, powf};
 use hysid_core::error::Result;
 
 use super::path;
@@ -127,7 +128,7 @@ impl BoucWenBaberNoori {
 
     /// Upper bound of `|z|`: `(A0/(ν0 (β + γ)))^{1/n}` (theory.md (6.10)).
     pub fn ultimate(&self) -> f64 {
-        (self.a_0 / (self.nu_0 * (self.beta + self.gamma))).powf(1.0 / self.n)
+        powf(self.a_0 / (self.nu_0 * (self.beta + self.gamma)), 1.0 / self.n)
     }
 
     /// Derivatives of `z` and `e` by `ξ` in this direction: `h/η [A - ν |z|^n (β sgn(z dξ) + γ)]` and `(1 -
@@ -136,12 +137,12 @@ impl BoucWenBaberNoori {
         let a = (self.a_0 - self.delta_a * e).max(0.0);
         let nu = self.nu_0 + self.delta_nu * e;
         let eta = self.eta_0 + self.delta_eta * e;
-        let zeta_1 = self.zeta_s * (1.0 - (-self.p * e).exp());
+        let zeta_1 = self.zeta_s * (1.0 - exp(-self.p * e));
         let zeta_2 = (self.psi_0 + self.delta_psi * e) * (self.lambda + zeta_1);
-        let z_u = (nu * (self.beta + self.gamma)).powf(-1.0 / self.n);
+        let z_u = powf(nu * (self.beta + self.gamma), -1.0 / self.n);
         let distance = (z * direction - self.q * z_u) / zeta_2;
-        let h = 1.0 - zeta_1 * (-distance * distance).exp();
-        let softening = nu * z.abs().powf(self.n) * (self.beta * z.signum() * direction + self.gamma);
+        let h = 1.0 - zeta_1 * exp(-distance * distance);
+        let softening = nu * powf(z.abs(), self.n) * (self.beta * z.signum() * direction + self.gamma);
         Inner { z: h / eta * (a - softening), e: (1.0 - self.alpha) * self.energy_scale * z }
     }
 

@@ -18,6 +18,7 @@
 //! record begins with the undamaged building at rest.
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::powf;
 use hysid_core::error::Result;
 
 use super::draw::Draw;
@@ -146,7 +147,7 @@ impl ShearBuilding {
             (motion.drift_rate[storey], motion.hysteretic_displacement[storey], motion.work[storey]);
         let scale = self.storeys[storey].yield_displacement;
         let softening =
-            (z / scale).abs().powf(self.n) * (self.beta * v.abs() * z.signum() + (1.0 - self.beta) * v);
+            powf((z / scale).abs(), self.n) * (self.beta * v.abs() * z.signum() + (1.0 - self.beta) * v);
         let rate = (v - (1.0 + self.strength_loss * e) * softening) / (1.0 + self.stiffness_loss * e);
         (rate, z * v / (scale * scale))
     }
@@ -192,6 +193,8 @@ fn record(seed: u64, index: usize, peak: f64) -> Result<Record> {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{cos, exp, sin, square};
+
     use super::*;
 
     fn earthquake() -> Vec<f64> {
@@ -229,7 +232,7 @@ mod tests {
         let kinetic = 0.5 * (first.mass * lower * lower + second.mass * upper * upper);
         let storeys = building.storeys.iter().zip(end.drift.iter().zip(&end.work));
         let stored = storeys.map(|(storey, (drift, work))| {
-            let hysteretic = work * storey.yield_displacement.powi(2);
+            let hysteretic = work * square(storey.yield_displacement);
             storey.stiffness * (0.5 * share * drift * drift + (1.0 - share) * hysteretic)
         });
         let (work, accounted) = (mean(&power), kinetic + stored.sum::<f64>() + mean(&loss));
@@ -252,7 +255,7 @@ mod tests {
                 let omega = (square * stiffness / mass).sqrt();
                 let decay = 0.5 * square * damping / mass;
                 let damped = (omega * omega - decay * decay).sqrt();
-                let swing = (-decay * t).exp() * ((damped * t).cos() + decay / damped * (damped * t).sin());
+                let swing = exp(-decay * t) * (cos(damped * t) + decay / damped * sin(damped * t));
                 let participation = (1.0 + ratio) / (1.0 + ratio * ratio);
                 -participation * ratio / (omega * omega) * (1.0 - swing)
             });

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use hysid_core::elementary::{cos, sin};
+
 /// A sine `amplitude sin(2π frequency t + phase)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tone {
@@ -26,12 +28,12 @@ impl Tone {
 
 /// The sum of the tones at a time in s.
 pub fn value(tones: &[Tone], t: f64) -> f64 {
-    tones.iter().map(|tone| tone.amplitude * tone.angle(t).sin()).sum()
+    tones.iter().map(|tone| tone.amplitude * sin(tone.angle(t))).sum()
 }
 
 /// Its rate per s.
 pub fn rate(tones: &[Tone], t: f64) -> f64 {
-    tones.iter().map(|tone| TAU * tone.frequency * tone.amplitude * tone.angle(t).cos()).sum()
+    tones.iter().map(|tone| TAU * tone.frequency * tone.amplitude * cos(tone.angle(t))).sum()
 }
 
 #[cfg(test)]

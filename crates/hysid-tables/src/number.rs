@@ -330,6 +330,8 @@ impl DecimalSign {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::powi;
+
     use super::*;
 
     fn number(text: &str, known: Option<DecimalSign>) -> Result<f64, NumberProblem> {
@@ -389,7 +391,7 @@ mod tests {
             bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             f64::from_bits(bits.rotate_left(17))
         });
-        let whole = (0..400).map(|k| 7.0 * 10f64.powi(k % 40 - 20) * f64::from(k));
+        let whole = (0..400).map(|k| 7.0 * powi(10.0, k % 40 - 20) * f64::from(k));
         let edges =
             [0.0, -0.0, 1.0, -1.5, 0.1, 1e21, 123456789012.0, 1e12, -1e-7, 5e-324, f64::MAX, 0.1 + 0.2];
         for value in random.filter(|value| value.is_finite()).take(20_000).chain(whole).chain(edges) {

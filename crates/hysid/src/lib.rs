@@ -55,7 +55,8 @@ pub use hysid_core::model::{Inverse, Inversion, Inverted, Model, Reach, Referenc
 pub use hysid_core::options::ModelName;
 pub use hysid_core::{Error, Result};
 pub use hysid_core::{
-    data, error, law, model, network, operator, options, property, significant, simd, stop_check, termination,
+    data, elementary, error, law, model, network, operator, options, property, significant, simd, stop_check,
+    termination,
 };
 pub use hysid_diagnosis as diagnosis;
 pub use hysid_diagnosis::Diagnosis;

@@ -20,6 +20,7 @@ mod search;
 pub use filter::{Filter, SMALLEST_WINDOW};
 
 use differentiation::{Derivative, derivative};
+use hysid_core::elementary::{hypot, square};
 use hysid_core::error::{DataProblem, Error, LARGEST_VALUE, MotionColumn, MotionError, OptionError, Result};
 use search::Channel;
 
@@ -270,7 +271,7 @@ fn deviation(values: impl Iterator<Item = f64> + Clone) -> Option<f64> {
         return None;
     }
     let mean = known.clone().sum::<f64>() / count as f64;
-    Some((known.map(|value| (value - mean).powi(2)).sum::<f64>() / count as f64).sqrt())
+    Some((known.map(|value| square(value - mean)).sum::<f64>() / count as f64).sqrt())
 }
 
 /// Standard deviation of the noise of the restoring force, in its unit: what the measured channels add, in squares.
@@ -291,5 +292,5 @@ fn noise_of<'a>(records: &[Motion<'a>], mass: f64, computed: Option<&Derivative>
     let base = of_channel(MotionColumn::BaseAcceleration);
     let force = of_channel(MotionColumn::AppliedForce);
     let from_filter = computed.map_or(0.0, |computed| computed.noise);
-    (mass * acceleration.hypot(base).hypot(from_filter)).hypot(force)
+    hypot(mass * hypot(hypot(acceleration, base), from_filter), force)
 }

@@ -9,6 +9,7 @@
 mod pooled;
 mod row_folds;
 
+use hysid_core::elementary::{exp, ln};
 use serde::Serialize;
 
 use crate::data::FEWEST_ROWS;
@@ -344,8 +345,8 @@ impl<'d> CrossValidator<'d> {
     pub fn result(self) -> Option<CrossValidation> {
         let unseen = self.pooled.errors(&self.output)?;
         let logarithms: Option<Vec<f64>> =
-            self.judged.iter().map(|fold| Some(fold.unseen.nrmse_std_percent?.ln())).collect();
-        let mean = |logarithms: Vec<f64>| (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp();
+            self.judged.iter().map(|fold| Some(ln(fold.unseen.nrmse_std_percent?))).collect();
+        let mean = |logarithms: Vec<f64>| exp(logarithms.iter().sum::<f64>() / logarithms.len() as f64);
         Some(CrossValidation { unseen_nrmse_std_percent: logarithms.map(mean), folds: self.judged, unseen })
     }
 }
@@ -353,6 +354,8 @@ impl<'d> CrossValidator<'d> {
 #[cfg(test)]
 mod tests {
     use std::ops::ControlFlow;
+
+    use hysid_core::elementary::sin;
 
     use super::*;
     use crate::data::record::ColumnNames;
@@ -362,8 +365,7 @@ mod tests {
 
     /// A play of threshold 0.3 under growing oscillations.
     fn record(name: &str, rows: usize, size: f64) -> Record {
-        let x: Vec<f64> =
-            (0..rows).map(|k| size * (0.3 * k as f64).sin() * (0.5 + k as f64 / 100.0)).collect();
+        let x: Vec<f64> = (0..rows).map(|k| size * sin(0.3 * k as f64) * (0.5 + k as f64 / 100.0)).collect();
         let mut play = 0.0f64;
         let y = x.iter().map(|x| {
             play = play.clamp(x - 0.3, x + 0.3);
@@ -439,7 +441,7 @@ mod tests {
     fn repeats_are_held_out_together() {
         let run = |name: &str, size: f64, seed: usize| {
             let record = record(name, 200, size);
-            let noise = |k: usize| 0.01 * (1e4 * ((seed + k) as f64).sin()).fract();
+            let noise = |k: usize| 0.01 * (1e4 * sin((seed + k) as f64)).fract();
             let output = record.output().iter().enumerate().map(|(k, y)| y + noise(k)).collect();
             record.with_output(output).unwrap()
         };

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use hysid::data::record::Dataset;
+use hysid::elementary::ln;
 use hysid_document::chart::thin::thin;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Table, unit};
 
@@ -106,8 +107,8 @@ fn labels<'a>(named: impl Iterator<Item = (&'a str, (f64, f64))>) -> Vec<Label> 
         let mut rise = 0.0;
         let overlaps = |rise: f64| {
             placed.iter().any(|other| {
-                let dx = PIXELS.0 * (point.0 / other.point.0).ln();
-                let dy = PIXELS.1 * (point.1 / other.point.1).ln() + rise - other.rise;
+                let dx = PIXELS.0 * ln(point.0 / other.point.0);
+                let dy = PIXELS.1 * ln(point.1 / other.point.1) + rise - other.rise;
                 let width = if dx < 0.0 { name.len() } else { other.text.len() } as f64 * TEXT.0;
                 dx.abs() < width && dy.abs() < TEXT.1
             })

@@ -1,5 +1,7 @@
 //! Which column is what, where no option says so: guesses are told before the fit, and bad ones are refused.
 
+use hysid::elementary::{cos, sin};
+
 use crate::workbench::{Workbench, csv, rows};
 
 const QUICK: &str = "--no-report --model xpnn+ --starts 1 --epochs 1 -o out.json";
@@ -92,9 +94,8 @@ fn columns_that_only_grow_are_refused_where_others_are_left() {
 
 #[test]
 fn command_and_measurement_are_not_both_inputs() {
-    let data = table("t,command,measured,y", |_, [t, x, y]| {
-        texts(&[&t, &x, &(1.02 * x + 0.01 * (9.0 * t).cos()), &y])
-    });
+    let data =
+        table("t,command,measured,y", |_, [t, x, y]| texts(&[&t, &x, &(1.02 * x + 0.01 * cos(9.0 * t)), &y]));
     refused(
         data.clone(),
         "",
@@ -102,7 +103,7 @@ fn command_and_measurement_are_not_both_inputs() {
          command and its measurement: name the input with --input command or --input measured",
     );
     told(data, "--input measured", &["input    measured: "]);
-    let data = table("t,x,temperature,y", |_, [t, x, y]| texts(&[&t, &x, &(1.3 * t).sin(), &y]));
+    let data = table("t,x,temperature,y", |_, [t, x, y]| texts(&[&t, &x, &sin(1.3 * t), &y]));
     told(data.clone(), "", &["input    x: ", "ignored  temperature: a condition of the test"]);
     told(data, "--input x --input temperature", &["input    temperature: "]);
 }
@@ -111,7 +112,7 @@ fn command_and_measurement_are_not_both_inputs() {
 fn many_columns_are_not_all_inputs() {
     let gauges: Vec<String> = (1..=60).map(|gauge| format!("gauge_{gauge}")).collect();
     let data = table(&format!("t,{},force_kN", gauges.join(",")), |_, [t, x, y]| {
-        let gauges = (0..60).map(|gauge| (x + (0.1 * f64::from(gauge) * t).sin()).to_string());
+        let gauges = (0..60).map(|gauge| (x + sin(0.1 * f64::from(gauge) * t)).to_string());
         std::iter::once(t.to_string()).chain(gauges).chain([y.to_string()]).collect()
     });
     let names = "gauge_1, gauge_2, gauge_3, gauge_4, gauge_5, gauge_6 and 54 more";
@@ -163,7 +164,7 @@ fn counters_sums_and_conditions_have_no_role() {
     told(battery, "", &lines);
     // One record for each temperature, whose noise is no change of it.
     let warm = table("Temperature (K),Field (T),Moment (emu)", |k, [_, x, y]| {
-        texts(&[&([5.0, 50.0, 300.0][(k / 20).min(2)] + 0.1 * (k as f64).sin()), &x, &y])
+        texts(&[&([5.0, 50.0, 300.0][(k / 20).min(2)] + 0.1 * sin(k as f64)), &x, &y])
     });
     told(
         warm,
@@ -178,7 +179,7 @@ fn a_column_that_falls_is_no_time() {
     let field = |header: &str| {
         table(header, |k, [_, _, y]| {
             let field = (k as f64 - 30.0).abs() / 30.0;
-            texts(&[&field, &(300.0 + 0.1 * (9.0 * k as f64).sin()), &y])
+            texts(&[&field, &(300.0 + 0.1 * sin(9.0 * k as f64)), &y])
         })
     };
     let bench = Workbench::new();

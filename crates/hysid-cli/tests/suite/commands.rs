@@ -5,6 +5,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::workbench::{ROWS, Ran, Workbench, csv, json, must_contain, rows, table, with_cell};
+use hysid::elementary::{cos, square};
 use serde_json::Value;
 
 fn keys(object: &Value) -> String {
@@ -41,7 +42,7 @@ fn fit_simulate_and_evaluate_agree() {
         .skip(1)
         .map(|line| {
             let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
-            (cells[2] - cells[3]).powi(2)
+            square(cells[2] - cells[3])
         })
         .sum();
     let mse = errors["mse"].as_f64().unwrap();
@@ -112,7 +113,7 @@ fn further_inputs_and_a_given_rate_are_found_by_name() {
     let number = |cell: &String| cell.parse::<f64>().unwrap();
     let wide: Vec<Vec<String>> = rows()
         .iter()
-        .map(|row| vec![row[1].clone(), format!("{}", number(&row[0]).cos()), row[2].clone(), row[2].clone()])
+        .map(|row| vec![row[1].clone(), format!("{}", cos(number(&row[0]))), row[2].clone(), row[2].clone()])
         .collect();
     bench.put("wide.csv", csv("x_mm,v_mm_s,load,y", ",", "\n", &wide));
     let fit = bench.succeeds("fit wide.csv --input x_mm --input load --rate v_mm_s --model xpnn+ --starts 1 --epochs 2 --no-report");

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use crate::workbench::{Workbench, must_contain};
+use hysid::elementary::{sin, square};
 use serde_json::Value;
 
 /// Turning points joined in steps, through a law.
@@ -55,7 +56,7 @@ fn a_member_has_the_figures_of_its_law_in_csv_text_and_json() {
         assert!((number(row, "secant_stiffness [kN/mm]") - 2.0 / amplitude).abs() < 1e-6);
         assert!((number(row, "residual_after_peak [mm]") - (amplitude - 1.0)).abs() < 1e-6);
         let damping =
-            100.0 * 2.0 * energy / (std::f64::consts::PI * 2.0 / amplitude * (2.0 * amplitude).powi(2));
+            100.0 * 2.0 * energy / (std::f64::consts::PI * 2.0 / amplitude * square(2.0 * amplitude));
         assert!((number(row, "damping_percent [%]") - damping).abs() < 1e-4);
         assert_eq!(row["period"], "", "there is no time");
     }
@@ -87,7 +88,7 @@ fn a_magnet_has_losses_in_its_units_at_each_frequency() {
         for row in 0..1600 {
             let time = 4.0 * f64::from(row) / 1600.0 / frequency;
             let phase = std::f64::consts::TAU * frequency * time;
-            text += &format!("{time},{},{},{record}\n", 100.0 * phase.sin(), 1.2 * (phase - 0.3).sin());
+            text += &format!("{time},{},{},{record}\n", 100.0 * sin(phase), 1.2 * sin(phase - 0.3));
         }
     }
     bench.put("core.csv", text);
@@ -95,13 +96,13 @@ fn a_magnet_has_losses_in_its_units_at_each_frequency() {
     let rows = rows(&bench.text("core.cycles.csv"));
     let complete: Vec<_> = rows.iter().filter(|row| row["complete"] == "yes").collect();
     assert_eq!(complete.len(), 8);
-    let loss = std::f64::consts::PI * 100.0 * 1.2 * 0.3f64.sin();
+    let loss = std::f64::consts::PI * 100.0 * 1.2 * sin(0.3);
     for row in complete {
         let frequency = if row["record"] == "slow" { 1.0 } else { 50.0 };
         assert!((number(row, "energy [J/m3]") / loss - 1.0).abs() < 1e-3, "{row:?}");
         assert!((number(row, "power [W/m3]") / (loss * frequency) - 1.0).abs() < 2e-3);
-        assert!((number(row, "coercive_input [A/m]") / (100.0 * 0.3f64.sin()) - 1.0).abs() < 1e-3);
-        assert!((number(row, "remanent_output [T]") / (1.2 * 0.3f64.sin()) - 1.0).abs() < 1e-3);
+        assert!((number(row, "coercive_input [A/m]") / (100.0 * sin(0.3)) - 1.0).abs() < 1e-3);
+        assert!((number(row, "remanent_output [T]") / (1.2 * sin(0.3)) - 1.0).abs() < 1e-3);
     }
     assert!(ran.stdout.contains("losses by amplitude and frequency"), "{}", ran.stdout);
     assert!(!bench.path("core.cycles.html").exists());
@@ -113,7 +114,7 @@ fn reversal_curves_in_data_give_the_density_of_the_plane_as_table_and_picture() 
     let bench = Workbench::new();
     let density = 0.25;
     let mut text = String::from("H_A_per_m,B_T\n");
-    let falling = |x: f64| 1.0 - density * (1.0 - x).powi(2);
+    let falling = |x: f64| 1.0 - density * square(1.0 - x);
     for curve in 1..=20 {
         let reversal = 1.0 - 0.1 * f64::from(curve);
         let rows = 2 * curve;
@@ -123,7 +124,7 @@ fn reversal_curves_in_data_give_the_density_of_the_plane_as_table_and_picture() 
         }
         for row in (0..rows).rev() {
             let x = 1.0 - 0.05 * f64::from(row);
-            text += &format!("{x:.3},{:.9}\n", falling(reversal) + density * (x - reversal).powi(2));
+            text += &format!("{x:.3},{:.9}\n", falling(reversal) + density * square(x - reversal));
         }
     }
     bench.put("forc.csv", text);

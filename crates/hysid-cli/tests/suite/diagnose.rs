@@ -1,6 +1,7 @@
 //! `hysid diagnose` as a user runs it: text, JSON, page, and what it refuses.
 
 use crate::workbench::{Workbench, csv, must_contain, rows, table};
+use hysid::elementary::sin;
 use serde_json::Value;
 
 const PROPERTIES: [&str; 10] = [
@@ -242,7 +243,7 @@ fn further_inputs_and_useless_options_are_told() {
 
 fn with_temperature(mut row: Vec<String>) -> Vec<String> {
     let angle: f64 = row[0].parse().unwrap();
-    row.insert(2, format!("{:.4}", (1.3 * angle).sin()));
+    row.insert(2, format!("{:.4}", sin(1.3 * angle)));
     row
 }
 

@@ -2,6 +2,7 @@
 //! is told before the fit.
 
 use crate::workbench::{ROWS, Ran, Workbench, csv, rows, table, with_column};
+use hysid::elementary::{cos, sin};
 use serde_json::Value;
 
 const QUICK: &str = "--no-report --model prandtl-ishlinskii --operators 5";
@@ -76,8 +77,8 @@ fn a_saturated_sensor_is_told_before_the_fit() {
     let record = |clip: f64| {
         let row = |k: usize| {
             let phase = 0.05 * k as f64;
-            let x = phase.sin() * (0.5 + k as f64 / 1000.0);
-            let y = x + 0.2 * phase.cos();
+            let x = sin(phase) * (0.5 + k as f64 / 1000.0);
+            let y = x + 0.2 * cos(phase);
             vec![format!("{x:.6}"), format!("{:.6}", y.clamp(-clip, clip))]
         };
         csv("x_mm,F_N", ",", "\n", &(0..10 * ROWS).map(row).collect::<Vec<_>>())

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use hysid::elementary::{cos, sin};
+
 use crate::workbench::{Workbench, cases, must_contain};
 
 /// A bench with a model of a few stops.
@@ -9,8 +11,8 @@ fn with_model() -> Workbench {
     let bench = Workbench::new();
     let rows: String = (0..300)
         .map(|k| {
-            let x = (0.1 * f64::from(k)).sin() * f64::from(k) / 100.0;
-            format!("{x},{}\n", 2.0 * x + 0.3 * (0.1 * f64::from(k)).cos())
+            let x = sin(0.1 * f64::from(k)) * f64::from(k) / 100.0;
+            format!("{x},{}\n", 2.0 * x + 0.3 * cos(0.1 * f64::from(k)))
         })
         .collect();
     bench.put("train.csv", format!("x_mm,F_kN\n{rows}"));

@@ -4,6 +4,8 @@
 use std::fs;
 use std::path::Path;
 
+use hysid::elementary::sin;
+
 use crate::workbench::{self, Ran, Workbench, must_contain};
 
 /// A column of numbers; NaN where there is none.
@@ -299,7 +301,7 @@ fn every_file_has_a_test_and_a_place_on_the_page() {
 fn hints_about_reading_work_when_they_are_followed() {
     let bench = Workbench::new();
     let rows = |row: &dyn Fn(usize) -> String, count: usize| (0..count).map(row).collect::<String>();
-    let x = |k: usize| format!("{:.2}", (0.3 * k as f64).sin());
+    let x = |k: usize| format!("{:.2}", sin(0.3 * k as f64));
     let too_many_names = format!("t,x,y,z\n{}", rows(&|k| format!("{k}.5,{},{}\n", x(k), x(k + 1)), 20));
     let forces = ["850", "920", "990", "1.012", "1.234", "-1.100", "870", "1.250"];
     let thousands = format!("x;F\n{}", rows(&|k| format!("{};{}\n", x(k), forces[k % 8]), 24));

@@ -1,5 +1,7 @@
 //! `hysid fit --inverse`: a model of the inverse.
 
+use hysid::elementary::sin;
+
 use crate::workbench::Workbench;
 
 /// A spring beside a slider, whose first and last outputs are blank.
@@ -7,7 +9,7 @@ fn table(blank_within: bool) -> String {
     let mut play: f64 = 0.0;
     let mut text = String::from("u_V,y_um\n");
     for row in 0..400 {
-        let x = 0.01 * f64::from(row) * (0.1 * f64::from(row)).sin();
+        let x = 0.01 * f64::from(row) * sin(0.1 * f64::from(row));
         play = play.clamp(x - 0.5, x + 0.5);
         let is_blank = !(5..395).contains(&row) || blank_within && row == 100;
         let y = if is_blank { String::new() } else { format!("{}", 2.0 * x + play) };

@@ -1,6 +1,8 @@
 //! `hysid force`: restoring forces from tables of measured motion and force, what other commands make of them, and what is
 //! refused.
 
+use hysid::elementary::{cos, sin};
+
 use crate::workbench::{Ran, Workbench, cases, columns};
 
 const ROWS: usize = 1200;
@@ -11,9 +13,9 @@ fn motion(row: usize) -> [f64; 6] {
     let t = 0.005 * row as f64;
     let tones = [(0.02, 6.0), (0.012, 13.0), (0.004, 21.0)];
     let sum = |of: &dyn Fn(f64, f64) -> f64| tones.iter().map(|&(size, pace)| of(size, pace)).sum::<f64>();
-    let y = sum(&|size, pace| size * (pace * t).sin());
-    let v = sum(&|size, pace| size * pace * (pace * t).cos());
-    let a = sum(&|size, pace| -size * pace * pace * (pace * t).sin());
+    let y = sum(&|size, pace| size * sin(pace * t));
+    let v = sum(&|size, pace| size * pace * cos(pace * t));
+    let a = sum(&|size, pace| -size * pace * pace * sin(pace * t));
     let r = 8e5 * y + 4e3 * v;
     [t, y, v, a, 2e3 * a + r, r]
 }

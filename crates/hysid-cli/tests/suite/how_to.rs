@@ -6,6 +6,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use hysid::elementary::powi;
+
 use crate::workbench::Workbench;
 
 /// How the lines begin that are run.
@@ -91,7 +93,7 @@ impl Figure {
         let digits = bare.trim_start_matches(['0', '.']).replace('.', "");
         let digits = if decimals.is_none() { digits.trim_end_matches('0') } else { &digits };
         let is_asked = (decimals.is_some() || word.ends_with('%')) && digits.len() >= 2;
-        let rounding = 0.5 * 10f64.powi(-(decimals.unwrap_or(0) as i32));
+        let rounding = 0.5 * powi(10.0, -(decimals.unwrap_or(0) as i32));
         is_asked.then_some(Self { value, rounding })
     }
 

@@ -1,6 +1,7 @@
 //! The initial state of records, as a user gives it or lets it be found.
 
 use crate::workbench::{Workbench, csv, json};
+use hysid::elementary::sin;
 use serde_json::Value;
 
 /// Rows of a play of threshold 0.5 that was driven to `past` before the record begins at 0.
@@ -8,7 +9,7 @@ fn rows(name: &str, past: f64, size: f64, pace: f64) -> Vec<Vec<String>> {
     let follow = |play: f64, x: f64| play.clamp(x - 0.5, x + 0.5);
     let mut play = follow(follow(0.0, past), 0.0);
     let row = |k: usize| {
-        let x = size * (pace * k as f64).sin();
+        let x = size * sin(pace * k as f64);
         play = follow(play, x);
         vec![name.to_string(), format!("{x:.6}"), format!("{:.6}", 0.3 * x + play)]
     };

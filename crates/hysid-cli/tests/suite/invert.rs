@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use hysid::elementary::{cos, sin};
+
 use crate::workbench::{Workbench, cases};
 
 /// The training data: growing loops of a spring beside a friction slider.
@@ -10,7 +12,7 @@ fn training() -> Vec<(f64, f64)> {
     let mut before = 0.0;
     (0..400)
         .map(|k| {
-            let x = (0.1 * f64::from(k)).sin() * f64::from(k) / 100.0;
+            let x = sin(0.1 * f64::from(k)) * f64::from(k) / 100.0;
             slider = (slider + x - before).clamp(-0.5, 0.5);
             before = x;
             (x, 2.0 * x + slider)
@@ -29,7 +31,7 @@ fn with_model() -> Workbench {
 
 /// The outputs that are wanted: slow, within what the model reaches.
 fn wanted() -> Vec<f64> {
-    (0..120).map(|k| 5.0 * (0.11 * f64::from(k)).sin() * (0.02 * f64::from(k)).cos()).collect()
+    (0..120).map(|k| 5.0 * sin(0.11 * f64::from(k)) * cos(0.02 * f64::from(k))).collect()
 }
 
 /// Puts the reference: time and wanted output.
@@ -172,7 +174,7 @@ fn each_record_of_a_model_that_lags_has_its_preview() {
 #[test]
 fn further_inputs_are_read_from_the_reference() {
     let bench = Workbench::new();
-    let heat = |k: usize| (0.013 * k as f64).cos();
+    let heat = |k: usize| cos(0.013 * k as f64);
     let rows: String = training()
         .iter()
         .enumerate()
@@ -373,7 +375,7 @@ fn a_model_with_a_measured_rate_is_inverted_with_time() {
     let mut text = String::from("t,x,v,y\n");
     for row in 0..300 {
         let t = 0.01 * f64::from(row);
-        let (x, v) = ((6.0 * t).sin() * (1.0 + 0.2 * t), 6.0 * (6.0 * t).cos());
+        let (x, v) = (sin(6.0 * t) * (1.0 + 0.2 * t), 6.0 * cos(6.0 * t));
         text += &format!("{t},{x},{v},{}\n", 2.0 * x + 0.01 * v);
     }
     bench.put("loops.csv", text);

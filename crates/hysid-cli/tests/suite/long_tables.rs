@@ -1,5 +1,7 @@
 //! Tables longer than any block that `simulate` and `evaluate` work on: as if they were read at once.
 
+use hysid::elementary::{cos, sin};
+
 use crate::workbench;
 use std::fmt::Write;
 
@@ -9,9 +11,9 @@ use crate::workbench::{Workbench, table};
 const LENGTHS: [usize; 5] = [1, 9000, 3, 4096, 2];
 
 fn numbers(record: usize, row: usize) -> [f64; 3] {
-    let time = 0.1 * row as f64 + 0.01 * (row as f64).sin();
-    let x = (0.3 * row as f64 + record as f64).sin() * 0.9;
-    [time, x, x + 0.2 * (0.3 * row as f64).cos()]
+    let time = 0.1 * row as f64 + 0.01 * sin(row as f64);
+    let x = sin(0.3 * row as f64 + record as f64) * 0.9;
+    [time, x, x + 0.2 * cos(0.3 * row as f64)]
 }
 
 /// The table, with this text for a number.

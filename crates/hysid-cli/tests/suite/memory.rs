@@ -7,6 +7,7 @@ use std::time::Duration;
 use crate::workbench::Workbench;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::elementary::sin;
 use hysid::fit::memory_need;
 use hysid::options::chosen::NamedOptions;
 use serde_json::json;
@@ -17,12 +18,10 @@ const FACTOR: f64 = 3.0;
 fn columns(rows: usize, inputs: usize) -> (Vec<f64>, Vec<Vec<f64>>, Vec<f64>) {
     let time: Vec<f64> = (0..rows).map(|k| 0.1 * k as f64).collect();
     let input = |c: usize| -> Vec<f64> {
-        (0..rows)
-            .map(|k| ((0.3 + 0.07 * c as f64) * k as f64).sin() * (1.0 + k as f64 / rows as f64))
-            .collect()
+        (0..rows).map(|k| sin((0.3 + 0.07 * c as f64) * k as f64) * (1.0 + k as f64 / rows as f64)).collect()
     };
     let inputs: Vec<Vec<f64>> = (0..inputs).map(input).collect();
-    let y = (0..rows).map(|k| inputs[0][k] + 0.3 * (0.3 * k as f64 - 0.7).sin()).collect();
+    let y = (0..rows).map(|k| inputs[0][k] + 0.3 * sin(0.3 * k as f64 - 0.7)).collect();
     (time, inputs, y)
 }
 

@@ -2,13 +2,14 @@
 //! candidates apart, inputs that are measured from elsewhere than 0.
 
 use crate::workbench::{Workbench, csv, must_contain};
+use hysid::elementary::{cos, sin};
 use serde_json::Value;
 
 /// Some cycles of one loop.
 fn one_loop() -> String {
     let row = |k: usize| {
-        let x = (0.2 * k as f64).sin();
-        vec![format!("{x:.6}"), format!("{:.6}", x + 0.3 * (0.2 * k as f64).cos())]
+        let x = sin(0.2 * k as f64);
+        vec![format!("{x:.6}"), format!("{:.6}", x + 0.3 * cos(0.2 * k as f64))]
     };
     csv("H_A_m,B_T", ",", "\n", &(0..150).map(row).collect::<Vec<_>>())
 }

@@ -1,5 +1,7 @@
 //! `hysid plan`: drives from data and for kinds of specimens, their files, and what is refused.
 
+use hysid::elementary::sin;
+
 use crate::workbench::{Workbench, columns};
 
 /// Cycles of one amplitude, 400 rows.
@@ -10,7 +12,7 @@ fn cycles(header: &str, has_time: bool) -> String {
         if has_time {
             text += &format!("{},", 0.01 * f64::from(row));
         }
-        text += &format!("{},{}\n", 5.0 * angle.sin(), 100.0 * (angle - 0.3).sin());
+        text += &format!("{},{}\n", 5.0 * sin(angle), 100.0 * sin(angle - 0.3));
     }
     text
 }

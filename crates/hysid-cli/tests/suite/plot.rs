@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use hysid::elementary::{cos, sin};
+
 use crate::workbench::Workbench;
 
 /// What a machine without fonts says of PDF and PNG. Set where no proof may be missing.
@@ -116,7 +118,7 @@ fn losses_over_frequency_are_those_of_the_cycles() {
     let (mut time, mut phase) = (0.0, 0.0f64);
     for frequency in [0.5, 1.0, 2.0] {
         for _ in 0..400 {
-            let (x, rate) = (2.0 * phase.sin(), 2.0 * std::f64::consts::TAU * frequency * phase.cos());
+            let (x, rate) = (2.0 * sin(phase), 2.0 * std::f64::consts::TAU * frequency * cos(phase));
             text += &format!("{time:.6},{x:.9},{:.9}\n", rate / 40.0);
             phase += std::f64::consts::TAU / 100.0;
             time += 0.01 / frequency;

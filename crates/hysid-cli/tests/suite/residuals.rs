@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crate::workbench::Workbench;
+use hysid::elementary::sin;
 use serde_json::Value;
 
 /// Numbers that look random, between -1 and 1.
@@ -15,7 +16,7 @@ fn noise(row: usize) -> f64 {
 /// Loops of a spring beside a slider that also resists the rate, with noise; `first` numbers the noise.
 fn table(rows: usize, viscosity: f64, first: usize) -> String {
     let mut text = "t_s,x_mm,force_kN\n".to_string();
-    let x = |row: usize| (0.3 + 0.7 * (3.0 * row as f64 / rows as f64).fract()) * (0.06 * row as f64).sin();
+    let x = |row: usize| (0.3 + 0.7 * (3.0 * row as f64 / rows as f64).fract()) * sin(0.06 * row as f64);
     let mut play = 0.0f64;
     for row in 0..rows {
         play = play.clamp(x(row) - 0.2, x(row) + 0.2);

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::unit;
+use hysid_core::elementary::square;
 use hysid_core::error::Result;
 use hysid_core::significant::Significant;
 
@@ -117,7 +118,7 @@ fn removed(record: &Record, correction: Correction, input_unit: &str) -> Option<
                 let (mean_x, mean_y) = (mean(x), mean(y));
                 for &row in &rows {
                     covariance += (x[row] - mean_x) * (y[row] - mean_y);
-                    variance += (x[row] - mean_x).powi(2);
+                    variance += square(x[row] - mean_x);
                 }
             }
             let slope = covariance / variance;
@@ -188,6 +189,8 @@ fn line_at(x: &[f64], y: &[f64], rows: &[usize], at: f64) -> Option<f64> {
 mod tests {
     use approx::assert_relative_eq;
 
+    use hysid_core::elementary::tanh;
+
     use super::*;
 
     /// `tanh((x ± 1)/0.5)` from 10 to -10 and back, with a background and a drift.
@@ -196,7 +199,7 @@ mod tests {
             (0..=800).map(|k| 10.0 - 20.0 * (1.0 - (f64::from(k) / 400.0 - 1.0).abs())).collect();
         let y = x.iter().enumerate().map(|(row, x)| {
             let shift = if row <= 400 { 1.0 } else { -1.0 };
-            ((x + shift) / 0.5).tanh() + slope * x + drift * row as f64 / 800.0 + offset
+            tanh((x + shift) / 0.5) + slope * x + drift * row as f64 / 800.0 + offset
         });
         Dataset::from_slices(&x, &y.collect::<Vec<f64>>()).unwrap()
     }

@@ -7,6 +7,8 @@
 //! `t_0` is when the hold begins, `c` the creep in a decade of time, by least squares over the rows of the hold. This is the
 //! law of logarithmic creep of piezo actuators (H. Jung and D.-G. Gweon, Rev. Sci. Instrum. 71, 2000, 1896-1900).
 
+use hysid_core::elementary::log10;
+
 use super::path::range;
 use crate::branch::BranchSet;
 
@@ -109,9 +111,9 @@ fn slope_over_logarithm(points: &[(f64, f64)]) -> Option<f64> {
     }
     let n = points.len() as f64;
     let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
-    let (u, v) = (mean(&|point| point.0.log10()), mean(&|point| point.1));
+    let (u, v) = (mean(&|point| log10(point.0)), mean(&|point| point.1));
     let products = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
-        points.iter().map(|point| of(point.0.log10() - u, point.1 - v)).sum()
+        points.iter().map(|point| of(log10(point.0) - u, point.1 - v)).sum()
     };
     Some(products(&|u, v| u * v) / products(&|u, _| u * u))
 }

@@ -13,6 +13,7 @@ use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
+use hysid_core::elementary::ln;
 use serde::Serialize;
 
 use super::CLOSED;
@@ -318,7 +319,7 @@ fn in_pairs(x: &[f64], level: f64, passings: Vec<f64>) -> Vec<f64> {
     };
     let heights: Vec<f64> = passings.windows(2).map(furthest).collect();
     let scatter = |first: usize| {
-        let ratio = |pair: &[f64]| (pair[0] / pair[1]).ln();
+        let ratio = |pair: &[f64]| ln(pair[0] / pair[1]);
         let mut ratios: Vec<f64> = heights[first..].chunks_exact(2).map(ratio).collect();
         let middle = median(&mut ratios.clone());
         let count = ratios.len() as f64;

@@ -1,5 +1,7 @@
 //! What is read from the branches of a loop: where they pass a level, how far they are apart, the slope of a secant.
 
+use hysid_core::elementary::hypot;
+
 use super::CLOSED;
 use crate::branch::Branch;
 
@@ -52,7 +54,7 @@ pub(super) fn widest(one: &Branch, other: &Branch, (low, high): (f64, f64)) -> O
     let inputs = points.map(|(x, _)| x).chain([low, high]).filter(|x| (low..=high).contains(x));
     let apart = |x: f64| {
         let (p, q) = (one.curve.at(x)?, other.curve.at(x)?);
-        Some(Widest { apart: (p.y - q.y).abs(), x, deviation: p.deviation.hypot(q.deviation) })
+        Some(Widest { apart: (p.y - q.y).abs(), x, deviation: hypot(p.deviation, q.deviation) })
     };
     inputs.filter_map(apart).max_by(|a, b| a.apart.total_cmp(&b.apart))
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, SQRT_2};
 
 use hysid_core::data::record::{Dataset, Record};
+use hysid_core::elementary::square;
 use hysid_core::error::Result;
 use hysid_core::significant::Significant;
 use serde::Serialize;
@@ -727,7 +728,7 @@ impl Tips {
 /// ζ = E_D / (4π E_S),    E_S = ½ K a²,    a half the swing                (Jacobsen 1930; ASCE/SEI 7-16, eq. 17.8-2)
 /// ```
 fn damping(energy: f64, stiffness: f64, swing: f64) -> Option<f64> {
-    let stored = 0.5 * stiffness * (0.5 * swing).powi(2);
+    let stored = 0.5 * stiffness * square(0.5 * swing);
     (stored > 0.0 && energy >= 0.0).then(|| energy / (4.0 * PI * stored))
 }
 

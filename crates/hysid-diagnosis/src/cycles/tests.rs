@@ -4,6 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use approx::assert_relative_eq;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::elementary::{asin, atan, cos, exp, log10, sin, tanh};
 use hysid_core::operator::{Operator, Play, Stop};
 use hysid_core::random::mix;
 
@@ -100,7 +101,7 @@ fn a_bouc_wen_loop_has_its_exact_energy_and_residual_displacement() {
             along += linear;
             left -= linear;
         }
-        along = 1.0 - (1.0 - along) * (-left).exp();
+        along = 1.0 - (1.0 - along) * exp(-left);
         if left == 0.0 {
             along = along.min(0.0);
         }
@@ -109,7 +110,7 @@ fn a_bouc_wen_loop_has_its_exact_energy_and_residual_displacement() {
     }
     let mut tip: f64 = 0.9;
     for _ in 0..200 {
-        tip = 1.0 - (-(2.0 * amplitude - tip)).exp();
+        tip = 1.0 - exp(-(2.0 * amplitude - tip));
     }
     let table = table_of(&data(x, y), Field::Structure);
     let row = table.cycles.last().unwrap();
@@ -131,8 +132,8 @@ fn a_kelvin_voigt_ellipse_has_its_exact_damping_and_loss_at_each_frequency() {
         for row in 0..rows {
             let t = 3.0 * row as f64 / rows as f64 / frequency;
             time.push(begin + t);
-            x.push(amplitude * (omega * t).sin());
-            y.push(stiffness * x[x.len() - 1] + viscosity * amplitude * omega * (omega * t).cos());
+            x.push(amplitude * sin(omega * t));
+            y.push(stiffness * x[x.len() - 1] + viscosity * amplitude * omega * cos(omega * t));
         }
         begin += 3.0 / frequency;
     }
@@ -150,7 +151,7 @@ fn a_kelvin_voigt_ellipse_has_its_exact_damping_and_loss_at_each_frequency() {
     let damping = 100.0 * viscosity * TAU * 0.5 / (2.0 * stiffness);
     assert_relative_eq!(row.damping_percent.unwrap(), damping, max_relative = 3e-3);
     // The output is 0 at x = -a sin φ, tan φ = c ω/k.
-    let zero = (viscosity * PI / stiffness).atan().sin() * amplitude;
+    let zero = sin(atan(viscosity * PI / stiffness)) * amplitude;
     assert_relative_eq!(row.residual_after_peak.unwrap(), zero, max_relative = 2e-3);
 }
 
@@ -159,7 +160,7 @@ fn a_kelvin_voigt_ellipse_has_its_exact_damping_and_loss_at_each_frequency() {
 fn a_magnet_has_its_exact_coercive_field_and_remanence_from_tip_to_tip() {
     let x = path(&[0.0, 6.0, -6.0, 6.0, -6.0, 6.0], 0.02);
     let falling = |k: usize| k + 1 < x.len() && x[k + 1] < x[k];
-    let y = (0..x.len()).map(|k| (x[k] + if falling(k) { 0.4 } else { -0.4 }).tanh()).collect();
+    let y = (0..x.len()).map(|k| tanh(x[k] + if falling(k) { 0.4 } else { -0.4 })).collect();
     let table = table_of(&data(x.clone(), y), Field::Magnet);
     assert_eq!(table.division, Division::Reversals);
     let complete: Vec<bool> = table.cycles.iter().map(|row| row.complete).collect();
@@ -167,7 +168,7 @@ fn a_magnet_has_its_exact_coercive_field_and_remanence_from_tip_to_tip() {
     assert!(table.cycles[0].notes[0].starts_with("incomplete"), "{:?}", table.cycles[0].notes);
     for row in table.complete() {
         assert_relative_eq!(row.coercive_input.unwrap(), 0.4, max_relative = 1e-3);
-        assert_relative_eq!(row.remanent_output.unwrap(), 0.4f64.tanh(), max_relative = 1e-3);
+        assert_relative_eq!(row.remanent_output.unwrap(), tanh(0.4), max_relative = 1e-3);
         // The area between two shifted curves: the shift times the height.
         assert_relative_eq!(row.energy.unwrap(), 0.8 * 2.0, max_relative = 1e-3);
     }
@@ -197,16 +198,16 @@ fn a_play_has_its_exact_width_and_its_loop_is_passed_anticlockwise() {
 #[test]
 fn a_record_of_whole_periods_has_whole_cycles_and_the_true_period() {
     let time: Vec<f64> = (0..60).map(|row| 0.1 * f64::from(row)).collect();
-    let x = time.iter().map(|t| 5.0 + (PI * t).sin()).collect();
-    let y = time.iter().map(|t| (PI * t - 0.3).sin()).collect();
+    let x = time.iter().map(|t| 5.0 + sin(PI * t)).collect();
+    let y = time.iter().map(|t| sin(PI * t - 0.3)).collect();
     let table = table_of(&timed(time, x, y), Field::General);
     assert_eq!((table.division, table.cycles.len()), (Division::Mean, 3));
     for row in &table.cycles {
         assert!(row.complete);
         assert_relative_eq!(row.period.unwrap(), 2.0, max_relative = 2e-3);
         // The polygon of twenty corners in the ellipse.
-        let share = (TAU / 20.0).sin() / (TAU / 20.0);
-        assert_relative_eq!(row.energy.unwrap(), -PI * 0.3f64.sin() * share, max_relative = 1e-2);
+        let share = sin(TAU / 20.0) / (TAU / 20.0);
+        assert_relative_eq!(row.energy.unwrap(), -PI * sin(0.3) * share, max_relative = 1e-2);
     }
 }
 
@@ -256,7 +257,7 @@ fn logarithmic_creep_has_its_exact_slope_where_the_hold_is_long_enough() {
         x.extend(&path(&[1.0, 0.0], 0.1)[1..]);
         let time: Vec<f64> = (0..x.len()).map(|k| 0.01 * k as f64).collect();
         let since = |k: usize| 0.01 * (k.clamp(begin + 1, begin + rows) - begin) as f64;
-        let y = (0..x.len()).map(|k| 2.0 * x[k] + 0.3 * (since(k) / 0.01).log10()).collect();
+        let y = (0..x.len()).map(|k| 2.0 * x[k] + 0.3 * log10(since(k) / 0.01)).collect();
         table_of(&timed(time, x, y), Field::Actuator)
     };
     let table = creeping(1000);
@@ -275,8 +276,8 @@ fn a_sine_has_no_holds_however_finely_it_is_sampled() {
     for rows in [200, 20_000] {
         let phase = |row: usize| TAU * 4.0 * row as f64 / rows as f64;
         let time = (0..rows).map(|row| row as f64 * 1e-3).collect();
-        let x: Vec<f64> = (0..rows).map(|row| phase(row).sin()).collect();
-        let y = (0..rows).map(|row| (phase(row) - 0.2).sin()).collect();
+        let x: Vec<f64> = (0..rows).map(|row| sin(phase(row))).collect();
+        let y = (0..rows).map(|row| sin(phase(row) - 0.2)).collect();
         let table = table_of(&timed(time, x, y), Field::Actuator);
         assert!(table.cycles.iter().all(|row| row.creep.is_none()), "{rows}");
         assert!(table.notes.iter().any(|note| note.contains("rests nowhere")), "{:?}", table.notes);
@@ -461,7 +462,7 @@ fn a_single_loop_is_one_cycle_wherever_it_begins() {
             if k > 0 && x[k] != x[k - 1] {
                 falls = x[k] < x[k - 1];
             }
-            (x[k] + if falls { 0.4 } else { -0.4 }).tanh()
+            tanh(x[k] + if falls { 0.4 } else { -0.4 })
         });
         data(x.clone(), y.collect())
     };
@@ -483,7 +484,7 @@ fn a_single_loop_is_one_cycle_wherever_it_begins() {
             );
             let row = &table.cycles[0];
             assert_relative_eq!(row.coercive_input.unwrap(), 0.4, max_relative = 2e-3);
-            assert_relative_eq!(row.remanent_output.unwrap(), 0.4f64.tanh(), max_relative = 2e-3);
+            assert_relative_eq!(row.remanent_output.unwrap(), tanh(0.4), max_relative = 2e-3);
             assert_relative_eq!(row.energy.unwrap().abs(), 1.6, max_relative = 2e-3);
         }
     }
@@ -495,7 +496,7 @@ fn backgrounds_offsets_and_drifts_under_a_loop_are_said() {
     let x = path(&[6.0, -6.0, 6.0], 0.02);
     let middle = x.iter().position(|x| *x == -6.0).unwrap();
     let with = |add: &dyn Fn(usize) -> f64| {
-        let branch = |row: usize| ((x[row] + if row <= middle { 0.4 } else { -0.4 }) / 0.3).tanh();
+        let branch = |row: usize| tanh((x[row] + if row <= middle { 0.4 } else { -0.4 }) / 0.3);
         let table = table_of(
             &data(x.clone(), (0..x.len()).map(|row| branch(row) + add(row)).collect()),
             Field::Magnet,
@@ -516,7 +517,7 @@ fn backgrounds_offsets_and_drifts_under_a_loop_are_said() {
 #[test]
 fn a_rippled_loop_has_its_coercive_field() {
     let phase = |row: usize| TAU * row as f64 / 400.0;
-    let x: Vec<f64> = (0..=1200).map(|row| phase(row).sin() + 0.3 * (5.0 * phase(row)).sin()).collect();
+    let x: Vec<f64> = (0..=1200).map(|row| sin(phase(row)) + 0.3 * sin(5.0 * phase(row))).collect();
     let y = Play::new(0.2).unwrap().run(&x);
     let options = CycleOptions {
         field: Some(Field::Magnet),
@@ -534,14 +535,14 @@ fn a_rippled_loop_has_its_coercive_field() {
 /// A phase that lags behind the field at 1, 5 and 20 Hz, three periods each: no cycle is of 3 or of 12 Hz, and all close.
 #[test]
 fn a_cycle_of_two_frequencies_has_none_and_round_tips_are_closed() {
-    let (mut t, mut x, mut y) = (vec![0.0], vec![0.0], vec![-(0.3_f64.sin())]);
+    let (mut t, mut x, mut y) = (vec![0.0], vec![0.0], vec![-(sin(0.3))]);
     for frequency in [1.0, 5.0, 20.0] {
         let begin = t[t.len() - 1];
         for row in 1..=600 {
             let phase = TAU * f64::from(row) / 200.0;
             t.push(begin + phase / (TAU * frequency));
-            x.push(phase.sin());
-            y.push((phase - 0.3).sin());
+            x.push(sin(phase));
+            y.push(sin(phase - 0.3));
         }
     }
     let options = CycleOptions {
@@ -557,7 +558,7 @@ fn a_cycle_of_two_frequencies_has_none_and_round_tips_are_closed() {
     assert!(mixed.iter().all(|row| row.notes.iter().any(|note| note.contains("last unequally"))));
     for row in table.complete() {
         assert!(!row.notes.iter().any(|note| note.contains("open by")), "{:?}", row.notes);
-        assert_relative_eq!(row.energy.unwrap(), PI * 0.3_f64.sin(), max_relative = 1e-3);
+        assert_relative_eq!(row.energy.unwrap(), PI * sin(0.3), max_relative = 1e-3);
     }
 }
 
@@ -568,7 +569,7 @@ fn a_cycle_with_a_joint_has_no_coercive_field() {
     for (begins, amplitude) in [(1.0, 1.0), (1.0, 3.0), (0.5 * PI, 1.0), (0.5 * PI, 2.5), (0.8 * PI, 1.2)] {
         let row = |(a, lag): (f64, f64), row: usize| {
             let phase = begins + TAU * row as f64 / 100.0;
-            (a * phase.sin(), a * (phase - lag).sin())
+            (a * sin(phase), a * sin(phase - lag))
         };
         let loops = [(2.0, 0.3), (amplitude, 0.5)];
         let (x, y) = loops.into_iter().flat_map(|of| (0..300).map(move |number| row(of, number))).unzip();
@@ -583,8 +584,8 @@ fn a_cycle_with_a_joint_has_no_coercive_field() {
             match cycle.rows.0 < 299 && cycle.rows.1 > 300 {
                 true => assert_eq!(found, (None, None), "{begins} {amplitude}: {:?}", cycle.notes),
                 false => {
-                    assert_relative_eq!(found.0.unwrap(), a * lag.sin(), max_relative = 0.01);
-                    assert_relative_eq!(found.1.unwrap(), a * lag.sin(), max_relative = 0.01);
+                    assert_relative_eq!(found.0.unwrap(), a * sin(lag), max_relative = 0.01);
+                    assert_relative_eq!(found.1.unwrap(), a * sin(lag), max_relative = 0.01);
                 }
             }
         }
@@ -598,7 +599,7 @@ fn smaller_loops_and_jumps_behind_a_cycle_are_not_in_its_figures() {
         let loops = [(2.0, 0.3), (1.0, lag)];
         let row = |(a, lag): (f64, f64), row: usize| {
             let phase = TAU * row as f64 / 100.0;
-            (a * phase.sin(), a * (phase - lag).sin())
+            (a * sin(phase), a * sin(phase - lag))
         };
         let rows = loops.into_iter().flat_map(|of| (0..300).map(move |number| row(of, number)));
         let (x, y) = rows.unzip();
@@ -609,8 +610,8 @@ fn smaller_loops_and_jumps_behind_a_cycle_are_not_in_its_figures() {
         };
         CycleTable::of(&data(x, y), &options).unwrap()
     };
-    let least: f64 = 2.0 * 0.3_f64.sin();
-    let table = after(least.asin());
+    let least: f64 = 2.0 * sin(0.3);
+    let table = after(asin(least));
     assert_eq!(table.cycles.len(), 6);
     for row in &table.cycles {
         assert_relative_eq!(row.coercive_input.unwrap(), least, max_relative = 0.01);
@@ -659,9 +660,9 @@ fn repeated_rows_hide_no_cycles() {
 fn noise_at_the_tips_is_no_stiffness() {
     let noise = |row: usize| 0.04 * (mix(row as u64) as f64 / u64::MAX as f64 - 0.5);
     let phase = |row: usize| TAU * row as f64 / 200.0;
-    let x: Vec<f64> = (0..=1000).map(|row| phase(row).sin()).collect();
+    let x: Vec<f64> = (0..=1000).map(|row| sin(phase(row))).collect();
     for size in [0.0, 1.0] {
-        let y = (0..=1000).map(|row| phase(row).cos() + size * noise(row)).collect();
+        let y = (0..=1000).map(|row| cos(phase(row)) + size * noise(row)).collect();
         let table = table_of(&data(x.clone(), y), Field::Structure);
         assert!(table.complete().count() >= 4);
         for row in table.complete() {
@@ -676,8 +677,8 @@ fn noise_at_the_tips_is_no_stiffness() {
 #[test]
 fn a_loop_that_crosses_itself_says_so() {
     let phase = |row: usize| TAU * row as f64 / 400.0;
-    let x: Vec<f64> = (0..=1600).map(|row| phase(row).sin()).collect();
-    let y = (0..=1600).map(|row| phase(row).sin() * (1.0 + 0.3 * phase(row).cos())).collect();
+    let x: Vec<f64> = (0..=1600).map(|row| sin(phase(row))).collect();
+    let y = (0..=1600).map(|row| sin(phase(row)) * (1.0 + 0.3 * cos(phase(row)))).collect();
     for row in table_of(&data(x, y), Field::General).complete() {
         assert!(
             row.notes.iter().any(|note| note.contains("crosses itself: the energy is")),

@@ -1,5 +1,7 @@
 //! Columns that may be the wrong way round, or have the wrong sign.
 
+use hysid_core::elementary::{cos, sin};
+
 use super::{DataIssue, DataIssueKind, Severity};
 use crate::branch::{Branch, BranchSet};
 use crate::significance;
@@ -90,7 +92,7 @@ fn departure(column: &[f64], branch: &Branch) -> Option<f64> {
     // Where the channel itself turns a little before or after the input, the sine is shifted.
     let line = left_by(&middle, &[places(&|s| s)]);
     let turn = std::f64::consts::PI;
-    let sine = left_by(&middle, &[places(&|s| (turn * s).cos()), places(&|s| (turn * s).sin())]);
+    let sine = left_by(&middle, &[places(&|s| cos(turn * s)), places(&|s| sin(turn * s))]);
     Some(line.min(sine))
 }
 

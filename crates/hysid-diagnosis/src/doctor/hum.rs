@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use super::{DataIssue, DataIssueKind, Severity, Units};
 use crate::branch::BranchSet;
 use hysid_core::data::record::Record;
+use hysid_core::elementary::{hypot, sin_cos};
 
 /// An amplitude that matters, as a share of the range of the output.
 const EFFECT: f64 = 0.002;
@@ -50,7 +51,7 @@ fn line(values: &[f64], period: f64) -> f64 {
     let places = ((highest - lowest) * 2.0 * values.len() as f64).ceil().max(1.0) as usize;
     let amplitude = |place: usize| {
         let angle = TAU * (lowest + (highest - lowest) * place as f64 / places as f64);
-        let (turn_sin, turn_cos) = angle.sin_cos();
+        let (turn_sin, turn_cos) = sin_cos(angle);
         let (mut sin, mut cos) = (0.0, 1.0);
         let (mut real, mut imaginary) = (0.0, 0.0);
         for value in values {
@@ -60,7 +61,7 @@ fn line(values: &[f64], period: f64) -> f64 {
             }
             (sin, cos) = (sin * turn_cos + cos * turn_sin, cos * turn_cos - sin * turn_sin);
         }
-        2.0 * real.hypot(imaginary) / count
+        2.0 * hypot(real, imaginary) / count
     };
     (0..=places).map(amplitude).fold(0.0, f64::max)
 }

@@ -7,6 +7,7 @@
 
 mod turn;
 
+use hysid_core::elementary::{hypot, ln, powf, powi, square};
 use turn::{Beside, Turn, Window};
 
 use super::{DataIssue, DataIssueKind, Severity, Units};
@@ -90,7 +91,7 @@ impl Lag {
 
     fn agrees(&self, other: &Lag, deviations: f64, share: f64) -> bool {
         (self.time - other.time).abs()
-            <= deviations * self.deviation.hypot(other.deviation) + share * self.time.abs()
+            <= deviations * hypot(self.deviation, other.deviation) + share * self.time.abs()
     }
 }
 
@@ -151,10 +152,10 @@ fn at_turning_points(survey: &BranchSet) -> Vec<DataIssue> {
     if several && lags.iter().filter(knows).count() < 2 {
         return Vec::new();
     }
-    let weight = |lag: &Lag| lag.deviation.max(1e-6 * lag.step).powi(-2);
+    let weight = |lag: &Lag| powi(lag.deviation.max(1e-6 * lag.step), -2);
     let weights: f64 = clear.iter().map(|lag| weight(lag)).sum();
     let value = clear.iter().map(|lag| weight(lag) * lag.time).sum::<f64>() / weights;
-    let deviation = weights.powf(-0.5).max(1e-3 * value.abs());
+    let deviation = powf(weights, -0.5).max(1e-3 * value.abs());
     let what = match (several, value > 0.0) {
         (true, true) => {
             "the same at all speeds: a delay of the output, which looks like rate dependence".to_string()
@@ -211,7 +212,7 @@ impl<'t, 'd> Turns<'t, 'd> {
             };
             lowest(&of_part, time, 0.6 * reach, PLACES)
         };
-        let squares: f64 = (0..parts).map(|number| (part(number) - time).powi(2)).sum();
+        let squares: f64 = (0..parts).map(|number| square(part(number) - time)).sum();
         // The scatter of few is not well known.
         let few = 1.0 + 2.0 / (parts - 1) as f64;
         (time, few * (squares / (parts * (parts - 1)) as f64).sqrt())
@@ -225,7 +226,7 @@ impl<'t, 'd> Turns<'t, 'd> {
     /// True if a lag leaves no more than the noise, with what it may be larger by chance.
     fn leaves_noise(&self, left: f64, noise: f64) -> bool {
         let rows = self.rows();
-        left <= rows * (NOISE * noise).powi(2) * (1.0 + 2.0 * (2.0 / rows).sqrt())
+        left <= rows * square(NOISE * noise) * (1.0 + 2.0 * (2.0 / rows).sqrt())
     }
 
     /// Logarithm of the likelihood ratio of a lag, theory.md (10.22).
@@ -233,7 +234,7 @@ impl<'t, 'd> Turns<'t, 'd> {
         let left = self.remainder(Beside::Lag(lag));
         let independent = if self.leaves_noise(left, noise) { self.rows() } else { ROWS_OF_A_LAW };
         let without = self.remainder(Beside::Step).min(self.remainder(Beside::Rate));
-        0.5 * independent * (without / left.max(f64::MIN_POSITIVE)).max(f64::MIN_POSITIVE).ln()
+        0.5 * independent * ln((without / left.max(f64::MIN_POSITIVE)).max(f64::MIN_POSITIVE))
     }
 }
 
@@ -289,7 +290,7 @@ fn at_one_speed(survey: &BranchSet, turns: &[Turn]) -> Option<Lag> {
     let beside = if chosen > 0 { chosen - 1 } else { 1 };
     let (mut lag, share) = found.get(chosen)?.clone();
     let other = found.get(beside).map_or(lag.time, |(other, _)| other.time);
-    lag.deviation = lag.deviation.hypot(0.5 * (lag.time - other));
+    lag.deviation = hypot(lag.deviation, 0.5 * (lag.time - other));
     lag.margin =
         Turns::new(&turns, share, (lag.time, lag.time)).margin(lag.time, survey.output_noise.roughness());
     Some(lag)

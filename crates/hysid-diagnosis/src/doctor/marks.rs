@@ -5,6 +5,7 @@ use super::{DataIssue, DataIssueKind, Severity, piece};
 use crate::Piece;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::unit;
+use hysid_core::elementary::log10;
 use hysid_core::significant::Significant;
 
 /// Numbers that mark missing values, or are the full scale of an integer or of a number of single precision.
@@ -182,7 +183,7 @@ fn distinct_marks(sorted: &[f64]) -> Vec<f64> {
 fn is_mark(value: f64) -> bool {
     let size = value.abs();
     let is_near = |mark: &f64| (size / mark - 1.0).abs() < 1e-6;
-    let is_power = || size >= HUGE && (size.log10() - size.log10().round()).abs() < 1e-9;
+    let is_power = || size >= HUGE && (log10(size) - log10(size).round()).abs() < 1e-9;
     MARKS.iter().any(is_near) || is_power()
 }
 

@@ -1,6 +1,7 @@
 //! The responses of a model: its free run over the measured input, and over smaller ones of the same shape.
 
 use hysid_core::data::record::{Dataset, Excitation, Record};
+use hysid_core::elementary::cos;
 use hysid_core::error::Result;
 use hysid_core::model::Model;
 
@@ -166,7 +167,7 @@ fn scaled_run(
 
 /// A rise from 0 to 1 that begins and ends at rest.
 fn smooth(share: f64) -> f64 {
-    0.5 - 0.5 * (std::f64::consts::PI * share).cos()
+    0.5 - 0.5 * cos(std::f64::consts::PI * share)
 }
 
 fn run(

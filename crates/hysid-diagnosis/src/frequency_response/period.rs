@@ -67,12 +67,14 @@ fn autocorrelation(values: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{cos, sin};
+
     use super::*;
 
     /// A slow sine with faster ones on it, repeated; `moved` rows are added to the period for the sines.
     fn repeated(period: usize, rows: usize) -> Vec<f64> {
         let phase = |k: usize| std::f64::consts::TAU * (k % period) as f64 / period as f64;
-        (0..rows).map(|k| phase(k).sin() + 0.3 * (7.0 * phase(k)).cos() + 40.0).collect()
+        (0..rows).map(|k| sin(phase(k)) + 0.3 * cos(7.0 * phase(k)) + 40.0).collect()
     }
 
     #[test]
@@ -85,10 +87,10 @@ mod tests {
 
     #[test]
     fn what_changes_or_does_not_move_has_no_period() {
-        let sweep: Vec<f64> = (0..4000).map(|k| (1e-5 * f64::from(k) * f64::from(k)).sin()).collect();
+        let sweep: Vec<f64> = (0..4000).map(|k| sin(1e-5 * f64::from(k) * f64::from(k))).collect();
         assert_eq!(period(&sweep), None);
         let pulse: Vec<f64> =
-            (0..4000).map(|k| if k < 300 { (0.1 * f64::from(k)).sin() } else { 0.0 }).collect();
+            (0..4000).map(|k| if k < 300 { sin(0.1 * f64::from(k)) } else { 0.0 }).collect();
         assert_eq!(period(&pulse), None);
         assert_eq!(period(&[3.0; 500]), None);
         assert_eq!(period(&[]), None);

@@ -1,6 +1,7 @@
 //! How rows are divided into segments that are transformed, the same for measured and for simulated outputs.
 
 use hysid_core::data::record::Dataset;
+use hysid_core::elementary::powf;
 
 use super::period::period;
 use super::spectra::{Line, Spectra, mean};
@@ -186,7 +187,7 @@ impl Group {
         let coherence =
             (averaged > 1 && output > 0.0).then(|| (product.norm_sqr() / (input * output)).min(1.0));
         // Of n averaged transforms, noise exceeds a coherence c with the probability (1 - c)^(n - 1).
-        if coherence.is_some_and(|coherence| (1.0 - coherence).powf(averaged as f64 - 1.0) > CHANCE) {
+        if coherence.is_some_and(|coherence| powf(1.0 - coherence, averaged as f64 - 1.0) > CHANCE) {
             return None;
         }
         let response = product / input * scale;

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use hysid_core::elementary::cos;
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
@@ -44,7 +45,7 @@ impl Spectra {
         let transform = FftPlanner::new().plan_fft_forward(length);
         let weight = |row: usize| match window {
             Window::WholePeriods => 1.0,
-            Window::Hann => 0.5 - 0.5 * (TAU * row as f64 / length as f64).cos(),
+            Window::Hann => 0.5 - 0.5 * cos(TAU * row as f64 / length as f64),
         };
         Self {
             segment: Vec::with_capacity(length),

@@ -1,6 +1,7 @@
 use std::f64::consts::TAU;
 
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::elementary::{atan2, cos, exp, hypot, sin, sin_cos, square};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -28,8 +29,8 @@ fn oscillator() -> LinearOscillator {
 fn through(frequency: f64) -> (f64, f64) {
     let (q, zeta) = (frequency / 20.0, 0.04);
     let (a, b) = (1.0 - q * q, 2.0 * zeta * q);
-    let (amplification, lag) = (3.0 / (a * a + b * b).sqrt(), b.atan2(a));
-    (amplification * lag.cos(), -amplification * lag.sin())
+    let (amplification, lag) = (3.0 / (a * a + b * b).sqrt(), atan2(b, a));
+    (amplification * cos(lag), -amplification * sin(lag))
 }
 
 /// Magnitude and phase for samples with straight lines between them: sines of amplitude `sinc²(f T)` at the frequency, and
@@ -39,12 +40,12 @@ fn exact(frequency: f64) -> (f64, f64) {
     for multiple in -30..=30 {
         let image = frequency + f64::from(multiple) / STEP;
         let angle = std::f64::consts::PI * image * STEP;
-        let line = (angle.sin() / angle).powi(2);
+        let line = square(sin(angle) / angle);
         let (of_real, of_imaginary) = through(image);
         real += line * of_real;
         imaginary += line * of_imaginary;
     }
-    (real.hypot(imaginary), imaginary.atan2(real).to_degrees())
+    (hypot(real, imaginary), atan2(imaginary, real).to_degrees())
 }
 
 /// The output of the oscillator for an input that is a straight line between rows, from rest at the first: the exact
@@ -92,7 +93,7 @@ fn noise(rows: usize, seed: u64) -> Vec<f64> {
 
 /// Noise of some Hertz: white noise through two first-order lags of 40 Hz.
 fn coloured(rows: usize, seed: u64) -> Vec<f64> {
-    let share = 1.0 - (-TAU * 40.0 * STEP).exp();
+    let share = 1.0 - exp(-TAU * 40.0 * STEP);
     let (mut first, mut second) = (0.0, 0.0);
     let follow = |x: f64| {
         first += share * (x - first);
@@ -104,7 +105,7 @@ fn coloured(rows: usize, seed: u64) -> Vec<f64> {
 
 /// Sines from 2 to 80 Hz, one each 0.5 Hz: a period of 1000 rows.
 fn multisine(rows: usize) -> Vec<f64> {
-    let sine = |line: f64, row: usize| (TAU * line * (row % 1000) as f64 / 1000.0 + 2.4 * line * line).cos();
+    let sine = |line: f64, row: usize| cos(TAU * line * (row % 1000) as f64 / 1000.0 + 2.4 * line * line);
     (0..rows).map(|row| (4..=160).map(|line| sine(f64::from(line), row)).sum::<f64>()).collect()
 }
 
@@ -138,8 +139,8 @@ fn a_multisine_gives_the_exact_response_at_its_lines() {
     for (point, line) in response.points.iter().zip(4..) {
         assert!((point.frequency - 0.5 * f64::from(line)).abs() < 1e-9, "{point:?}");
         let (magnitude, phase) = exact(point.frequency);
-        let (real, imaginary) = (magnitude * phase.to_radians().cos(), magnitude * phase.to_radians().sin());
-        let distance = (point.real - real).hypot(point.imaginary - imaginary);
+        let (real, imaginary) = (magnitude * cos(phase.to_radians()), magnitude * sin(phase.to_radians()));
+        let distance = hypot(point.real - real, point.imaginary - imaginary);
         assert!(distance < 1e-4 * magnitude + 1e-5, "{point:?} {magnitude} {phase}");
         assert!(point.coherence.unwrap() > 1.0 - 1e-6, "{point:?}");
     }
@@ -151,7 +152,7 @@ fn the_response_of_an_oscillator_is_its_closed_form() {
     let response = FrequencyResponse::of_oscillator(&oscillator(), frequencies.into_iter());
     for (point, frequency) in response.points.iter().zip(frequencies) {
         let (real, imaginary) = through(frequency);
-        assert!((point.real - 0.2 - real).hypot(point.imaginary - imaginary) < 1e-12, "{point:?}");
+        assert!(hypot(point.real - 0.2 - real, point.imaginary - imaginary) < 1e-12, "{point:?}");
     }
     assert!((response.points[3].imaginary + 3.0 / 0.08).abs() < 1e-9, "K/(2 ζ) at the natural frequency");
 }
@@ -195,11 +196,10 @@ fn noise_of_the_output_lowers_the_coherence_by_its_share() {
             response.points.iter().filter(band).map(|point| point.coherence.unwrap()).collect();
         coherences.iter().sum::<f64>() / coherences.len() as f64
     };
-    let share = 1.0 - (-TAU * 40.0 * STEP).exp();
+    let share = 1.0 - exp(-TAU * 40.0 * STEP);
     let expected = |point: &ResponsePoint| {
-        let (sine, cosine) = (TAU * point.frequency * STEP).sin_cos();
-        let filter =
-            share * share / ((1.0 - (1.0 - share) * cosine).powi(2) + ((1.0 - share) * sine).powi(2));
+        let (sine, cosine) = sin_cos(TAU * point.frequency * STEP);
+        let filter = share * share / (square(1.0 - (1.0 - share) * cosine) + square((1.0 - share) * sine));
         let (real, imaginary) = (point.real, point.imaginary);
         let power = (real * real + imaginary * imaginary) * filter * filter;
         power / (power + 0.01)
@@ -261,7 +261,7 @@ fn segments_without_output_are_left_out() {
     let response = segments.measured(&data, 0.0);
     assert_eq!(response.points.len(), expected.points.len());
     for (a, b) in response.points.iter().zip(&expected.points) {
-        assert!((a.real - b.real).hypot(a.imaginary - b.imaginary) < 1e-4 * b.magnitude(), "{a:?} {b:?}");
+        assert!(hypot(a.real - b.real, a.imaginary - b.imaginary) < 1e-4 * b.magnitude(), "{a:?} {b:?}");
     }
     // Every second row has none: no segment is left.
     output.iter_mut().step_by(2).for_each(|y| *y = f64::NAN);
@@ -270,7 +270,7 @@ fn segments_without_output_are_left_out() {
 
 #[test]
 fn frequencies_without_input_are_left_out() {
-    let sines = |row: usize| (TAU * 0.05 * row as f64).sin() + (TAU * 0.1 * row as f64).cos();
+    let sines = |row: usize| sin(TAU * 0.05 * row as f64) + cos(TAU * 0.1 * row as f64);
     let input: Vec<f64> = (0..4000).map(sines).collect();
     let output: Vec<f64> = input.iter().zip(noise(4000, 6)).map(|(x, e)| 2.0 * x + 0.01 * e).collect();
     let data = dataset(vec![(input, output)]);

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use hysid_core::data::rate::RateMethod;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::elementary::exp;
 use hysid_core::error::{Error, Result};
 use hysid_core::model::{Model, Predictor};
 use hysid_core::network::Layout;
@@ -145,7 +146,7 @@ fn median_relaxation_time(model: &Model) -> Option<f64> {
     }
     let mut sorted = ln_tau.to_vec();
     sorted.sort_by(f64::total_cmp);
-    Some(sorted[sorted.len() / 2].exp())
+    Some(exp(sorted[sorted.len() / 2]))
 }
 
 impl<'m> Probe<'m> {

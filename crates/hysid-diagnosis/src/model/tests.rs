@@ -5,6 +5,7 @@ mod invertibility;
 use super::*;
 use hysid_core::data::rate::RateMethod;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::elementary::ln;
 use hysid_core::law::bouc_wen::{BoucWen, Degradation};
 use hysid_core::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid_core::law::rate_dependent_prandtl_ishlinskii::{
@@ -237,7 +238,7 @@ fn a_relaxing_network_is_driven_at_its_own_times() {
     let sizes = Sizes { stops: 1, hidden: 1, relaxation: 1 };
     let architecture = Architecture::new(Family::XpnnPlus, sizes, 1, false, true).unwrap();
     // Stop, its ln β, linear neuron, ln τ, then a tanh neuron that sees nothing.
-    let parameters = vec![0.3, 10.0, 1.0, 0.05f64.ln(), 0.0, 0.0, 0.0, 0.0];
+    let parameters = vec![0.3, 10.0, 1.0, ln(0.05), 0.0, 0.0, 0.0, 0.0];
     // Constant, tanh neuron, then straight: linear neuron, stop, relaxation.
     let model = network(architecture, parameters, vec![0.0, 0.0, 1.0, 0.0, 0.8]);
     let diagnosis = ModelDiagnosis::of(&model).unwrap();

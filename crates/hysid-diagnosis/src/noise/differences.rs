@@ -5,6 +5,8 @@
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
+use hysid_core::elementary::powi;
+
 use super::{Correlation, Noise};
 use crate::significance::{MEDIAN_OF_NORMAL, median};
 
@@ -285,18 +287,20 @@ fn course(difference: &Difference, power: i32, all: &[Difference]) -> f64 {
     let alike = || all.iter().filter(|d| d.order == difference.order);
     let furthest = alike().map(|d| d.distance).max().unwrap_or(1) as f64;
     let largest = alike().map(|d| d.variance).fold(0.0, f64::max);
-    (difference.distance as f64 / furthest).powi(power) * largest
+    powi(difference.distance as f64 / furthest, power) * largest
 }
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{cos, ln, powf, sin};
+
     use super::*;
     use rand::{Rng, RngExt, SeedableRng};
 
     /// A standard normal number, by Box and Muller.
     fn normal(generator: &mut impl Rng) -> f64 {
         let (u, v): (f64, f64) = (generator.random(), generator.random());
-        (-2.0 * (1.0 - u).ln()).sqrt() * (TAU * v).cos()
+        (-2.0 * ln(1.0 - u)).sqrt() * cos(TAU * v)
     }
 
     const BRANCHES: usize = 12;
@@ -306,7 +310,7 @@ mod tests {
     fn branches(mut added: impl FnMut(usize) -> f64) -> Vec<Vec<f64>> {
         let branch = |number: usize| {
             let sign = if number.is_multiple_of(2) { 1.0 } else { -1.0 };
-            let course = |k: usize| sign * (k as f64 / ROWS as f64 - 0.2).max(0.0).powf(1.3);
+            let course = |k: usize| sign * powf((k as f64 / ROWS as f64 - 0.2).max(0.0), 1.3);
             (0..ROWS).map(|k| course(k) + added(number * ROWS + k)).collect()
         };
         (0..BRANCHES).map(branch).collect()
@@ -355,7 +359,7 @@ mod tests {
     #[test]
     fn hum_is_found_within_a_factor_of_1_6() {
         for period in [9.3, 13.7, 25.0] {
-            let noise = noise_of(&branches(|row| 0.01 * (TAU * row as f64 / period).sin()));
+            let noise = noise_of(&branches(|row| 0.01 * sin(TAU * row as f64 / period)));
             let ratio = noise.deviation() / (0.01 / 2.0_f64.sqrt());
             // A sine has another median magnitude than a normal number: 1.48 times too much.
             assert!((0.67..1.6).contains(&ratio), "period {period}: {ratio}");

@@ -26,17 +26,19 @@ pub fn resolution<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
 
     #[test]
     fn values_of_an_instrument_of_few_bits_have_its_step() {
-        let values: Vec<f64> = (0..500).map(|k| ((0.05 * k as f64).sin() * 127.0).round() / 127.0).collect();
+        let values: Vec<f64> = (0..500).map(|k| (sin(0.05 * k as f64) * 127.0).round() / 127.0).collect();
         approx::assert_relative_eq!(resolution(values.iter()), 1.0 / 127.0, max_relative = 1e-9);
     }
 
     #[test]
     fn values_as_they_come_have_none() {
-        let values: Vec<f64> = (0..500).map(|k| (0.05 * k as f64).sin()).collect();
+        let values: Vec<f64> = (0..500).map(|k| sin(0.05 * k as f64)).collect();
         assert_eq!(resolution(values.iter()), 0.0);
         assert_eq!(resolution([1.0, 1.0].iter()), 0.0);
     }

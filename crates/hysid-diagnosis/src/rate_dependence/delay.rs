@@ -8,6 +8,7 @@ use crate::interpolation::at_place;
 use crate::minimum::lowest;
 use crate::rate_dependence::Speeds;
 use hysid_core::data::record::Record;
+use hysid_core::elementary::square;
 
 /// Delays are sought up to this share of the shortest branch, either way.
 const LONGEST: f64 = 0.25;
@@ -40,7 +41,7 @@ pub(crate) fn between_speeds(survey: &BranchSet, courses: &[Speeds]) -> Option<D
     let time = lowest(&|delay| squares(delay).sum(), 0.0, LONGEST * shortest, TRIED);
     let worst = squares(time).fold(0.0, f64::max);
     // Rows are taken with their noise, which no delay takes away.
-    let remains = (worst - survey.output_noise.deviation().powi(2)).max(0.0).sqrt();
+    let remains = (worst - square(survey.output_noise.deviation())).max(0.0).sqrt();
     Some(Delay { time, remains: remains / survey.height() })
 }
 
@@ -53,14 +54,14 @@ fn mean_square(survey: &BranchSet, speeds: &Speeds, delay: f64) -> Option<f64> {
     };
     let slow = shifted(&speeds.slow);
     let (low, high) = (speeds.from.min(speeds.to), speeds.from.max(speeds.to));
-    let (mut square, mut rows) = (0.0, 0.0);
+    let (mut squares, mut rows) = (0.0, 0.0);
     for (x, y) in shifted(&speeds.fast).into_iter().flatten().filter(|(x, _)| *x >= low && *x <= high) {
         if let Some(slow) = mean(&slow, x) {
-            square += (slow - y).powi(2);
+            squares += square(slow - y);
             rows += 1.0;
         }
     }
-    (rows > 0.0).then(|| square / rows)
+    (rows > 0.0).then(|| squares / rows)
 }
 
 /// The outputs that come `delay` after the inputs of a branch, over those inputs, in the order of the input.

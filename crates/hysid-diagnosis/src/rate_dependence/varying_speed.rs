@@ -6,6 +6,7 @@
 //! theory.md (10.27).
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::ln;
 use hysid_core::linear_algebra::Symmetric;
 use hysid_core::operator::play::follow;
 use hysid_core::operator::relaxation::{advance, decay};
@@ -233,7 +234,7 @@ fn add(
         let Some(part) = parts[row].filter(|_| row % stride == 0 && !output[row].is_nan()) else { continue };
         let (last, next) = (row.saturating_sub(1), (row + 1).min(input.len() - 1));
         let speed = (scaled(next) - scaled(last)) / (time[next] - time[last]) / (scale * fastest);
-        let pace = (speed.abs() / SLOWEST).max(1.0).ln();
+        let pace = ln((speed.abs() / SLOWEST).max(1.0));
         let mut columns = [0.0; COLUMNS + 1];
         columns[..CURVE].copy_from_slice(&[1.0, u, u * u, u * u * u, row as f64 / input.len() as f64]);
         let stresses = plays[0].map(|play| elongation(u, play));

@@ -14,6 +14,7 @@
 //! by simulation with a fixed seed. The input's past contains its rate, so that the rate is tested in the same row only.
 
 use hysid_core::data::record::ColumnNames;
+use hysid_core::elementary::{cos, ln, powi, sin};
 use hysid_core::linear_algebra::Symmetric;
 use hysid_core::random::mix;
 use serde::Serialize;
@@ -172,7 +173,7 @@ fn tail_of_largest(covariance: &Symmetric, count: usize, degrees: f64, t: f64) -
     for _ in 0..DRAWS {
         // Wilson and Hilferty's cube for the chi-square number below the fraction.
         let share = 2.0 / (9.0 * degrees);
-        let cube = (1.0 - share + draws.normal() * share.sqrt()).max(1e-3).powi(3);
+        let cube = powi((1.0 - share + draws.normal() * share.sqrt()).max(1e-3), 3);
         let limit = t * cube.sqrt();
         let independent: Vec<f64> = (0..count).map(|_| draws.normal()).collect();
         let exceeds = factor
@@ -222,10 +223,10 @@ impl Draws {
         if let Some(spare) = self.spare.take() {
             return spare;
         }
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
+        let radius = (-2.0 * ln(self.uniform())).sqrt();
         let angle = std::f64::consts::TAU * self.uniform();
-        self.spare = Some(radius * angle.sin());
-        radius * angle.cos()
+        self.spare = Some(radius * sin(angle));
+        radius * cos(angle)
     }
 }
 
@@ -239,7 +240,7 @@ mod tests {
         let degrees = 1e6;
         let t = t_quantile(0.05, degrees);
         let independent = Symmetric::from_fn(10, |i, j| if i == j { 4.0 } else { 0.0 });
-        let expected = 1.0 - 0.95f64.powi(10);
+        let expected = 1.0 - powi(0.95, 10);
         assert!((tail_of_largest(&independent, 10, degrees, t) - expected).abs() < 0.025);
         let equal = Symmetric::from_fn(10, |_, _| 3.0);
         assert!((tail_of_largest(&equal, 10, degrees, t) - 0.05).abs() < 0.012);

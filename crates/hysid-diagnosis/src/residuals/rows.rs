@@ -151,6 +151,8 @@ fn rates(record: &Record) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
 
     #[test]
@@ -176,7 +178,7 @@ mod tests {
 
     #[test]
     fn long_data_are_cut_into_stretches_from_beginning_to_end() {
-        let x: Vec<f64> = (0..90_000).map(|k| (0.01 * f64::from(k)).sin()).collect();
+        let x: Vec<f64> = (0..90_000).map(|k| sin(0.01 * f64::from(k))).collect();
         let y: Vec<f64> = (0..90_000).map(f64::from).collect();
         let data = Dataset::from_slices(&x, &y).unwrap();
         let rows = Rows::of(&data, &[vec![0.0; 90_000]], 0.02).stretches(30_000);

@@ -1,5 +1,6 @@
 use hysid_core::data::record::{ColumnNames, Record};
 use hysid_core::data::turning_points::turning_points;
+use hysid_core::elementary::{cos, ln, sin, square};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -11,7 +12,7 @@ const ROWS: usize = 2000;
 fn noise(seed: u64, rows: usize) -> Vec<f64> {
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut uniform = || generator.random::<f64>().max(1e-300);
-    let normal = |_| (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos();
+    let normal = |_| (-2.0 * ln(uniform())).sqrt() * cos(std::f64::consts::TAU * uniform());
     (0..rows).map(normal).collect()
 }
 
@@ -34,7 +35,7 @@ fn input(rows: usize) -> Vec<f64> {
         .map(|k| {
             let share = k as f64 / rows as f64;
             phase += 0.04 + 0.05 * (7.0 * share).fract();
-            (0.4 + 0.6 * (5.0 * share).fract()) * phase.sin()
+            (0.4 + 0.6 * (5.0 * share).fract()) * sin(phase)
         })
         .collect()
 }
@@ -114,8 +115,8 @@ fn known_structure_is_found_and_named() {
     assert!(found_share(ResidualTest::Input, |row, x| 0.5 * x[row.saturating_sub(13)]) > 0.95);
     assert_eq!(found_share(ResidualTest::Bias, |_, _| 0.15), 1.0);
     assert_eq!(found_share(ResidualTest::Time, |row, _| 0.6 * row as f64 / ROWS as f64), 1.0);
-    assert_eq!(found_share(ResidualTest::Whiteness, |row, _| 0.7 * (0.3 * row as f64).sin()), 1.0);
-    let grows = |row: usize, x: &[f64], by: f64| (9.1 * (row * row) as f64).sin() * by * x[row].abs();
+    assert_eq!(found_share(ResidualTest::Whiteness, |row, _| 0.7 * sin(0.3 * row as f64)), 1.0);
+    let grows = |row: usize, x: &[f64], by: f64| sin(9.1 * (row * row) as f64) * by * x[row].abs();
     assert!(found_share(ResidualTest::Distance, |row, x| grows(row, x, 2.5)) > 0.9);
 }
 
@@ -123,7 +124,7 @@ fn known_structure_is_found_and_named() {
 /// by the test of its name only where the drive tells both apart.
 #[test]
 fn structure_without_noise_is_found_too() {
-    let sine: Vec<f64> = (0..1200).map(|row| (std::f64::consts::TAU * row as f64 / 300.0).sin()).collect();
+    let sine: Vec<f64> = (0..1200).map(|row| sin(std::f64::consts::TAU * row as f64 / 300.0)).collect();
     for x in [input(ROWS), sine] {
         for noise_size in [0.0, 0.001, 0.1, 1.0] {
             let beside = |part: &dyn Fn(usize) -> f64| -> Residuals {
@@ -153,7 +154,7 @@ fn advice_is_of_what_was_planted() {
         found.findings.into_iter().find(|finding| finding.test == ResidualTest::Rate).unwrap().advice.unwrap()
     };
     let several = input(ROWS);
-    let one: Vec<f64> = (0..1200).map(|row| (std::f64::consts::TAU * row as f64 / 300.0).sin()).collect();
+    let one: Vec<f64> = (0..1200).map(|row| sin(std::f64::consts::TAU * row as f64 / 300.0)).collect();
     assert!(advice(&several, false, &|row| 20.0 * rate(row, &several)).contains("give the model the rate"));
     assert!(advice(&several, true, &|row| 20.0 * rate(row, &several)).contains("too strong, too weak"));
     assert!(advice(&several, false, &|row| rate(row, &several).signum()).contains("too wide or too narrow"));
@@ -208,7 +209,7 @@ fn bounds_of_correlations_contain_the_autocorrelation_of_both() {
 #[test]
 fn records_gaps_and_constant_columns_are_no_obstacle() {
     let record = |name: &str, rows: usize, seed: u64| {
-        let x: Vec<f64> = (0..rows).map(|k| (0.05 * k as f64).sin()).collect();
+        let x: Vec<f64> = (0..rows).map(|k| sin(0.05 * k as f64)).collect();
         let mut y = noise(seed, rows);
         y.iter_mut().step_by(7).for_each(|y| *y = f64::NAN);
         let time = (0..rows).map(|k| 0.01 * k as f64).collect();
@@ -258,7 +259,7 @@ fn structure_that_returns_in_every_cycle_is_found() {
     let of_rows = |rows: usize| {
         let x = input(rows);
         let residual: Vec<f64> =
-            (0..rows).map(|row| 0.3 * rate(row, &x).signum() + 0.2 * x[row].powi(2)).collect();
+            (0..rows).map(|row| 0.3 * rate(row, &x).signum() + 0.2 * square(x[row])).collect();
         tested(&x, &residual)
     };
     let many = of_rows(10_000);

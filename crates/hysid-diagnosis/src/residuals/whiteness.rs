@@ -9,6 +9,7 @@
 //! (Ljung and Box 1978; several records and gaps as in Stoffer and Toloi 1992). Lags count scored rows. No degree of
 //! freedom is taken off: the parameters of a free run are no coefficients of an autoregression of the residual.
 
+use hysid_core::elementary::log10;
 use serde::Serialize;
 
 use crate::distribution::chi_square_tail;
@@ -40,7 +41,7 @@ impl Whiteness {
     pub(super) fn of(residual: &[Vec<f64>]) -> Self {
         let rows: usize = residual.iter().map(Vec::len).sum();
         let n = rows as f64;
-        let lags = ((10.0 * n.log10()) as usize).min(rows / 5).clamp(1, MOST_LAGS);
+        let lags = ((10.0 * log10(n)) as usize).min(rows / 5).clamp(1, MOST_LAGS);
         // A lag that few records are long enough for says little.
         let found = autocorrelations(residual, lags);
         let kept = found.iter().take_while(|(_, pairs)| 4 * pairs >= rows).count();
@@ -79,12 +80,14 @@ fn predictable_share(r: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{powi, square};
+
     use super::*;
 
     /// An autoregression of first order with coefficient a has the autocorrelations a^k and is predictable to a².
     #[test]
     fn the_predictable_share_of_an_autoregression_is_the_square_of_its_coefficient() {
-        let r: Vec<f64> = (1..30).map(|k| 0.8f64.powi(k)).collect();
+        let r: Vec<f64> = (1..30).map(|k| powi(0.8, k)).collect();
         approx::assert_relative_eq!(predictable_share(&r), 0.64, max_relative = 1e-12);
         assert_eq!(predictable_share(&[0.0; 5]), 0.0);
     }
@@ -97,7 +100,7 @@ mod tests {
         let found = Whiteness::of(&[residual]);
         let n = f64::from(n);
         let expected: f64 =
-            (1..=20).map(|k| n * (n + 2.0) * ((n - f64::from(k)) / n).powi(2) / (n - f64::from(k))).sum();
+            (1..=20).map(|k| n * (n + 2.0) * square((n - f64::from(k)) / n) / (n - f64::from(k))).sum();
         assert_eq!(found.degrees_of_freedom, 20);
         approx::assert_relative_eq!(found.ljung_box, expected, max_relative = 1e-12);
         assert!(found.p_value < 1e-100);

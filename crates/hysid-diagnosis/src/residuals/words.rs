@@ -1,6 +1,7 @@
 //! What the tests say, in sentences.
 
 use hysid_core::data::unit::suffix;
+use hysid_core::elementary::square;
 use hysid_core::significant::Significant;
 
 use super::{
@@ -225,8 +226,7 @@ impl Teller<'_> {
     fn share_of_direction(&self) -> f64 {
         let Residuals { rows, rms, bias, .. } = *self.residuals;
         let groups = self.place_of(ResidualTest::Direction).map_or(&[][..], |place| &place.groups);
-        let explained =
-            groups.iter().map(|group| group.rows as f64 * (group.bias - bias).powi(2)).sum::<f64>();
+        let explained = groups.iter().map(|group| group.rows as f64 * square(group.bias - bias)).sum::<f64>();
         explained / (rows as f64 * (rms * rms - bias * bias)).max(f64::MIN_POSITIVE)
     }
 

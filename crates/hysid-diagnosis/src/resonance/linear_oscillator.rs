@@ -9,6 +9,8 @@
 
 use std::f64::consts::TAU;
 
+use hysid_core::elementary::{exp, sin_cos};
+
 use super::excerpt::Compared;
 
 /// A linear oscillator as fitted to data.
@@ -45,8 +47,8 @@ impl Step {
     pub fn new(natural_frequency: f64, damping_ratio: f64, duration: f64) -> Self {
         let angle = TAU * natural_frequency * duration;
         let damped = (1.0 - damping_ratio * damping_ratio).sqrt();
-        let fades = (-damping_ratio * angle).exp();
-        let (sine, cosine) = (damped * angle).sin_cos();
+        let fades = exp(-damping_ratio * angle);
+        let (sine, cosine) = sin_cos(damped * angle);
         let (sine, cosine) = (fades * sine / damped, fades * cosine);
         let turn = damping_ratio * sine;
         Self { matrix: [[cosine + turn, sine], [-sine, cosine - turn]], angle, damping_ratio }
@@ -94,6 +96,8 @@ impl Step {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
 
     const F: f64 = 0.7;
@@ -107,8 +111,8 @@ mod tests {
     /// `e^(-ζ ω t)` times sine and cosine of the damped motion.
     fn damped(t: f64) -> (f64, f64) {
         let omega = TAU * F;
-        let (sine, cosine) = (omega * (1.0 - ZETA * ZETA).sqrt() * t).sin_cos();
-        let fades = (-ZETA * omega * t).exp();
+        let (sine, cosine) = sin_cos(omega * (1.0 - ZETA * ZETA).sqrt() * t);
+        let fades = exp(-ZETA * omega * t);
         (fades * sine, fades * cosine)
     }
 
@@ -141,7 +145,7 @@ mod tests {
     #[test]
     fn a_sine_at_resonance_is_amplified_by_half_the_inverse_damping() {
         let step = 1.0 / (F * 200.0);
-        let input: Vec<f64> = (0..8000).map(|row| (TAU * F * f64::from(row) * step).sin()).collect();
+        let input: Vec<f64> = (0..8000).map(|row| sin(TAU * F * f64::from(row) * step)).collect();
         let mut response = Vec::new();
         Step::new(F, ZETA, step).response(&input, &mut response);
         let largest =

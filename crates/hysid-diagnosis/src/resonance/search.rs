@@ -1,6 +1,8 @@
 //! Which linear oscillator fits data best in a free run: a grid of frequencies and damping ratios, and around the best of
 //! it a search with ever smaller steps. Gain, direct part, offset and initial states follow by linear least squares.
 
+use hysid_core::elementary::{ln, powi};
+
 use super::excerpt::Excerpts;
 use super::linear_oscillator::{LinearOscillator, Step};
 use super::normal_equations::NormalEquations;
@@ -96,10 +98,10 @@ impl Search<'_> {
     /// The best damping ratio at each frequency of the grid, where it is better than at those beside it.
     fn valleys(&mut self) -> Vec<Point> {
         let (low, high) = self.frequencies;
-        let count = ((high / low).ln() / FACTOR.ln()).max(0.0) as i32;
+        let count = (ln(high / low) / ln(FACTOR)).max(0.0) as i32;
         let mut grid: Vec<Point> = Vec::new();
         for k in 0..=count {
-            let points = DAMPING_RATIOS.map(|damping_ratio| self.point(low * FACTOR.powi(k), damping_ratio));
+            let points = DAMPING_RATIOS.map(|damping_ratio| self.point(low * powi(FACTOR, k), damping_ratio));
             grid.extend(points.into_iter().min_by(|a, b| a.remainder.total_cmp(&b.remainder)));
         }
         let remainder = |k: usize| grid.get(k).map_or(f64::INFINITY, |point| point.remainder);

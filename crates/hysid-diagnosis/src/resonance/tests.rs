@@ -1,6 +1,7 @@
 use std::f64::consts::TAU;
 
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::elementary::{sin, square};
 use hysid_core::operator::{Operator, Stop};
 
 use super::*;
@@ -18,7 +19,7 @@ impl Multisine {
     fn new() -> Self {
         let halves = RATE as usize * 2 * STEPS;
         let sine =
-            |line: f64, k: usize| (TAU * (line * k as f64 / halves as f64 + 0.618_034 * line * line)).sin();
+            |line: f64, k: usize| sin(TAU * (line * k as f64 / halves as f64 + 0.618_034 * line * line));
         let amplitude = 50.0 * (2.0 / 146.0_f64).sqrt();
         let force = |k| amplitude * (5..=150).map(|line| sine(f64::from(line), k)).sum::<f64>();
         Self((0..halves).map(force).collect())
@@ -69,7 +70,7 @@ fn bouc_wen() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
 
 /// Of 40 Hz and `10/(2·2·2π·40)` of damping.
 fn linear() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    let stiffness = 2.0 * (TAU * 40.0).powi(2);
+    let stiffness = 2.0 * square(TAU * 40.0);
     oscillator(1500, 10.0, move |y, _| stiffness * y, |_, _| 0.0)
 }
 
@@ -125,7 +126,7 @@ fn a_bouc_wen_oscillator_is_a_resonance() {
 #[test]
 fn a_linear_oscillator_is_found_exactly() {
     let columns = linear();
-    let stiffness = 2.0 * (TAU * 40.0).powi(2);
+    let stiffness = 2.0 * square(TAU * 40.0);
     let damping_ratio = 10.0 / (2.0 * 2.0 * TAU * 40.0);
     let check = |data: &Dataset, scale: f64| {
         let found = Resonance::of(data).unwrap();
@@ -170,7 +171,7 @@ fn a_building_that_yields_is_a_resonance_in_the_changes() {
 /// A sweep through springs and sliders.
 fn sliders() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let time: Vec<f64> = (0..1200).map(|row| f64::from(row) / 400.0).collect();
-    let input: Vec<f64> = time.iter().map(|t| (TAU * (0.5 * t + t * t)).sin() * (1.0 - 0.1 * t)).collect();
+    let input: Vec<f64> = time.iter().map(|t| sin(TAU * (0.5 * t + t * t)) * (1.0 - 0.1 * t)).collect();
     let mut output = vec![0.0; input.len()];
     for threshold in [0.15, 0.33, 0.62] {
         let slider = Stop::new(threshold).unwrap().run(&input);
@@ -187,7 +188,7 @@ fn sliders_delays_and_hum_are_no_resonance() {
     assert!(ratio > 2.0, "{ratio}");
     // What swings without the input is nothing that a model of the input holds.
     for law in [&output, &input] {
-        let hum = law.iter().zip(&time).map(|(y, t)| y + 0.2 * (TAU * 50.0 * t).sin()).collect();
+        let hum = law.iter().zip(&time).map(|(y, t)| y + 0.2 * sin(TAU * 50.0 * t)).collect();
         assert!(!found(hum).is_found());
     }
     // A spring behind a dashpot comes late, and does not swing.

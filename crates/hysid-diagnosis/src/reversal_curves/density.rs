@@ -1,6 +1,7 @@
 //! The density of the Preisach plane by local parabolas (C. R. Pike, A. P. Roberts and K. L. Verosub, J. Appl. Phys. 85, 1999,
 //! 6660-6667).
 
+use hysid_core::elementary::square;
 use hysid_core::linear_algebra::Symmetric;
 use hysid_core::stop_check::StopCheck;
 
@@ -150,6 +151,6 @@ pub(super) fn chosen(smoothing: &Smoothing, nodes: &[(usize, f64)]) -> (usize, V
 fn is_accepted(densities: &[Option<Density>]) -> bool {
     let known = || densities.iter().flatten();
     let largest = known().fold(0.0, |most: f64, density| most.max(density.value.abs()));
-    let squares: f64 = known().map(|density| density.deviation.powi(2)).sum();
+    let squares: f64 = known().map(|density| square(density.deviation)).sum();
     (squares / known().count().max(1) as f64).sqrt() <= ACCEPTED * largest
 }

@@ -2,17 +2,18 @@
 
 use approx::assert_relative_eq;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::elementary::{cosh, powi, sin, square, tanh};
 use hysid_core::random::mix;
 
 use super::*;
 
 /// `E(x, r) = (tanh x - tanh r)²/2`, whose density is `sech² x sech² r`.
 fn everett(x: f64, r: f64) -> f64 {
-    0.5 * (x.tanh() - r.tanh()).powi(2)
+    0.5 * square(tanh(x) - tanh(r))
 }
 
 fn density(x: f64, r: f64) -> f64 {
-    (x.cosh() * r.cosh()).powi(-2)
+    powi(cosh(x) * cosh(r), -2)
 }
 
 const END: f64 = 2.0;
@@ -92,7 +93,7 @@ fn an_even_density_is_exact_also_for_curves_that_fall_and_for_records_of_single_
     let curve = |r: f64| -> (Vec<f64>, Vec<f64>) {
         let rows = ((r + 1.0) / 0.05).round() as i32;
         let x: Vec<f64> = (0..=rows).map(|row| r - 0.05 * f64::from(row)).collect();
-        let y = x.iter().map(|x| 0.7 * (r + 1.0).powi(2) - 0.7 * (r - x).powi(2)).collect();
+        let y = x.iter().map(|x| 0.7 * square(r + 1.0) - 0.7 * square(r - x)).collect();
         (x, y)
     };
     let records = (0..12).map(|k| {
@@ -115,8 +116,8 @@ fn an_even_density_is_exact_also_for_curves_that_fall_and_for_records_of_single_
 #[test]
 fn cycles_are_no_reversal_curves() {
     let cycles = |amplitude: &dyn Fn(usize) -> f64| {
-        let x: Vec<f64> = (0..3000).map(|k| amplitude(k) * (0.02 * k as f64).sin()).collect();
-        let y: Vec<f64> = x.iter().map(|x| x.tanh()).collect();
+        let x: Vec<f64> = (0..3000).map(|k| amplitude(k) * sin(0.02 * k as f64)).collect();
+        let y: Vec<f64> = x.iter().map(|x| tanh(*x)).collect();
         let data = Dataset::from_slices(&x, &y).unwrap();
         ReversalCurves::of(&data, &ReversalCurveOptions::default()).unwrap()
     };

@@ -4,6 +4,7 @@
 use std::f64::consts::SQRT_2;
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::{powf, powi};
 use hysid_core::linear_algebra::Symmetric;
 use hysid_core::operator::relaxation::{advance, decay};
 use hysid_core::stop_check::StopCheck;
@@ -52,7 +53,7 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     if step <= 0.0 || longest <= 2.0 * step {
         return false;
     }
-    let factor = (0.5 * longest / step).powf(f64::from(TIMES - 1).recip());
+    let factor = powf(0.5 * longest / step, f64::from(TIMES - 1).recip());
     let products = |time: f64| {
         let mut products = Products::new();
         for (record, on_branches) in records.iter().zip(&on_branches) {
@@ -66,10 +67,10 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     let input_noise = 2.0 * survey.input_noise.deviation() / survey.width();
     let rate_noise = input_noise / (SQRT_2 * beside as f64);
     (0..TIMES).any(|k| {
-        let products = products(step * factor.powi(k));
+        let products = products(step * powi(factor, k));
         let (left, weights) = products.fit(COLUMNS);
         let through_input = products.mean_square_slope(&weights).sqrt() * input_noise;
-        let noise = output_noise.hypot(through_input).hypot(weights[RATE] * rate_noise);
+        let noise = hypot(hypot(output_noise, through_input), weights[RATE] * rate_noise);
         left.sqrt() <= (EXPLAINED * without_memory.sqrt()).max(NOISE * noise)
     })
 }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use hysid_core::elementary::{log10, powf, powi};
 use hysid_core::significant::Significant;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::Ranged;
@@ -40,7 +41,7 @@ impl Axis {
 
     /// A logarithmic axis over all positive values.
     pub fn logarithmic(label: impl Into<String>, values: impl Iterator<Item = f64>) -> Self {
-        let (low, high) = range(values.filter(|&v| v > 0.0).map(f64::log10));
+        let (low, high) = range(values.filter(|&v| v > 0.0).map(log10));
         let low = low.max(high - MOST_DECADES);
         let spread = (MARGIN * (high - low)).max(0.1);
         Self::new(label.into(), true, low - spread, high + spread)
@@ -78,8 +79,8 @@ impl Axis {
         let between: &[f64] = if self.high - self.low < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         (self.low.floor() as i32..=self.high.ceil() as i32)
             .filter(|exponent| exponent % every == 0)
-            .flat_map(|exponent| between.iter().map(move |factor| factor * 10f64.powi(exponent)))
-            .filter(|tick| (self.low..=self.high).contains(&tick.log10()))
+            .flat_map(|exponent| between.iter().map(move |factor| factor * powi(10.0, exponent)))
+            .filter(|tick| (self.low..=self.high).contains(&log10(*tick)))
             .collect()
     }
 
@@ -88,10 +89,10 @@ impl Axis {
         let text = if self.logarithmic {
             format!("{:.1}", Significant(tick))
         } else if (1e-4..1e5).contains(&self.step) && largest < 1e12 {
-            let decimals = (-self.step.log10()).ceil().max(0.0) as usize;
+            let decimals = (-log10(self.step)).ceil().max(0.0) as usize;
             format!("{tick:.decimals$}")
         } else {
-            let digits = (largest.log10().floor() - self.step.log10().floor()).clamp(0.0, 14.0) as usize + 1;
+            let digits = (log10(largest).floor() - log10(self.step).floor()).clamp(0.0, 14.0) as usize + 1;
             format!("{:.*}", digits, Significant(if tick.abs() < 0.5 * self.step { 0.0 } else { tick }))
         };
         text.replace('-', "−")
@@ -104,7 +105,7 @@ impl Axis {
 
     /// Place of a value along the axis: 0 at its beginning, 1 at its end, and not much beyond either.
     pub(super) fn place(&self, value: f64) -> f64 {
-        let value = if self.logarithmic { value.max(f64::MIN_POSITIVE).log10() } else { value };
+        let value = if self.logarithmic { log10(value.max(f64::MIN_POSITIVE)) } else { value };
         ((value - self.low) / (self.high - self.low)).clamp(-MOST_BEYOND, 1.0 + MOST_BEYOND)
     }
 
@@ -132,7 +133,7 @@ impl Ranged for Axis {
 
     fn range(&self) -> Range<f64> {
         match self.logarithmic {
-            true => 10f64.powf(self.low)..10f64.powf(self.high),
+            true => powf(10.0, self.low)..powf(10.0, self.high),
             false => self.low..self.high,
         }
     }
@@ -148,7 +149,7 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
 
 /// The nearest of 1, 2 and 5 times a power of ten.
 fn round_step(wanted: f64) -> f64 {
-    let power = 10f64.powf(wanted.log10().floor());
+    let power = powf(10.0, log10(wanted).floor());
     // The limits are the geometric means of neighbours.
     match wanted / power {
         ratio if ratio < 1.414 => power,

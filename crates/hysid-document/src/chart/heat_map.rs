@@ -4,6 +4,8 @@
 //! around 0 is next to the page's colour; positive values get darker on a light page and lighter on a dark one, and
 //! negative values have another hue.
 
+use hysid_core::elementary::{log10, powf};
+
 use super::thin::Point;
 use super::{Chart, Colour, Curve, LEVELS};
 use crate::number::number;
@@ -72,7 +74,7 @@ fn class_width(cells: &[HeatCell]) -> f64 {
     }
     let most = f64::from(*LEVELS.end());
     let needed = largest / (most + 0.5);
-    let power = 10f64.powf(needed.log10().floor());
+    let power = powf(10.0, log10(needed).floor());
     let widths = [1.0, 2.0, 2.5, 5.0, 10.0].map(|factor| factor * power);
     widths.into_iter().find(|width| *width >= needed).unwrap_or(needed)
 }

@@ -1,3 +1,5 @@
+use hysid_core::elementary::sin;
+
 use super::frame::legend_lines;
 use super::*;
 use crate::balance::assert_balanced;
@@ -17,7 +19,7 @@ fn chart(points: Vec<Point>) -> Chart {
 
 #[test]
 fn user_text_is_escaped_and_elements_balanced() {
-    let chart = chart((0..50).map(|k| (k as f64, (k as f64).sin())).collect());
+    let chart = chart((0..50).map(|k| (k as f64, sin(k as f64))).collect());
     let svg = chart.svg();
     assert!(!svg.contains("<script") && svg.contains("&lt;script"), "{svg}");
     assert!(svg.contains("aria-label=\"a &quot;test&quot; &amp; more\""));

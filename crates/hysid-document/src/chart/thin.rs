@@ -99,11 +99,13 @@ pub fn is_drawable(point: Point) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
 
     #[test]
     fn extremes_and_order_are_kept() {
-        let wave = |k: usize| (k as f64, (0.001 * k as f64).sin() + f64::from(u8::from(k == 70_123)) * 9.0);
+        let wave = |k: usize| (k as f64, sin(0.001 * k as f64) + f64::from(u8::from(k == 70_123)) * 9.0);
         let points: Vec<Point> = (0..100_000).map(wave).collect();
         let thinned = thin(&points, 2000);
         assert!(thinned.len() <= 2000 && thinned.len() > 500, "{}", thinned.len());
@@ -145,9 +147,7 @@ mod tests {
     fn a_long_path_keeps_the_shape_of_its_loops() {
         let rows = 300_000;
         let wave = |cycles: f64, shift: f64| -> Vec<f64> {
-            (0..rows)
-                .map(|k| (std::f64::consts::TAU * cycles * k as f64 / rows as f64 + shift).sin())
-                .collect()
+            (0..rows).map(|k| sin(std::f64::consts::TAU * cycles * k as f64 / rows as f64 + shift)).collect()
         };
         for (cycles, most) in [(2.0, 3000), (2000.0, 3000)] {
             let (x, y) = (wave(cycles, 0.0), wave(cycles, 1.0));

@@ -1,5 +1,6 @@
 //! Networks of all families, with the operations of the library's kernels in their order.
 
+use hysid_core::elementary::exp;
 use hysid_core::network::scaling::Scaling;
 use hysid_core::network::{Layout, Network};
 
@@ -97,8 +98,7 @@ fn stops(
     });
     let first = usize::from(a.linear);
     let deterioration = a.deterioration.then(|| {
-        let inverse_beta =
-            parameters[layout.ln_beta.clone()].iter().map(|ln_beta| (-ln_beta).exp()).collect();
+        let inverse_beta = parameters[layout.ln_beta.clone()].iter().map(|ln_beta| exp(-ln_beta)).collect();
         (
             builder.state(&format!("{name}_slip"), vec![0.0; a.stops]),
             builder.constants(&format!("{name}_inverse_beta"), inverse_beta),
@@ -140,8 +140,7 @@ fn relaxation(
     if a.relaxation == 0 {
         return;
     }
-    let inverse_tau =
-        network.parameters()[layout.ln_tau.clone()].iter().map(|ln_tau| (-ln_tau).exp()).collect();
+    let inverse_tau = network.parameters()[layout.ln_tau.clone()].iter().map(|ln_tau| exp(-ln_tau)).collect();
     let inverse_tau = builder.constants(&format!("{name}_inverse_tau"), inverse_tau);
     let stress = builder.state(&format!("{name}_stress"), vec![0.0; a.relaxation_neurons()]);
     let last = builder.state(&format!("{name}_last"), vec![0.0; a.inputs]);

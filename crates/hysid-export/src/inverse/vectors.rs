@@ -1,5 +1,6 @@
 //! Test vectors of an inverse.
 
+use hysid_core::elementary::{cos, sin};
 use hysid_core::model::{Inverse, Inverted, Model};
 
 use crate::description::Argument;
@@ -80,9 +81,9 @@ impl Row {
     fn of(model: &Model, row: usize) -> Self {
         let ranges = model.trained_ranges();
         let t = row as f64;
-        let wave = 1.05 * ((0.23 * t).sin() * (0.6 + 0.4 * (0.031 * t).cos()) + 0.1 * (1.9 * t).sin());
+        let wave = 1.05 * (sin(0.23 * t) * (0.6 + 0.4 * cos(0.031 * t)) + 0.1 * sin(1.9 * t));
         let other = |(input, range): (usize, &(f64, f64))| {
-            of_both_precisions(within(*range, (0.11 * t + input as f64).sin()))
+            of_both_precisions(within(*range, sin(0.11 * t + input as f64)))
         };
         Self {
             wanted: of_both_precisions(within(ranges.output, wave)),

@@ -4,6 +4,8 @@
 
 use std::cell::Cell;
 
+use hysid_core::elementary::{asinh, exp, exp_m1, hypot, ln, ln_1p, powf, tanh};
+
 use crate::program::expression::{Binary, Real, Truth, Unary, Whole};
 use crate::program::{Array, Precision, Program, Statement, Storage};
 
@@ -135,7 +137,7 @@ impl<'p> Machine<'p> {
                 let (a, b) = (self.real(a), self.real(b));
                 match precision {
                     Precision::Double => binary(*function, a, b),
-                    Precision::Single => f64::from(binary_single(*function, a as f32, b as f32)),
+                    Precision::Single => f64::from(binary(*function, a, b) as f32),
                 }
             }
             Real::Fused(a, b, c) => {
@@ -187,12 +189,12 @@ fn unary(function: Unary, a: f64) -> f64 {
         Unary::Negative => -a,
         Unary::Magnitude => a.abs(),
         Unary::SquareRoot => a.sqrt(),
-        Unary::Exp => a.exp(),
-        Unary::ExpMinusOne => a.exp_m1(),
-        Unary::Ln => a.ln(),
-        Unary::LnOnePlus => a.ln_1p(),
-        Unary::Tanh => a.tanh(),
-        Unary::InverseSinh => a.asinh(),
+        Unary::Exp => exp(a),
+        Unary::ExpMinusOne => exp_m1(a),
+        Unary::Ln => ln(a),
+        Unary::LnOnePlus => ln_1p(a),
+        Unary::Tanh => tanh(a),
+        Unary::InverseSinh => asinh(a),
         Unary::Ceiling => a.ceil(),
         Unary::PowerOfTwo => f64::from_bits((a + ROUND).to_bits() << 52),
     }
@@ -204,37 +206,16 @@ fn binary(function: Binary, a: f64, b: f64) -> f64 {
         Binary::Difference => a - b,
         Binary::Product => a * b,
         Binary::Quotient => a / b,
-        Binary::Power => a.powf(b),
+        Binary::Power => powf(a, b),
         Binary::CopySign => a.copysign(b),
-        Binary::Hypotenuse => a.hypot(b),
+        Binary::Hypotenuse => hypot(a, b),
     }
 }
 
+/// In single precision: the function in double precision, rounded. Operations and roots are then rounded once.
 fn unary_single(function: Unary, a: f32) -> f32 {
     match function {
-        Unary::Detached => a,
-        Unary::Negative => -a,
-        Unary::Magnitude => a.abs(),
-        Unary::SquareRoot => a.sqrt(),
-        Unary::Exp => a.exp(),
-        Unary::ExpMinusOne => a.exp_m1(),
-        Unary::Ln => a.ln(),
-        Unary::LnOnePlus => a.ln_1p(),
-        Unary::Tanh => a.tanh(),
-        Unary::InverseSinh => a.asinh(),
-        Unary::Ceiling => a.ceil(),
         Unary::PowerOfTwo => f32::from_bits((a + ROUND_SINGLE).to_bits() << 23),
-    }
-}
-
-fn binary_single(function: Binary, a: f32, b: f32) -> f32 {
-    match function {
-        Binary::Sum => a + b,
-        Binary::Difference => a - b,
-        Binary::Product => a * b,
-        Binary::Quotient => a / b,
-        Binary::Power => a.powf(b),
-        Binary::CopySign => a.copysign(b),
-        Binary::Hypotenuse => a.hypot(b),
+        _ => unary(function, a.into()) as f32,
     }
 }

@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 
 use crate::models::{all, path, time_step};
 use hysid::Model;
+use hysid_core::elementary::{powf, sin};
 use hysid_export::description::{Argument, Description, RateSource};
 use hysid_export::program::Precision;
 use hysid_export::program::interpreter::Machine;
@@ -30,7 +31,7 @@ fn agrees(name: &str, model: &Model) {
         for (row, inputs) in path(2500, model.names().inputs.len()).iter().enumerate() {
             let before = time;
             time += time_step(row);
-            let rate = (0.3 * row as f64).sin();
+            let rate = sin(0.3 * row as f64);
             let given = (source == RateSource::Argument).then_some(rate);
             let expected = stepper.step(inputs, time, given).unwrap();
             // The stepper takes time stamps, whose difference is rounded.
@@ -71,7 +72,7 @@ fn outputs_are_equal_and_finite_on_wild_paths() {
                 30 if row % 300 == 30 => 1e90,
                 31 if row % 300 == 31 => -1e90,
                 32 => 40.0,
-                _ => x + 10.0_f64.powf(3.0 * random(&mut bits) - 1.0) * random(&mut bits).signum(),
+                _ => x + powf(10.0, 3.0 * random(&mut bits) - 1.0) * random(&mut bits).signum(),
             };
             let before = time;
             time += time_step(row);
@@ -132,7 +133,7 @@ fn trials_of_the_library_agree_with_the_program() {
             let committed = stepper.snapshot();
             // Trials elsewhere leave no trace.
             let mut elsewhere = inputs.clone();
-            elsewhere[0] += 1.3 * (row as f64).sin();
+            elsewhere[0] += 1.3 * sin(row as f64);
             stepper.trial(&elsewhere, time, None).unwrap();
             let is_late = stepper.trial(&elsewhere, before - 1.0, None).is_err();
             assert!(is_late || row == 0 || !model.needs_time());

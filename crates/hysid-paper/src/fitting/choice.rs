@@ -2,6 +2,7 @@
 
 use hysid::Result;
 use hysid::data::record::Dataset;
+use hysid::elementary::{exp, ln};
 use hysid::network::Family;
 use hysid::options::network::Regularisation;
 use hysid::validation::{Fold, folds, folds_of_cycles};
@@ -182,7 +183,7 @@ pub fn medians(outputs: &[Vec<f64>]) -> Vec<f64> {
 
 /// Geometric mean: one fold with a large error does not decide.
 fn mean(percents: &[f64]) -> f64 {
-    (percents.iter().map(|percent| percent.ln()).sum::<f64>() / percents.len() as f64).exp()
+    exp(percents.iter().map(|percent| ln(*percent)).sum::<f64>() / percents.len() as f64)
 }
 
 impl Choice {

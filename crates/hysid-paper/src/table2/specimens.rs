@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::elementary::{sin, tanh};
 use hysid::operator::{DeterioratingStop, Operator, Stop};
 
 /// A property and the specimen that has just that.
@@ -37,7 +38,7 @@ pub static SPECIMENS: [Property; 6] = [
         law: "y = Σ w tanh(3 (x - ε_r[x])), the same r and w: a function of each play, hence congruent",
         paper: [false, false, true, true],
         is_mixing: false,
-        output: |motion| weighted(&motion.x, |x, stop| (3.0 * (x - stop)).tanh()),
+        output: |motion| weighted(&motion.x, |x, stop| tanh(3.0 * (x - stop))),
     },
     Property {
         name: "asymmetric",
@@ -51,7 +52,7 @@ pub static SPECIMENS: [Property; 6] = [
         law: "y = tanh(1.5 Σ w ε_r[x]): several stops through one bent function",
         paper: [false, true, false, true],
         is_mixing: true,
-        output: |motion| sum(&motion.x).into_iter().map(|y| (1.5 * y).tanh()).collect(),
+        output: |motion| sum(&motion.x).into_iter().map(|y| tanh(1.5 * y)).collect(),
     },
     Property {
         name: "not congruent, deteriorating",
@@ -120,7 +121,7 @@ const PERIODS: f64 = 7.0;
 /// A record of two tones that do not repeat, the slower with a period of 1 s at speed 1.
 fn record(property: &Property, speed: f64, phase: f64) -> hysid::Result<Record> {
     let phases: Vec<f64> = (0..ROWS).map(|row| PERIODS * row as f64 / ROWS as f64).collect();
-    let tones = |p: f64| 0.6 * (TAU * p).sin() + 0.4 * (TAU * 2.618 * p + phase).sin() - 0.4 * phase.sin();
+    let tones = |p: f64| 0.6 * sin(TAU * p) + 0.4 * sin(TAU * 2.618 * p + phase) - 0.4 * sin(phase);
     // It begins at 0 and grows to its whole size.
     let x: Vec<f64> = phases.iter().map(|&p| (p / 2.0).min(1.0) * tones(p)).collect();
     let time: Vec<f64> = phases.iter().map(|p| p / speed).collect();

@@ -1,5 +1,6 @@
 //! What the comparison of trainers comes to: tables, figures, and the sentence on the paper's claim.
 
+use hysid::elementary::square;
 use hysid::options::network::Trainer;
 use hysid::significant::Significant;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number};
@@ -157,7 +158,7 @@ pub(super) fn targets(protocol: &Protocol, repetitions: &[Repetition]) -> Vec<Ta
         target("MSE ratio, end of the hybrid's first phase / end", 40.0, Source::Paper, &|repetition| {
             let hybrid = repetition.of(Trainer::Hybrid)?;
             let first = hybrid.percent_at(protocol.epochs / 2)?;
-            Some((first / hybrid.train.nrmse_std_percent?).powi(2))
+            Some(square(first / hybrid.train.nrmse_std_percent?))
         }),
     ]
 }

@@ -197,6 +197,8 @@ fn is_held(values: &[f64]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
 
     fn seen(value: impl Fn(f64) -> f64, rows: u32) -> Seen {
@@ -206,7 +208,7 @@ mod tests {
 
     /// A sequence between -1 and 1 that turns as noise does.
     fn noise(k: f64) -> f64 {
-        2.0 * (43_758.545 * (12.9898 * k).sin()).rem_euclid(1.0) - 1.0
+        2.0 * (43_758.545 * sin(12.9898 * k)).rem_euclid(1.0) - 1.0
     }
 
     #[test]
@@ -232,8 +234,8 @@ mod tests {
         let values: Vec<f64> = (0..800).map(|k| levels(f64::from(k))).collect();
         assert_eq!(changes(&values), [0, 200, 400, 600]);
         assert!(seen(|k| (k / 40.0).floor() / 2.0, 400).is_kept, "half cycles");
-        assert!(!seen(|k| (0.01 * k).sin(), 4000).is_kept);
-        assert!(!seen(|k| (0.001 * k).sin(), 12_000).is_kept);
+        assert!(!seen(|k| sin(0.01 * k), 4000).is_kept);
+        assert!(!seen(|k| sin(0.001 * k), 12_000).is_kept);
         assert!(!seen(|k| k, 10_000).is_kept);
         assert!(!seen(noise, 400).is_kept);
     }
@@ -241,7 +243,7 @@ mod tests {
     #[test]
     fn what_is_held_is_noise_around_a_value() {
         assert!(seen(|k| 300.0 + 0.2 * noise(k), 160).is_held);
-        assert!(!seen(|k| 300.0 + (0.1 * k).sin(), 160).is_held);
+        assert!(!seen(|k| 300.0 + sin(0.1 * k), 160).is_held);
         assert!(!seen(noise, 160).is_held);
     }
 }

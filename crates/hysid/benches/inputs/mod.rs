@@ -1,6 +1,7 @@
 //! What the benchmarks measure on: an input, networks of any size, and data to fit.
 
 use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::elementary::{cos, ln, sin};
 use hysid::network::{Architecture, Family, Layout, Network, Sizes};
 use hysid::options::network::{FitOptions, Trainer};
 use rand::{RngExt, SeedableRng};
@@ -8,7 +9,7 @@ use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 
 /// An oscillation whose amplitude keeps changing, within -1 to 1.
 pub fn path(rows: usize) -> Vec<f64> {
-    (0..rows).map(|k| (0.07 * k as f64).sin() * (0.003 * k as f64).cos()).collect()
+    (0..rows).map(|k| sin(0.07 * k as f64) * cos(0.003 * k as f64)).collect()
 }
 
 pub fn xpnn(stops: usize, hidden: usize, deterioration: bool) -> Architecture {
@@ -27,7 +28,7 @@ pub fn parameters(architecture: Architecture, seed: u64) -> Vec<f64> {
             if layout.stop_weights.contains(&k) {
                 1.0 / (0.05 + 0.9 * random)
             } else if layout.ln_beta.contains(&k) {
-                1e5f64.ln()
+                ln(1e5)
             } else {
                 random - 0.5
             }

@@ -257,13 +257,15 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
     use crate::data::record::{ColumnNames, Record};
     use crate::options::ModelName;
     use crate::options::chosen::NamedOptions;
 
     fn data(rows: usize, inputs: usize) -> Dataset {
-        let input = |c: usize| (0..rows).map(|k| ((k + c) as f64 * 0.1).sin()).collect();
+        let input = |c: usize| (0..rows).map(|k| sin((k + c) as f64 * 0.1)).collect();
         let time = (0..rows).map(|k| k as f64).collect();
         let inputs: Vec<Vec<f64>> = (0..inputs).map(input).collect();
         let output = inputs[0].clone();

@@ -13,6 +13,7 @@
 //! Every individual has its own random generator, seeded by (seed, generation, index), so the result does not
 //! depend on the number of threads.
 
+use hysid_core::elementary::powf;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};
@@ -183,7 +184,7 @@ fn crossover(a: &[f64], b: &[f64], generator: &mut impl Rng) -> Vec<f64> {
         }
         let u: f64 = generator.random();
         let exponent = 1.0 / (CROSSOVER_INDEX + 1.0);
-        let beta = if u <= 0.5 { (2.0 * u).powf(exponent) } else { (1.0 / (2.0 * (1.0 - u))).powf(exponent) };
+        let beta = if u <= 0.5 { powf(2.0 * u, exponent) } else { powf(1.0 / (2.0 * (1.0 - u)), exponent) };
         0.5 * (a + b + sign * beta * (a - b))
     };
     a.iter().zip(b).map(gene).collect()
@@ -192,16 +193,18 @@ fn crossover(a: &[f64], b: &[f64], generator: &mut impl Rng) -> Vec<f64> {
 /// Polynomial mutation, as a share of the range.
 fn mutation(u: f64) -> f64 {
     let exponent = 1.0 / (MUTATION_INDEX + 1.0);
-    if u < 0.5 { (2.0 * u).powf(exponent) - 1.0 } else { 1.0 - (2.0 * (1.0 - u)).powf(exponent) }
+    if u < 0.5 { powf(2.0 * u, exponent) - 1.0 } else { 1.0 - powf(2.0 * (1.0 - u), exponent) }
 }
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::square;
+
     use super::*;
 
     /// Σ (x_i - i/10)² with its minimum inside the box but for one gene, which is held at its bound.
     fn sphere(genes: &[f64]) -> f64 {
-        genes.iter().enumerate().map(|(i, x)| (x - 0.1 * i as f64).powi(2)).sum()
+        genes.iter().enumerate().map(|(i, x)| square(x - 0.1 * i as f64)).sum()
     }
 
     const BOUNDS: [(f64, f64); 8] = [

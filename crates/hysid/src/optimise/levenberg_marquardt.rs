@@ -12,6 +12,7 @@
 //! A [`Problem`] gives `F`, `g` and `B`, and solves for the step within its bounds. The descent controls the
 //! damping.
 
+use hysid_core::elementary::powi;
 use serde::{Deserialize, Serialize};
 
 use crate::linear_algebra::{Symmetric, dot};
@@ -281,7 +282,7 @@ impl Damping {
                 let fall = objective - P::objective(&found);
                 if fall > 0.0 {
                     let quality = fall / candidate.predicted_fall;
-                    self.mu *= (1.0 - (2.0 * quality - 1.0).powi(3)).max(1.0 / 3.0);
+                    self.mu *= (1.0 - powi(2.0 * quality - 1.0, 3)).max(1.0 / 3.0);
                     self.mu = self.mu.max(smallest);
                     self.growth = 2.0;
                     return Some((candidate.parameters, found));

@@ -226,6 +226,8 @@ impl Penalty {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
 
     /// Normal equations of made-up rows; with correlated columns, so that bounds bind.
@@ -233,7 +235,7 @@ mod tests {
         let value = |row: usize, column: usize| {
             let mixed =
                 (row as u64 * 31 + column as u64 * 17 + seed * 101).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            (mixed >> 40) as f64 / (1u64 << 24) as f64 - 0.5 + 0.4 * ((row + 3 * column) as f64 * 0.37).sin()
+            (mixed >> 40) as f64 / (1u64 << 24) as f64 - 0.5 + 0.4 * sin((row + 3 * column) as f64 * 0.37)
         };
         let product = |i: usize, j: usize| {
             (0..rows).map(|row| value(row, i) * value(row, j)).sum::<f64>() / rows as f64

@@ -1,12 +1,13 @@
 //! Random numbers.
 
+use hysid_core::elementary::{cos, ln};
 pub(crate) use hysid_core::random::mix;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 pub(crate) fn normal(generator: &mut impl Rng) -> f64 {
     let (u, v): (f64, f64) = (generator.random(), generator.random());
-    (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+    (-2.0 * ln(1.0 - u)).sqrt() * cos(std::f64::consts::TAU * v)
 }
 
 /// The seed of one of many draws: each has a generator of its own, so that it does not matter which thread draws first.

@@ -17,6 +17,7 @@
 //! Training advances step by step with [`SpaceDilatation`], whose whole state can be stored. Source: Shor and Zhurbenko
 //! (1971).
 
+use hysid_core::elementary::square;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -297,7 +298,7 @@ fn norm(v: &[f64]) -> f64 {
 }
 
 fn norm_in(v: &[f64], scales: &[f64]) -> f64 {
-    v.iter().zip(scales).map(|(v, scale)| (v / scale).powi(2)).sum::<f64>().sqrt()
+    v.iter().zip(scales).map(|(v, scale)| square(v / scale)).sum::<f64>().sqrt()
 }
 
 fn is_usable(value: f64, gradient: &[f64]) -> bool {

@@ -1,5 +1,6 @@
 //! The drive of a plan: tests of properties that the data cannot test, then random reversals, then the way back.
 
+use hysid_core::elementary::powf;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -167,7 +168,7 @@ impl Drive {
         loop {
             let (from, range) = (self.now(), self.reach(survey.may_deteriorate));
             let mut draw = || {
-                let speed = if survey.speed_matters { SLOWEST.powf(generator.random::<f64>()) } else { 1.0 };
+                let speed = if survey.speed_matters { powf(SLOWEST, generator.random::<f64>()) } else { 1.0 };
                 Leg::Swing { to: random_turn(from, range, rises, generator.random::<f64>()), speed }
             };
             let fitting = (0..DRAWS).map(|_| draw()).find(|leg| self.fits(&[*leg]));

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use std::str::FromStr;
 
+use hysid_core::elementary::cos;
 use serde::{Deserialize, Serialize};
 
 use super::limits::Limits;
@@ -110,7 +111,7 @@ impl Path {
         let share = |row: usize| {
             let place = row as f64 / rows as f64;
             match self.wave {
-                Wave::Smooth => 0.5 * (1.0 - (PI * place).cos()),
+                Wave::Smooth => 0.5 * (1.0 - cos(PI * place)),
                 Wave::Triangle => place,
             }
         };

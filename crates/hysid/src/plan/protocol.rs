@@ -1,5 +1,7 @@
 //! First protocols, for specimens that were not measured yet.
 
+use hysid_core::elementary::{exp, ln, powi};
+
 use super::limits::{Limits, Wanted};
 use super::path::{Leg, Path, Wave};
 use super::segment::Kind;
@@ -175,7 +177,7 @@ impl Protocol {
     fn pieces(self) -> Vec<Piece> {
         match self {
             Self::Structure => {
-                let amplitude = |step: i32| FEMA_RATIO.powi(step - FEMA_STEPS + 1);
+                let amplitude = |step: i32| powi(FEMA_RATIO, step - FEMA_STEPS + 1);
                 let mut pieces: Vec<Piece> = (0..FEMA_STEPS - 3)
                     .map(|step| cycles(Kind::RisingLoops, amplitude(step), 2, 1.0))
                     .collect();
@@ -276,12 +278,12 @@ impl Protocol {
         }
         // The rows fall with the rate: halve the interval of its logarithm.
         let (mut slow, mut fast) =
-            ((probe.width() / (probe.time_step() * rows as f64)).ln(), probe.max_rate.ln());
+            (ln(probe.width() / (probe.time_step() * rows as f64)), ln(probe.max_rate));
         for _ in 0..60 {
             let middle = 0.5 * (slow + fast);
-            if needed(middle.exp()) > rows { slow = middle } else { fast = middle }
+            if needed(exp(middle)) > rows { slow = middle } else { fast = middle }
         }
-        Ok(Limits { max_rate: fast.exp(), ..probe })
+        Ok(Limits { max_rate: exp(fast), ..probe })
     }
 }
 
@@ -314,7 +316,7 @@ fn reversal_curves() -> Vec<Piece> {
 
 /// Loops that fall, each inside the one before.
 fn nested() -> Piece {
-    let level = |k: i32| Level::Swing(if k % 2 == 0 { 1.0 } else { -1.0 } * 0.8_f64.powi(k), 1.0);
+    let level = |k: i32| Level::Swing(if k % 2 == 0 { 1.0 } else { -1.0 } * powi(0.8, k), 1.0);
     Piece { kind: Kind::NestedLoops, legs: (0..10).map(level).collect() }
 }
 

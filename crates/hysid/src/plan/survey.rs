@@ -223,6 +223,8 @@ fn has_hold(data: &Dataset, range: (f64, f64)) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
 
     #[test]
@@ -237,8 +239,8 @@ mod tests {
     fn loops_of_one_amplitude_leave_small_swings_unknown() {
         let t: Vec<f64> = (0..=580).map(|k| 0.01 * f64::from(k)).collect();
         let angle = |t: &f64| 2.5 * std::f64::consts::PI * t;
-        let x: Vec<f64> = t.iter().map(|t| angle(t).sin()).collect();
-        let y: Vec<f64> = t.iter().map(|t| (angle(t) - 0.2).sin()).collect();
+        let x: Vec<f64> = t.iter().map(|t| sin(angle(t))).collect();
+        let y: Vec<f64> = t.iter().map(|t| sin(angle(t) - 0.2)).collect();
         let data = Dataset::from_columns(Some(("t", &t)), &[("x", &x)], ("y", &y)).unwrap();
         let limits =
             Limits { range: (-1.0, 1.0), start: 0.0, step: Some(0.01), max_rate: 8.0, rows: data.rows() };

@@ -71,6 +71,8 @@ fn sides(most: usize) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{hypot, sin, square};
+
     use super::super::search::DEGREES;
     use super::*;
     use crate::optimise::random::{generator, normal};
@@ -81,21 +83,21 @@ mod tests {
         let sum = |t: &f64, of: &dyn Fn(f64, f64, f64) -> f64| {
             tones.iter().map(|&(size, pace, phase)| of(size, pace, pace * t + phase)).sum::<f64>()
         };
-        let x = time.iter().map(|t| sum(t, &|size, _, angle| size * angle.sin())).collect();
+        let x = time.iter().map(|t| sum(t, &|size, _, angle| size * sin(angle))).collect();
         let second =
-            time.iter().map(|t| sum(t, &|size, pace, angle| -size * pace * pace * angle.sin())).collect();
+            time.iter().map(|t| sum(t, &|size, pace, angle| -size * pace * pace * sin(angle))).collect();
         (x, second)
     }
 
     fn rms_error(found: &[f64], exact: &[f64], margin: usize) -> f64 {
         let rows = margin..exact.len() - margin;
-        let square = |row: usize| (found[row] - exact[row]).powi(2);
+        let square = |row: usize| square(found[row] - exact[row]);
         (rows.clone().map(square).sum::<f64>() / rows.len() as f64).sqrt()
     }
 
     #[test]
     fn the_chosen_window_is_nearly_the_best_and_its_error_is_told() {
-        let jittered = |k: usize| 0.005 * (k as f64 + 0.2 * (2.3 * k as f64).sin());
+        let jittered = |k: usize| 0.005 * (k as f64 + 0.2 * sin(2.3 * k as f64));
         for (case, size) in [1e-5, 1e-4, 1e-3, 1e-2].into_iter().enumerate() {
             let time: Vec<f64> =
                 (0..2000).map(|k| if case % 2 == 0 { 0.005 * k as f64 } else { jittered(k) }).collect();
@@ -116,7 +118,7 @@ mod tests {
                 rms_error(&values, &exact, margin)
             };
             let best = all.filter(Filter::is_possible).map(error_of).fold(f64::INFINITY, f64::min);
-            let told = chosen.noise.hypot(chosen.smoothing);
+            let told = hypot(chosen.noise, chosen.smoothing);
             assert!(error < 1.2 * best, "{size}: {error} {best} {:?}", chosen.filter);
             assert!((0.6..1.7).contains(&(told / error)), "{size}: {told} {error}");
         }
@@ -126,7 +128,7 @@ mod tests {
     fn noise_is_not_taken_for_smoothing() {
         let time: Vec<f64> = (0..4000).map(|k| 0.002 * f64::from(k)).collect();
         let mut generator = generator(3, 0);
-        let x: Vec<f64> = time.iter().map(|t| (6.0 * t).sin() + 1e-3 * normal(&mut generator)).collect();
+        let x: Vec<f64> = time.iter().map(|t| sin(6.0 * t) + 1e-3 * normal(&mut generator)).collect();
         let found = derivative(&[(&time, &x)], 2, 1e-3, Some(7));
         assert!(found.smoothing < 0.1 * found.noise, "{} {}", found.smoothing, found.noise);
     }

@@ -4,6 +4,8 @@
 //! over the times of the window. Its derivative of order `J` at the time of a row is `Σ_i K_i x_i`,
 //! theory.md (15.21).
 
+use hysid_core::elementary::powi;
+
 /// Weights of the rows of a window: the derivative of an order, at the time of row `centre`, of the polynomial of a
 /// degree that fits best.
 ///
@@ -38,7 +40,7 @@ pub fn weights(time: &[f64], centre: usize, degree: usize, order: usize) -> Vec<
         slopes_before = std::mem::replace(&mut slopes, next);
         norm_before = norm;
     }
-    let scale = unit.powi(-(order as i32));
+    let scale = powi(unit, -(order as i32));
     weights.iter_mut().for_each(|weight| *weight *= scale);
     weights
 }
@@ -46,6 +48,8 @@ pub fn weights(time: &[f64], centre: usize, degree: usize, order: usize) -> Vec<
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
+
+    use hysid_core::elementary::{sin, square};
 
     use super::*;
 
@@ -60,7 +64,7 @@ mod tests {
         for (order, table, norm) in
             [(1, [-2.0, -1.0, 0.0, 1.0, 2.0], 10.0), (2, [2.0, -1.0, -2.0, -1.0, 2.0], 7.0)]
         {
-            let step = 0.5f64.powi(order as i32);
+            let step = powi(0.5, order as i32);
             for (weight, expected) in weights(&time, 2, 2, order).iter().zip(table) {
                 assert_relative_eq!(*weight, expected / norm / step, epsilon = 1e-12);
             }
@@ -75,16 +79,15 @@ mod tests {
 
     #[test]
     fn polynomials_of_the_degree_have_their_exact_derivatives_at_uneven_times() {
-        let time: Vec<f64> =
-            (0..15).map(|k| 3.0 + 0.02 * k as f64 + 0.008 * (1.7 * k as f64).sin()).collect();
+        let time: Vec<f64> = (0..15).map(|k| 3.0 + 0.02 * k as f64 + 0.008 * sin(1.7 * k as f64)).collect();
         for centre in [0, 4, 7, 14] {
             let t = |row: usize| time[row] - 3.1;
             let x = |row: usize| {
-                1.0 - 2.0 * t(row) + 0.5 * t(row).powi(2) - 3.0 * t(row).powi(3) + 4.0 * t(row).powi(4)
+                1.0 - 2.0 * t(row) + 0.5 * square(t(row)) - 3.0 * powi(t(row), 3) + 4.0 * powi(t(row), 4)
             };
             let at = t(centre);
-            let first = -2.0 + at - 9.0 * at.powi(2) + 16.0 * at.powi(3);
-            let second = 1.0 - 18.0 * at + 48.0 * at.powi(2);
+            let first = -2.0 + at - 9.0 * square(at) + 16.0 * powi(at, 3);
+            let second = 1.0 - 18.0 * at + 48.0 * square(at);
             assert_relative_eq!(sum(&weights(&time, centre, 4, 0), x), x(centre), epsilon = 1e-12);
             assert_relative_eq!(sum(&weights(&time, centre, 4, 1), x), first, epsilon = 1e-9);
             assert_relative_eq!(sum(&weights(&time, centre, 4, 2), x), second, epsilon = 1e-7);

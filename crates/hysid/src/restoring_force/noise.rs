@@ -54,14 +54,16 @@ fn coefficients(time: &[f64]) -> Vec<f64> {
 mod tests {
     use approx::assert_relative_eq;
 
+    use hysid_core::elementary::{cos, sin};
+
     use super::*;
     use crate::optimise::random::{generator, normal};
 
     #[test]
     fn the_noise_of_a_vibration_is_found_at_uneven_times() {
         let mut generator = generator(4, 0);
-        let time: Vec<f64> = (0..4000).map(|k| 0.01 * (k as f64 + 0.3 * (2.1 * k as f64).sin())).collect();
-        let smooth: Vec<f64> = time.iter().map(|t| 20.0 * (9.0 * t).sin() + 3.0 * (25.0 * t).cos()).collect();
+        let time: Vec<f64> = (0..4000).map(|k| 0.01 * (k as f64 + 0.3 * sin(2.1 * k as f64))).collect();
+        let smooth: Vec<f64> = time.iter().map(|t| 20.0 * sin(9.0 * t) + 3.0 * cos(25.0 * t)).collect();
         let noisy: Vec<f64> = smooth.iter().map(|x| x + 0.05 * normal(&mut generator)).collect();
         assert_relative_eq!(deviation(&[(&time, &noisy)]), 0.05, max_relative = 0.1);
         assert!(deviation(&[(&time, &smooth)]) < 1e-4);
@@ -70,7 +72,7 @@ mod tests {
     #[test]
     fn the_rounding_of_an_instrument_is_noise() {
         let time: Vec<f64> = (0..3000).map(|k| 0.001 * f64::from(k)).collect();
-        let rounded: Vec<f64> = time.iter().map(|t| (40.0 * (2.0 * t).sin()).round() / 8.0).collect();
+        let rounded: Vec<f64> = time.iter().map(|t| (40.0 * sin(2.0 * t)).round() / 8.0).collect();
         assert!(deviation(&[(&time, &rounded)]) >= 0.125 / 12f64.sqrt());
     }
 }

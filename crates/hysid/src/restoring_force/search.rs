@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use hysid_core::elementary::{hypot, square};
+
 use super::filter::{Filter, RowWeights, SMALLEST_WINDOW};
 
 /// Degrees of the polynomials that are tried.
@@ -75,7 +77,7 @@ impl<'s> Search<'s> {
                     derivative += own * value;
                     difference += (reference - own) * value;
                     gain += own * own;
-                    apart_by_noise += (reference - own).powi(2);
+                    apart_by_noise += square(reference - own);
                 }
                 values.push(derivative);
                 apart += difference * difference;
@@ -108,7 +110,7 @@ impl<'s> Search<'s> {
         let longer = self.trial(filter, None);
         let total = trial.apart_from(&longer).total;
         // Both have the rows of the shorter window, so that less noise than that of both is in the difference.
-        let by_others = trial.noise.powi(2).max(longer.noise.powi(2));
+        let by_others = square(trial.noise).max(square(longer.noise));
         Apart { total, by_others }.smoothing()
     }
 }
@@ -130,12 +132,12 @@ pub struct Trial {
 impl Trial {
     /// The mean square of the difference from a filter that lets more noise through.
     fn apart_from(&self, other: &Self) -> Apart {
-        let squares = self.values.iter().zip(&other.values).map(|(a, b)| (a - b).powi(2));
-        Apart { total: squares.sum::<f64>() / self.values.len() as f64, by_others: other.error().powi(2) }
+        let squares = self.values.iter().zip(&other.values).map(|(a, b)| square(a - b));
+        Apart { total: squares.sum::<f64>() / self.values.len() as f64, by_others: square(other.error()) }
     }
 
     fn error(&self) -> f64 {
-        self.noise.hypot(self.smoothing)
+        hypot(self.noise, self.smoothing)
     }
 }
 

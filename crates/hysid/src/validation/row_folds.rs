@@ -101,6 +101,8 @@ fn driven(record: &Record) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
     use crate::data::record::ColumnNames;
 
@@ -110,7 +112,7 @@ mod tests {
 
     /// Oscillations of a size.
     fn record(size: f64) -> Record {
-        let x: Vec<f64> = (0..100).map(|k| size * (0.3 * f64::from(k)).sin()).collect();
+        let x: Vec<f64> = (0..100).map(|k| size * sin(0.3 * f64::from(k))).collect();
         let y = x.iter().map(|x| x * x + size).collect();
         Record::new(format!("{size}"), vec![x], y).unwrap()
     }

@@ -3,6 +3,7 @@
 use crate::scaffold::*;
 use std::sync::OnceLock;
 
+use hysid::elementary::exp;
 use hysid::fit::network::Observer;
 use hysid::model::{Ensemble, Group, Node, NodeKind, Predictor, Weights};
 use hysid::validation::folds;
@@ -282,7 +283,7 @@ fn rows_of_a_wrong_beginning_are_not_trained_on() {
     // The memory of each record starts elsewhere than in the virgin state, and is itself after a while.
     let strange = |rows: usize, name: &str| {
         let sound = record(rows, name);
-        let wrong = |(row, y): (usize, &f64)| y + 3.0 * (-(row as f64) / 4.0).exp();
+        let wrong = |(row, y): (usize, &f64)| y + 3.0 * exp(-(row as f64) / 4.0);
         let output = sound.output().iter().enumerate().map(wrong).collect();
         Record::new(name, vec![sound.inputs()[0].to_vec()], output).unwrap()
     };

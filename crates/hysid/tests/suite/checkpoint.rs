@@ -2,14 +2,14 @@
 //! every trainer and any number of threads.
 
 use crate::scaffold::*;
+use hysid::elementary::{powi, sin};
 use hysid::fit::network::{Checkpoint, fit, resume};
 use hysid::options::network::{Method, Trainer};
 
 fn data() -> Dataset {
-    let x: Vec<f64> =
-        (0..160).map(|k| (0.21 * k as f64).sin() * (0.4 + 0.6 * (0.013 * k as f64).sin())).collect();
+    let x: Vec<f64> = (0..160).map(|k| sin(0.21 * k as f64) * (0.4 + 0.6 * sin(0.013 * k as f64))).collect();
     let mut stop = Stop::new(0.2).unwrap();
-    let y = x.iter().map(|x| 3.0 * stop.step(*x) + x.powi(3)).collect();
+    let y = x.iter().map(|x| 3.0 * stop.step(*x) + powi(*x, 3)).collect();
     let time = (0..160).map(|k| 0.1 * k as f64).collect();
     timed(time, x, y)
 }

@@ -5,6 +5,7 @@ use crate::scaffold::*;
 use std::f64::consts::TAU;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use hysid::elementary::{cos, exp, powf, sin};
 use hysid::law::bouc_wen::{BoucWen, Degradation};
 use hysid::law::generalized_prandtl_ishlinskii::{Envelope, GeneralizedPrandtlIshlinskii, PlayWeights};
 use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
@@ -85,7 +86,7 @@ fn neuro_madelung(rate_scale: Option<f64>) -> NeuroMadelung {
         output_mean: 1.0,
         output_scale: 3.0,
         output_range: (-5.0, 7.0),
-        hidden: (0..4 * (1 + inputs)).map(|k| (1.7 * k as f64).sin()).collect(),
+        hidden: (0..4 * (1 + inputs)).map(|k| sin(1.7 * k as f64)).collect(),
         output: vec![0.9, 0.2, -0.3, 0.25, 0.15],
         virgin_output: 0.1,
     }
@@ -94,9 +95,9 @@ fn neuro_madelung(rate_scale: Option<f64>) -> NeuroMadelung {
 fn sine(frequency: f64, amplitude: f64, samples: usize, periods: usize) -> Vec<Sample> {
     let sample = |k: usize| {
         let angle = TAU * k as f64 / samples as f64;
-        let rate = amplitude * TAU * frequency * angle.cos();
+        let rate = amplitude * TAU * frequency * cos(angle);
         let step = if k == 0 { 0.0 } else { 1.0 / (frequency * samples as f64) };
-        Sample { x: amplitude * angle.sin(), rate, step }
+        Sample { x: amplitude * sin(angle), rate, step }
     };
     (0..=periods * samples).map(sample).collect()
 }
@@ -155,7 +156,7 @@ fn the_closed_form_of_bouc_wen_continues_the_integrated_one() {
     }
     let law = bouc_wen(1.0);
     assert_relative_eq!(last(&law, &[100.0]), 2.0 * 100.0 + 30.0 * 1.5, epsilon = 1e-9);
-    let virgin = 1.5 * (1.0 - (-0.7_f64 / 1.5).exp());
+    let virgin = 1.5 * (1.0 - exp(-0.7_f64 / 1.5));
     assert_relative_eq!(last(&law, &[0.7]), 2.0 * 0.7 + 30.0 * virgin, epsilon = 1e-12);
 }
 
@@ -184,12 +185,12 @@ fn degraded_by_small_steps(law: &BoucWen, path: &[f64]) -> Vec<f64> {
     let d = law.degradation.unwrap();
     let slope = |z: f64, e: f64, direction: f64| {
         let (a, nu, eta) = ((1.0 - d.delta_a * e).max(0.0), 1.0 + d.delta_nu * e, 1.0 + d.delta_eta * e);
-        let zeta_1 = d.zeta_s * (1.0 - (-d.p * e).exp());
+        let zeta_1 = d.zeta_s * (1.0 - exp(-d.p * e));
         let zeta_2 = (d.psi_0 + d.delta_psi * e) * (d.lambda + zeta_1);
-        let distance = (z * direction - d.q * nu.powf(-1.0 / law.n)) / zeta_2;
-        let h = 1.0 - zeta_1 * (-distance * distance).exp();
+        let distance = (z * direction - d.q * powf(nu, -1.0 / law.n)) / zeta_2;
+        let h = 1.0 - zeta_1 * exp(-distance * distance);
         let share = 1.0 - law.b + law.b * (z * direction).signum();
-        h / eta * (a - nu * z.abs().powf(law.n) * share)
+        h / eta * (a - nu * powf(z.abs(), law.n) * share)
     };
     let (mut x, mut z, mut e) = (0.0_f64, 0.0_f64, 0.0_f64);
     let mut outputs = Vec::new();
@@ -213,7 +214,7 @@ fn degradation_is_that_of_small_steps() {
     let mut generator = Generator::seed_from_u64(3);
     let mut worst: Vec<f64> = Vec::new();
     for _ in 0..200 {
-        let mut log = |low: f64, high: f64| low * (high / low).powf(generator.random::<f64>());
+        let mut log = |low: f64, high: f64| low * powf(high / low, generator.random::<f64>());
         let values = [
             log(1e-5, 1e-3),
             log(1e-4, 0.1),
@@ -285,7 +286,7 @@ fn free_runs_stay_finite_whatever_the_parameters_and_the_input() {
         assert!(run(&law, wild).iter().all(|y| y.is_finite()), "{law:?}");
         let mut state = law.virgin();
         for k in 0..50 {
-            let x = 20.0 * (0.37 * f64::from(k)).sin();
+            let x = 20.0 * sin(0.37 * f64::from(k));
             let y = law.step(&mut state, Sample { x, rate: 0.0, step: 0.0 });
             assert!(y.is_finite(), "{law:?}");
         }

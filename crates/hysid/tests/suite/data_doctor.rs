@@ -4,6 +4,7 @@ use crate::scaffold::*;
 use std::f64::consts::TAU;
 
 use hysid::diagnosis::{DataIssue, DataIssueKind, Diagnosis, DiagnosisOptions};
+use hysid::elementary::{exp, sin, square};
 use hysid::specimens::{Ferromagnet, Specimen};
 
 /// Springs and sliders: a Prandtl-Ishlinskii law, as a force.
@@ -39,7 +40,7 @@ impl Wave {
     fn at(self, periods: f64) -> f64 {
         let phase = periods.rem_euclid(1.0);
         match self {
-            Self::Sine => (TAU * phase).sin(),
+            Self::Sine => sin(TAU * phase),
             Self::Triangle if phase < 0.25 => 4.0 * phase,
             Self::Triangle if phase < 0.75 => 2.0 - 4.0 * phase,
             Self::Triangle => 4.0 * phase - 4.0,
@@ -76,7 +77,7 @@ pub fn noisy(data: &Dataset, percent: f64, seed: u64) -> Dataset {
         data.records().iter().flat_map(|r| r.output()).copied().filter(|y| !y.is_nan()).collect();
     let n = outputs.len() as f64;
     let mean = outputs.iter().sum::<f64>() / n;
-    let deviation = (outputs.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / n).sqrt();
+    let deviation = (outputs.iter().map(|y| square(y - mean)).sum::<f64>() / n).sqrt();
     let (low, high) = data.output_range();
     with_noise(data, percent * (high - low) / deviation, seed).unwrap()
 }
@@ -215,7 +216,7 @@ fn with_rate(record: &Record, viscous: bool) -> Record {
     let mut z = 0.0;
     for k in 1..x.len() {
         let step = time[k] - time[k - 1];
-        let fades = (-step / RELAXATION_TIME).exp();
+        let fades = exp(-step / RELAXATION_TIME);
         z = z * fades + (x[k] - x[k - 1]) / step * RELAXATION_TIME * (1.0 - fades);
         y[k] += if viscous { VISCOSITY * (x[k] - x[k - 1]) / step } else { z };
     }
@@ -237,7 +238,7 @@ fn drift_is_told_from_wear() {
     let drifting = y.iter().zip(&time).map(|(y, t)| y + 0.02 * t).collect();
     let complaint = only(&rebuilt(time.clone(), x.clone(), drifting), DataIssueKind::Drift);
     assert!((complaint.value.unwrap() / 0.08 - 1.0).abs() < 0.2, "{complaint:?}");
-    let wearing = y.iter().zip(&time).map(|(y, t)| y * (-0.05 * t).exp()).collect();
+    let wearing = y.iter().zip(&time).map(|(y, t)| y * exp(-0.05 * t)).collect();
     assert!(!kinds(&rebuilt(time, x, wearing)).contains(&DataIssueKind::Drift));
 }
 
@@ -252,7 +253,7 @@ fn creep_in_a_hold() {
         };
         let noise = |k: usize| y[k] - sliders(&x)[k];
         let relaxed =
-            |k: usize| if creeps { -0.15 * (1.0 - (-(k as f64) / 80.0).exp()) } else { 0.0 } + noise(k);
+            |k: usize| if creeps { -0.15 * (1.0 - exp(-(k as f64) / 80.0)) } else { 0.0 } + noise(k);
         let step = time[1];
         let data = rebuilt(
             (0..time.len() + 200).map(|k| k as f64 * step).collect(),
@@ -368,7 +369,7 @@ fn beginnings() {
 #[test]
 fn unclosed_loops() {
     let (time, x, y) = sound();
-    let wearing = y.iter().zip(&time).map(|(y, t)| y * (-0.3 * t).exp() + 0.3 * t).collect();
+    let wearing = y.iter().zip(&time).map(|(y, t)| y * exp(-0.3 * t) + 0.3 * t).collect();
     let found = doctor(&rebuilt(time, x, wearing));
     assert!(found.iter().any(|complaint| complaint.kind == DataIssueKind::UnclosedLoops), "{found:#?}");
 }

@@ -6,6 +6,7 @@ mod subjects;
 use crate::data_doctor::noisy;
 use crate::scaffold::*;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
+use hysid::elementary::{sin, tanh};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -187,7 +188,7 @@ fn without_a_delay_none_is_found_and_the_rate_does_not_matter() {
 fn numbers_of_a_loop_are_those_of_a_stop() {
     // A stop with threshold r driven to ±X: area 4 r (X - r), height 2 r, coercive input X - r ... theory.md (1.8).
     let (r, amplitude) = (0.5, 2.0);
-    let x: Vec<f64> = (0..4001).map(|k| amplitude * (TAU * k as f64 / 1000.0).sin()).collect();
+    let x: Vec<f64> = (0..4001).map(|k| amplitude * sin(TAU * k as f64 / 1000.0)).collect();
     let y = hysid::operator::Stop::new(r).unwrap().run(&x);
     let data = Dataset::from_slices(&x, &y).unwrap();
     let diagnosis = Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap();
@@ -204,7 +205,7 @@ fn numbers_of_a_loop_are_those_of_a_stop() {
 #[test]
 fn jitter_of_the_input_makes_no_cycles() {
     let mut generator = Generator::seed_from_u64(3);
-    let clean: Vec<f64> = (0..6000).map(|k| (TAU * k as f64 / 1500.0).sin()).collect();
+    let clean: Vec<f64> = (0..6000).map(|k| sin(TAU * k as f64 / 1500.0)).collect();
     let y = hysid::operator::Stop::new(0.3).unwrap().run(&clean);
     // Uniform within 3 % of the range, so that single rows go back by as much.
     let x: Vec<f64> = clean.iter().map(|x| x + 0.06 * (generator.random::<f64>() - 0.5)).collect();
@@ -217,8 +218,8 @@ fn jitter_of_the_input_makes_no_cycles() {
 
 #[test]
 fn a_function_without_memory_has_no_hysteresis() {
-    let x: Vec<f64> = (0..4000).map(|k| (TAU * k as f64 / 800.0).sin()).collect();
-    let y: Vec<f64> = x.iter().map(|x| (3.0 * x).tanh()).collect();
+    let x: Vec<f64> = (0..4000).map(|k| sin(TAU * k as f64 / 800.0)).collect();
+    let y: Vec<f64> = x.iter().map(|x| tanh(3.0 * x)).collect();
     let data = Dataset::from_slices(&x, &y).unwrap();
     for percent in [0.0, 0.5] {
         let diagnosis = Diagnosis::of(&noisy(&data, percent, 1), &DiagnosisOptions::default()).unwrap();
@@ -239,7 +240,7 @@ fn poor_records_are_errors_or_not_testable() {
     let untestable = diagnosis.properties.iter().filter(|f| f.verdict == Verdict::NotTestable);
     assert!(untestable.clone().count() >= 8);
     assert!(untestable.clone().all(|finding| finding.experiment.is_some()));
-    let huge: Vec<f64> = (0..200).map(|k| 1e99 * (0.1 * k as f64).sin()).collect();
+    let huge: Vec<f64> = (0..200).map(|k| 1e99 * sin(0.1 * k as f64)).collect();
     of(data(huge.clone(), huge.iter().map(|x| x.abs()).collect())).unwrap();
     let mut blank = ramp.clone();
     blank[3..45].fill(f64::NAN);
@@ -251,7 +252,7 @@ fn poor_records_are_errors_or_not_testable() {
 fn no_number_of_a_finding_is_infinite_or_none() {
     let rows = 200;
     let pulse = |at: usize, row: usize| f64::from(u8::from(row == at));
-    let sine = |row: usize| (0.1 * row as f64).sin();
+    let sine = |row: usize| sin(0.1 * row as f64);
     type Signal<'a> = &'a dyn Fn(usize) -> f64;
     let signals: [(Signal, Signal); 8] = [
         (&|row| pulse(100, row), &|row| pulse(101, row)),

@@ -2,6 +2,7 @@
 //! quotients, and its identification.
 
 use crate::scaffold::*;
+use hysid::elementary::{cos, exp, powf, sin};
 use hysid::law::duhem_nn::{Cell, DuhemNn, Input, Layout, Run, Shape};
 use hysid::law::series::run;
 
@@ -82,7 +83,7 @@ fn a_state_without_neurons_relaxes_as_its_differential_equation() {
             time += step;
             let y = law.step(&mut state, Sample { x: 0.5 + rate * time, rate, step });
             let leak = c * f64::abs(rate) + 1.0 / tau;
-            let exact = q * rate + (s_0 - q * rate) * (-leak * time).exp();
+            let exact = q * rate + (s_0 - q * rate) * exp(-leak * time);
             assert!((y - exact).abs() < 1e-12, "rate {rate}, row {k}: {y}, not {exact}");
         }
     }
@@ -116,7 +117,7 @@ fn outputs_are_finite_for_any_parameters() {
             .map(|_| Sample {
                 x: largest * between(&mut generator, -1.0, 1.0),
                 rate: largest * between(&mut generator, -1.0, 1.0),
-                step: 10f64.powf(between(&mut generator, -8.0, 8.0)),
+                step: powf(10.0, between(&mut generator, -8.0, 8.0)),
             })
             .collect();
         assert!(run(&law, &samples).iter().all(|y| y.is_finite()), "{shape:?}");
@@ -216,7 +217,7 @@ fn the_gram_matrix_is_that_of_the_rows() {
     let shape = shapes()[0];
     let cell = random_cell(shape, 1.0, &mut generator);
     let drives = [drive(shape, 301, &mut generator), drive(shape, 30, &mut generator)];
-    let blank = |k: usize| if k % 5 == 2 { f64::NAN } else { (k as f64).sin() };
+    let blank = |k: usize| if k % 5 == 2 { f64::NAN } else { sin(k as f64) };
     let targets: Vec<Vec<f64>> = drives.iter().map(|drive| (0..drive.len()).map(blank).collect()).collect();
     for with_jacobian in [false, true] {
         let run =
@@ -237,7 +238,7 @@ fn the_gram_matrix_is_that_of_the_rows() {
 
 fn timed(name: &str, rows: usize, pace: f64) -> Record {
     let time: Vec<f64> = (0..rows).map(|k| 0.02 * k as f64).collect();
-    let tone = |t: f64, pace: f64, phase: f64| (pace * t + phase).sin();
+    let tone = |t: f64, pace: f64, phase: f64| sin(pace * t + phase);
     let x = |&t: &f64| tone(t, pace, 0.0) + 0.5 * tone(t, 2.7 * pace, 1.0) + 0.7 * tone(t, 0.31 * pace, 2.0);
     let x = time.iter().map(x).collect();
     Record::new(name, vec![x], vec![0.0; rows]).unwrap().with_time(time).unwrap()
@@ -278,9 +279,9 @@ fn it_learns_its_own_kind() {
 #[test]
 fn a_model_without_rate_or_time_has_only_what_its_data_have() {
     let rows = 300;
-    let x: Vec<f64> = (0..rows).map(|k| (0.1 * k as f64).sin() * (0.3 + 0.002 * k as f64)).collect();
-    let y: Vec<f64> = (0..rows).map(|k| (0.1 * k as f64 - 0.4).sin() * (0.3 + 0.002 * k as f64)).collect();
-    let given: Vec<f64> = (0..rows).map(|k| (0.1 * k as f64).cos()).collect();
+    let x: Vec<f64> = (0..rows).map(|k| sin(0.1 * k as f64) * (0.3 + 0.002 * k as f64)).collect();
+    let y: Vec<f64> = (0..rows).map(|k| sin(0.1 * k as f64 - 0.4) * (0.3 + 0.002 * k as f64)).collect();
+    let given: Vec<f64> = (0..rows).map(|k| cos(0.1 * k as f64)).collect();
     let plain = Record::new("r", vec![x], y).unwrap();
     let time = (0..rows).map(|k| 0.1 * k as f64).collect();
     let timed = plain.clone().with_time(time).unwrap();

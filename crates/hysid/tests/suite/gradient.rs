@@ -1,6 +1,8 @@
 //! Derivatives against difference quotients of the whole simulation, and the gradient of the
 //! objective against those of its value.
 
+use hysid::elementary::{ln, powi, sin, square};
+
 use crate::scaffold::*;
 
 /// Turning points at random, five samples between, no two alike.
@@ -125,11 +127,11 @@ fn at_a_kink_the_derivative_is_one_of_the_two() {
         for path in paths {
             for weight in [1.0, -1.0] {
                 let mut parameters = vec![weight];
-                parameters.extend(a.deterioration.then_some(8f64.ln()));
+                parameters.extend(a.deterioration.then_some(ln(8.0)));
                 let network = Network::new(a, parameters, vec![0.25, 1.0]).unwrap();
                 let drive = Drive { channels: vec![path.to_vec()], steps: Vec::new() };
                 let slope = network.linearise(&drive).jacobian[0].clone();
-                let h = (0.5f64).powi(26);
+                let h = powi(0.5, 26);
                 let right = quotient(&network, &drive, 0, h, 0.0);
                 let left = quotient(&network, &drive, 0, 0.0, h);
                 let near = |side: &[f64]| distance(&slope, side) < 1e-5;
@@ -151,11 +153,11 @@ fn measured(time: bool) -> Dataset {
             let z: Vec<f64> = path(rows, &mut generator);
             let y = (0..rows).map(|k| {
                 let blank = (20..37).contains(&k) || k % 11 == 3;
-                if blank { f64::NAN } else { 3.0 + (2.0 * x[k]).sin() + 0.5 * z[k] * z[k] }
+                if blank { f64::NAN } else { 3.0 + sin(2.0 * x[k]) + 0.5 * z[k] * z[k] }
             });
             let record = Record::new(format!("r{r}"), vec![x.clone()], y.collect()).unwrap();
             if time {
-                record.with_time((0..rows).map(|k| k as f64 + 0.3 * (k as f64).sin()).collect()).unwrap()
+                record.with_time((0..rows).map(|k| k as f64 + 0.3 * sin(k as f64)).collect()).unwrap()
             } else {
                 record
             }
@@ -272,7 +274,7 @@ fn value_and_gradient_are_sums_over_the_scored_rows() {
 
         let layout = Layout::new(case.architecture);
         let decayed = |k: usize| if layout.is_weight(k) { case.parameters[k] } else { 0.0 };
-        let square: f64 = (0..layout.len()).map(|k| decayed(k).powi(2)).sum();
+        let square: f64 = (0..layout.len()).map(|k| square(decayed(k))).sum();
         let penalty = 0.5 * 1e-3 * dot(&weights[1..], &weights[1..]) + 0.5 * 1e-2 * square;
         let dense = 0.5 * dot(&residual, &residual) / n + penalty;
         assert!((value.objective - dense).abs() < 1e-11 * dense, "{} is not {dense}", value.objective);

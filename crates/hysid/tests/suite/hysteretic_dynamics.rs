@@ -2,6 +2,7 @@
 
 use crate::scaffold::*;
 use hysid::Fit;
+use hysid::elementary::{exp, sin};
 use hysid::law::hysteretic_oscillator::HystereticOscillator;
 use hysid::law::hysteretic_state_space::HystereticStateSpace;
 use hysid::specimens::{BoucWenOscillator, DuffingOscillator, PiezoStage};
@@ -18,7 +19,7 @@ fn number(k: u64) -> f64 {
 /// A force of tones with random phases, in N, at time `t` in s.
 fn force(seed: u64, t: f64) -> f64 {
     let phase = |k: u64| std::f64::consts::TAU * number(seed * 37 + k * k);
-    (1..=12).map(|k| 20.0 * (std::f64::consts::TAU * 5.3 * k as f64 * t + phase(k)).sin()).sum()
+    (1..=12).map(|k| 20.0 * sin(std::f64::consts::TAU * 5.3 * k as f64 * t + phase(k))).sum()
 }
 
 /// A record of the oscillator of the benchmark, or of one without its hysteretic element.
@@ -167,10 +168,10 @@ fn hysteresis_at_the_input_is_identified_with_a_mode_too_many() {
         let voltage = |k: usize| {
             let t = k as f64 * step;
             let phase = |k: u64| std::f64::consts::TAU * number(seed * 37 + k * k);
-            let tone = |k: u64, frequency: f64| (std::f64::consts::TAU * frequency * t + phase(k)).sin();
+            let tone = |k: u64, frequency: f64| sin(std::f64::consts::TAU * frequency * t + phase(k));
             let slow: f64 = (1..=5).map(|k| 8.0 * tone(k, 5.1 * k as f64)).sum();
             let fast: f64 = (6..=14).map(|k| 0.7 * tone(k, 31.3 * (k - 4) as f64)).sum();
-            (1.0 - (-t / 0.01).exp()) * (50.0 + slow + fast)
+            (1.0 - exp(-t / 0.01)) * (50.0 + slow + fast)
         };
         let volts: Vec<f64> = (0..rows).map(voltage).collect();
         let motion = PiezoStage::designed().motion(volts.iter().copied(), step, 4);

@@ -4,6 +4,7 @@
 use crate::model_file::with_fitting_checksum;
 use crate::scaffold::*;
 use hysid::data::initial_state::lead_in_of_period;
+use hysid::elementary::{exp, ln, sin, square};
 use hysid::law::preisach::{Preisach, PreisachWeights};
 use hysid::law::series::run;
 
@@ -16,7 +17,7 @@ fn without_time(record: &Record) -> Record {
 }
 
 fn path(rows: usize, size: f64, pace: f64) -> Vec<f64> {
-    let x = |k: f64| size * (pace * k).sin() * (0.35 + 0.3 * (0.37 * pace * k).sin());
+    let x = |k: f64| size * sin(pace * k) * (0.35 + 0.3 * sin(0.37 * pace * k));
     (0..rows).map(|k| x(k as f64)).collect()
 }
 
@@ -35,7 +36,7 @@ fn magnet() -> Preisach {
     const INTERVALS: usize = 24;
     let line = |k: usize| 2.0 * k as f64 / INTERVALS as f64 - 1.0;
     let middle = |k: usize| line(k) + 1.0 / INTERVALS as f64;
-    let bell = |distance: f64, width: f64| (-(distance / width).powi(2)).exp();
+    let bell = |distance: f64, width: f64| exp(-square(distance / width));
     let weight = |i: usize, j: usize| {
         let (alpha, beta) = (middle(i), middle(j));
         bell(0.5 * (alpha - beta) - 0.35, 0.2) * bell(0.5 * (alpha + beta), 0.25)
@@ -64,7 +65,7 @@ fn remanent() -> (Dataset, Dataset) {
     let (up, down) = (&[1.0][..], &[-1.0][..]);
     let whole = |pace: f64| {
         let mut x = path(240, 1.0, pace);
-        x.extend((0..160).map(|k| (0.08 * f64::from(k)).sin()));
+        x.extend((0..160).map(|k| sin(0.08 * f64::from(k))));
         x
     };
     let train = vec![
@@ -246,7 +247,7 @@ fn a_validation_does_not_look_at_what_is_held_out() {
     let (up, down) = (&[1.0][..], &[-1.0][..]);
     let saturating = |pace: f64, size: f64| {
         let mut x = path(100, size, pace);
-        x.extend((0..200).map(|k| (0.07 * f64::from(k)).sin()));
+        x.extend((0..200).map(|k| sin(0.07 * f64::from(k))));
         x
     };
     let data = untimed(vec![
@@ -269,7 +270,7 @@ fn a_validation_does_not_look_at_what_is_held_out() {
 #[test]
 fn a_forecast_begins_with_the_state_of_its_record() {
     let mut x = path(150, 0.9, 0.12);
-    x.extend((0..60).map(|k| (0.105 * f64::from(k)).sin()));
+    x.extend((0..60).map(|k| sin(0.105 * f64::from(k))));
     x.extend(path(250, 0.9, 0.1));
     let data = untimed(vec![measured("r", &[1.0], x)]);
     let error = |state: &str| {
@@ -277,7 +278,7 @@ fn a_forecast_begins_with_the_state_of_its_record() {
         let validation = cross_validate(&data, &request, 5, &mut |_| ControlFlow::Continue(())).unwrap();
         let forecasts =
             validation.folds.iter().filter(|fold| fold.held_out.ends_with("from what came before"));
-        forecasts.map(|fold| fold.unseen.nrmse_std_percent.unwrap().ln()).sum::<f64>()
+        forecasts.map(|fold| ln(fold.unseen.nrmse_std_percent.unwrap())).sum::<f64>()
     };
     let (found, told, virgin) = (error("unknown"), error("saturated-up"), error("virgin"));
     assert!(found < told + 0.1 && found < virgin - 0.5, "{found} found, {told} told, {virgin} virgin");
@@ -314,7 +315,7 @@ fn auto_finds_states_where_they_matter_and_says_so() {
 /// A steady loop of the magnet from 0 upwards: what came before is not recorded.
 fn steady(amplitude: f64) -> Record {
     const ROWS: usize = 160;
-    let x = |row: usize| amplitude * (std::f64::consts::TAU * row as f64 / ROWS as f64).sin();
+    let x = |row: usize| amplitude * sin(std::f64::consts::TAU * row as f64 / ROWS as f64);
     let period: Vec<f64> = (0..ROWS).map(x).collect();
     measured(&format!("to {amplitude}"), &period, period.clone())
 }

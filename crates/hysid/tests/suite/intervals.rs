@@ -2,6 +2,7 @@
 
 use crate::scaffold::*;
 use hysid::Dataset;
+use hysid::elementary::{cos, ln, sin, square};
 use hysid::fit::intervals::{IntervalStatus, ParameterIntervals};
 use hysid::law::Parameter;
 use hysid::law::bouc_wen::BoucWen;
@@ -22,7 +23,7 @@ fn input() -> Vec<f64> {
     (0..ROWS)
         .map(|k| {
             let share = k as f64 / ROWS as f64;
-            (0.3 + 0.7 * (3.0 * share).fract()) * (0.06 * k as f64).sin()
+            (0.3 + 0.7 * (3.0 * share).fract()) * sin(0.06 * k as f64)
         })
         .collect()
 }
@@ -32,7 +33,7 @@ fn noise(seed: u64, a: f64) -> Vec<f64> {
     let mut generator = Generator::seed_from_u64(seed);
     let mut normal = || {
         let (u, v): (f64, f64) = (generator.random::<f64>().max(1e-300), generator.random());
-        (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+        (-2.0 * ln(u)).sqrt() * cos(std::f64::consts::TAU * v)
     };
     let mut last = normal();
     let mut all = vec![last];
@@ -58,7 +59,7 @@ impl<L: Law> Case<L> {
         let x = input();
         let clean = run(&self.law, &samples_of(&x));
         let mean = clean.iter().sum::<f64>() / ROWS as f64;
-        let deviation = (clean.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / ROWS as f64).sqrt();
+        let deviation = (clean.iter().map(|y| square(y - mean)).sum::<f64>() / ROWS as f64).sqrt();
         let y: Vec<f64> =
             clean.iter().zip(noise(seed, a)).map(|(y, e)| y + self.share * deviation * e).collect();
         let data = Dataset::from_slices(&x, &y).unwrap();

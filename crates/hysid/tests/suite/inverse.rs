@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use hysid::diagnosis::{ModelDiagnosis, Verdict};
+use hysid::elementary::{cos, sin};
 use hysid::model::{BandLevel, MOST_TRIALS};
 use hysid::specimens::Specimen;
 use hysid::{Fit, Model, Reach, Reference};
@@ -33,7 +34,7 @@ fn drive(model: &Model, rows: usize) -> Vec<(f64, Vec<f64>, f64)> {
             } else {
                 at += stride.copysign(way);
             }
-            let others = (1..model.names().inputs.len()).map(|_| 5.0 + (0.013 * row as f64).cos()).collect();
+            let others = (1..model.names().inputs.len()).map(|_| 5.0 + cos(0.013 * row as f64)).collect();
             (low + at * (high - low), others, time)
         })
         .collect()
@@ -153,7 +154,7 @@ fn the_slew_limit_bounds_the_change_of_the_input() {
 fn invalid_samples_leave_the_inverse_as_it_was() {
     let model = model("xpnn ");
     let (low, high) = model.trained_ranges().output;
-    let wanted = |k: i32| low + (0.5 + 0.3 * (0.1 * f64::from(k)).sin()) * (high - low);
+    let wanted = |k: i32| low + (0.5 + 0.3 * sin(0.1 * f64::from(k))) * (high - low);
     let mut inverse = model.inverse();
     for k in 0..20 {
         inverse.step(wanted(k), &[], 0.01 * f64::from(k)).unwrap();
@@ -190,7 +191,7 @@ fn the_inverse_follows_the_wear_of_the_model() {
     let mut peaks = Vec::new();
     let mut driven = model.stepper();
     for row in 0..rows {
-        let wanted = 0.5 * (low + high) + 0.3 * (high - low) * (0.0314 * f64::from(row)).sin();
+        let wanted = 0.5 * (low + high) + 0.3 * (high - low) * sin(0.0314 * f64::from(row));
         let found = inverse.step(wanted, &[], 0.01 * f64::from(row)).unwrap();
         assert_eq!(found.reach, Reach::Reached);
         let output = driven.step(&[found.input], 0.01 * f64::from(row), None).unwrap();
@@ -214,7 +215,7 @@ fn lagging() -> Model {
 
 fn tones(rows: usize) -> (Vec<f64>, Vec<f64>) {
     let time: Vec<f64> = (0..rows).map(|row| 0.1 * row as f64 / rows as f64).collect();
-    let tone = |t: &f64| 26.0 + 11.0 * (125.7 * t).sin() + 6.0 * (880.0 * t + 1.0).sin();
+    let tone = |t: &f64| 26.0 + 11.0 * sin(125.7 * t) + 6.0 * sin(880.0 * t + 1.0);
     (time.iter().map(tone).collect(), time)
 }
 
@@ -262,8 +263,7 @@ fn the_band_of_the_drive_is_that_of_the_output() {
         let record = &data.records()[0];
         (record.inputs()[0].to_vec(), record.output().to_vec())
     };
-    let noisy: Vec<f64> =
-        y.iter().enumerate().map(|(row, y)| y + 0.3 * (12.9898 * row as f64).sin()).collect();
+    let noisy: Vec<f64> = y.iter().enumerate().map(|(row, y)| y + 0.3 * sin(12.9898 * row as f64)).collect();
     let quick = hysid::Fit::new().option("epochs", 12).option("members", 3).option("starts", 1);
     let model = quick.run(&hysid::Dataset::from_slices(&x, &noisy).unwrap()).unwrap();
     let level = BandLevel::from(0.9);
@@ -272,7 +272,7 @@ fn the_band_of_the_drive_is_that_of_the_output() {
     let mut stepper = model.stepper();
     let mut inside = 0;
     for (row, time) in (0..200).map(|row| (row, 0.02 * f64::from(row))) {
-        let wanted = 0.5 * (low + high) + 0.3 * (high - low) * (0.07 * f64::from(row)).sin();
+        let wanted = 0.5 * (low + high) + 0.3 * (high - low) * sin(0.07 * f64::from(row));
         let found = inverse.step(wanted, &[], time).unwrap();
         let (from, to) = found.band.unwrap();
         assert!(from <= found.input && found.input <= to, "{from}, {}, {to}", found.input);
@@ -292,7 +292,7 @@ fn the_band_of_the_drive_is_that_of_the_output() {
     // With a preview, they are the inputs of the row, not those at the end of the preview.
     let mut inverse = model.inverse().band(level).unwrap().preview(0.1).unwrap();
     for row in (0..200).map(f64::from) {
-        let wanted = 0.5 * (low + high) + 0.3 * (high - low) * (0.07 * row).sin();
+        let wanted = 0.5 * (low + high) + 0.3 * (high - low) * sin(0.07 * row);
         let found = inverse.step(wanted, &[], 0.02 * row).unwrap();
         let (from, to) = found.band.unwrap();
         assert!(from <= found.input && found.input <= to, "{from}, {}, {to}", found.input);

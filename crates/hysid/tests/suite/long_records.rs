@@ -1,12 +1,13 @@
 //! Searches look at some of many rows. Whatever the rows of a cycle, what they find there holds for all rows.
 
+use hysid::elementary::sin;
+
 use crate::scaffold::*;
 
 /// Growing cycles of so many rows each, of three plays in parallel.
 fn cycles(rows: usize, period: usize) -> Dataset {
     let phase = |row: usize| std::f64::consts::TAU * row as f64 / period as f64;
-    let x: Vec<f64> =
-        (0..rows).map(|row| phase(row).sin() * (0.6 + 1.4 * row as f64 / rows as f64)).collect();
+    let x: Vec<f64> = (0..rows).map(|row| sin(phase(row)) * (0.6 + 1.4 * row as f64 / rows as f64)).collect();
     let mut y: Vec<f64> = x.iter().map(|x| 2.3 * x).collect();
     for (threshold, weight) in [(0.1, 0.5), (0.4, 0.8), (0.9, 0.3)] {
         let stop = Stop::new(threshold).unwrap().run(&x);

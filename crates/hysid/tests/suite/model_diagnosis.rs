@@ -3,6 +3,7 @@
 use crate::scaffold::*;
 use hysid::diagnosis::model::TimeScale;
 use hysid::diagnosis::{ModelDiagnosis, Property, Verdict};
+use hysid::elementary::sin;
 
 fn data() -> Dataset {
     Dataset::new(ColumnNames::plain(1), vec![record(180, "a"), record(120, "b")]).unwrap()
@@ -85,7 +86,7 @@ fn verdicts_of_all_models_are_those_that_theory_guarantees() {
 #[test]
 fn everything_that_a_model_asks_for_is_provided() {
     let one = record(180, "a");
-    let temperature: Vec<f64> = (0..one.len()).map(|k| 20.0 + 10.0 * (0.03 * k as f64).sin()).collect();
+    let temperature: Vec<f64> = (0..one.len()).map(|k| 20.0 + 10.0 * sin(0.03 * k as f64)).collect();
     let inputs = vec![one.inputs()[0].to_vec(), temperature.clone()];
     let time = one.time().unwrap().to_vec();
     let two = Record::new("two inputs", inputs, one.output().to_vec()).unwrap().with_time(time).unwrap();

@@ -5,23 +5,23 @@ use crate::scaffold::*;
 use std::sync::LazyLock;
 
 use hysid::data::warning::Warning;
+use hysid::elementary::{cos, sin};
 use hysid::fit::network::fit;
 use hysid::model::FORMAT_VERSION;
 
 /// Uneven steps in time, so that no two rows are alike.
 fn record(inputs: usize, rows: usize) -> Record {
-    let x: Vec<f64> =
-        (0..rows).map(|k| (0.21 * k as f64).sin() * (1.0 + 0.6 * (0.05 * k as f64).cos())).collect();
+    let x: Vec<f64> = (0..rows).map(|k| sin(0.21 * k as f64) * (1.0 + 0.6 * cos(0.05 * k as f64))).collect();
     let mut y = Stop::new(0.4).unwrap().run(&x);
     let mut columns = vec![x];
     for c in 1..inputs {
-        columns.push((0..rows).map(|k| (0.07 * (c + 1) as f64 * k as f64).cos()).collect());
+        columns.push((0..rows).map(|k| cos(0.07 * (c + 1) as f64 * k as f64)).collect());
     }
     for (k, y) in y.iter_mut().enumerate() {
         *y += 0.2 * columns.iter().map(|column| column[k]).sum::<f64>();
     }
-    let time: Vec<f64> = (0..rows).map(|k| 0.1 * k as f64 + 0.02 * (1.3 * k as f64).sin()).collect();
-    let rate = (0..rows).map(|k| 2.1 * (0.21 * k as f64).cos()).collect();
+    let time: Vec<f64> = (0..rows).map(|k| 0.1 * k as f64 + 0.02 * sin(1.3 * k as f64)).collect();
+    let rate = (0..rows).map(|k| 2.1 * cos(0.21 * k as f64)).collect();
     Record::new("run 1", columns, y).unwrap().with_time(time).unwrap().with_given_rate(rate).unwrap()
 }
 

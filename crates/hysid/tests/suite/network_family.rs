@@ -3,6 +3,7 @@
 
 use crate::gradient::run;
 use crate::scaffold::*;
+use hysid::elementary::{exp, tanh};
 use hysid::operator::Relaxation;
 
 /// Every family; one and three inputs, rate and time on and off where the family has them.
@@ -90,12 +91,12 @@ fn reference(network: &Network, drive: &Drive) -> Vec<f64> {
 
     let mut stops: Vec<DeterioratingStop> = (0..a.stops)
         .map(|j| {
-            let beta = ln_beta.get(j).map_or(f64::INFINITY, |ln_beta| ln_beta.exp());
+            let beta = ln_beta.get(j).map_or(f64::INFINITY, |ln_beta| exp(*ln_beta));
             DeterioratingStop::new(1.0, beta).unwrap()
         })
         .collect();
     let mut relaxing: Vec<Relaxation> =
-        ln_tau.iter().map(|ln_tau| Relaxation::new(ln_tau.exp()).unwrap()).collect();
+        ln_tau.iter().map(|ln_tau| Relaxation::new(exp(*ln_tau)).unwrap()).collect();
 
     (0..drive.len())
         .map(|k| {
@@ -113,9 +114,7 @@ fn reference(network: &Network, drive: &Drive) -> Vec<f64> {
             }
             let h: Vec<f64> = hidden
                 .iter()
-                .map(|neuron| {
-                    (neuron[0] + neuron[1..].iter().zip(&z).map(|(u, z)| u * z).sum::<f64>()).tanh()
-                })
+                .map(|neuron| tanh(neuron[0] + neuron[1..].iter().zip(&z).map(|(u, z)| u * z).sum::<f64>()))
                 .collect();
             let mut summed = if a.constant { vec![1.0] } else { Vec::new() };
             summed.extend(&h);

@@ -1,6 +1,8 @@
 //! Where the input is measured from does not matter: the same data at 198 to 202 mm in place of -2 to 2 give
 //! the same model.
 
+use hysid::elementary::sin;
+
 use crate::scaffold::*;
 
 fn shifted(by: f64) -> Dataset {
@@ -72,7 +74,7 @@ fn the_origin_of_a_field_stays() {
 fn further_inputs_are_shifted_too() {
     let with_temperature = |by: f64| {
         let record = record(200, "a");
-        let temperature = (0..200).map(|row| by + 5.0 * (0.05 * f64::from(row)).sin()).collect();
+        let temperature = (0..200).map(|row| by + 5.0 * sin(0.05 * f64::from(row))).collect();
         let record =
             Record::new("a", vec![record.inputs()[0].to_vec(), temperature], record.output().to_vec());
         Dataset::new(ColumnNames { time: None, ..ColumnNames::plain(2) }, vec![record.unwrap()]).unwrap()

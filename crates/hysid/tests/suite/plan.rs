@@ -3,6 +3,7 @@
 
 use crate::scaffold::*;
 use hysid::diagnosis::Verdict;
+use hysid::elementary::{exp, sin};
 use hysid::plan::{Kind, Leg, Limits, Path, Plan, PlanOptions, Wanted, Wave};
 use hysid::property::Property;
 use hysid::specimens::Ferromagnet;
@@ -10,7 +11,7 @@ use hysid::{Fit, diagnose};
 use proptest::prelude::*;
 
 fn cycles(amplitude: f64, mean: f64, rows: usize, step: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    let at = |row: usize, lag: f64| mean + amplitude * (0.12 * row as f64 - lag).sin();
+    let at = |row: usize, lag: f64| mean + amplitude * sin(0.12 * row as f64 - lag);
     let t: Vec<f64> = (0..rows).map(|row| row as f64 * step).collect();
     let x = (0..rows).map(|row| at(row, 0.0)).collect();
     let y = (0..rows).map(|row| at(row, 0.3)).collect();
@@ -178,7 +179,7 @@ fn a_seed_determines_the_plan() {
 #[test]
 fn swings_of_a_specimen_that_deteriorates_grow() {
     let (t, x, mut y) = cycles(10.0, 0.0, 600, 0.1);
-    y.iter_mut().enumerate().for_each(|(row, y)| *y *= (-0.003 * row as f64).exp());
+    y.iter_mut().enumerate().for_each(|(row, y)| *y *= exp(-0.003 * row as f64));
     let data = Dataset::from_columns(Some(("t", &t)), &[("x", &x)], ("y", &y)).unwrap();
     assert_eq!(diagnose(&data).unwrap().verdict(Property::Deterioration), Verdict::Yes);
     let plan = Plan::of(&data, &PlanOptions::default()).unwrap();

@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use hysid::elementary::{cos, hypot, sin, square};
 use hysid::restoring_force::{Acceleration, Motion, RestoringForce, restoring_force};
 use hysid::specimens::{BoucWenOscillator, ShearBuilding};
 use hysid::{ColumnNames, Dataset, Error, Fit, Record};
@@ -20,7 +21,7 @@ fn largest_error_percent(found: &[f64], exact: &[f64]) -> f64 {
 
 fn rms_error(found: &[f64], exact: &[f64]) -> f64 {
     let squares: Vec<f64> =
-        found.iter().zip(exact).filter(|(found, _)| !found.is_nan()).map(|(a, b)| (a - b).powi(2)).collect();
+        found.iter().zip(exact).filter(|(found, _)| !found.is_nan()).map(|(a, b)| square(a - b)).collect();
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
@@ -33,9 +34,9 @@ fn linear(rows: usize, step: f64) -> [Vec<f64>; 6] {
     let sum = |of: &dyn Fn(f64, f64, f64) -> f64| -> Vec<f64> {
         time.iter().map(|t| tones.iter().map(|&(size, pace)| of(size, pace, *t)).sum()).collect()
     };
-    let y = sum(&|size, pace, t| size * (pace * t).sin());
-    let v = sum(&|size, pace, t| size * pace * (pace * t).cos());
-    let a = sum(&|size, pace, t| -size * pace * pace * (pace * t).sin());
+    let y = sum(&|size, pace, t| size * sin(pace * t));
+    let v = sum(&|size, pace, t| size * pace * cos(pace * t));
+    let a = sum(&|size, pace, t| -size * pace * pace * sin(pace * t));
     let r: Vec<f64> = y.iter().zip(&v).map(|(y, v)| stiffness * y + damping * v).collect();
     let u = a.iter().zip(&r).map(|(a, r)| mass * a + r).collect();
     [time, y, v, a, u, r]
@@ -47,7 +48,7 @@ fn a_spring_and_a_damper_have_their_closed_form() {
     let motion = Motion { time: &time, displacement: &y, applied_force: Some(&u), ..Motion::default() };
     let of = |motion: Motion<'_>| restoring_force(&[motion], 2.0, None).unwrap();
     // Measured accelerations give the force to rounding, relative and absolute alike.
-    let ground: Vec<f64> = time.iter().map(|t| 3.0 * (5.0 * t).sin()).collect();
+    let ground: Vec<f64> = time.iter().map(|t| 3.0 * sin(5.0 * t)).collect();
     let absolute: Vec<f64> = a.iter().zip(&ground).map(|(a, ground)| a + ground).collect();
     let pushed: Vec<f64> = u.iter().zip(&ground).map(|(u, ground)| u + 2.0 * ground).collect();
     let relative = of(Motion { acceleration: Acceleration::Relative(&a), ..motion });
@@ -99,9 +100,9 @@ fn the_bias_has_the_order_of_the_polynomial() {
 #[test]
 fn noise_is_told_and_a_record_may_have_blanks_and_uneven_time() {
     let [mut time, ..] = linear(3000, 0.005);
-    time.iter_mut().enumerate().for_each(|(row, t)| *t += 0.0008 * (2.3 * row as f64).sin());
+    time.iter_mut().enumerate().for_each(|(row, t)| *t += 0.0008 * sin(2.3 * row as f64));
     let (mass, stiffness) = (2.0, 500.0);
-    let exact: Vec<f64> = time.iter().map(|t| stiffness * 0.02 * (9.0 * t).sin()).collect();
+    let exact: Vec<f64> = time.iter().map(|t| stiffness * 0.02 * sin(9.0 * t)).collect();
     // Noise of 5e-5 m, from a generator of its own.
     let mut state = 1u64;
     let mut uniform = || {
@@ -116,7 +117,7 @@ fn noise_is_told_and_a_record_may_have_blanks_and_uneven_time() {
     let found = restoring_force(&[motion], mass, None).unwrap();
     assert!(found.records[0].force[1000].is_nan() && found.records[0].force[999].is_finite());
     let error = rms_error(&found.records[0].force, &exact);
-    let told = found.noise.hypot(found.smoothing);
+    let told = hypot(found.noise, found.smoothing);
     assert!((0.6..1.7).contains(&(told / error)), "{told} {error}");
     assert!(found.noise_percent().unwrap() < 5.0, "{:?}", found.noise_percent());
     // A short window lets more noise through, and says so.
@@ -133,7 +134,7 @@ fn noise_is_told_and_a_record_may_have_blanks_and_uneven_time() {
 fn multisine(seed: u64, size: f64, rows: usize, step: f64) -> Vec<f64> {
     let tone = |k: u64| {
         let phase = TAU * ((seed * 7919 + k * k * 104_729) % 1009) as f64 / 1009.0;
-        move |t: f64| (TAU * (5.0 + 2.5 * k as f64) * t + phase).sin()
+        move |t: f64| sin(TAU * (5.0 + 2.5 * k as f64) * t + phase)
     };
     let tones: Vec<_> = (0..22).map(tone).collect();
     let scale = size / 11f64.sqrt();
@@ -169,7 +170,7 @@ fn the_force_of_the_benchmark_is_found() {
     let error = 100.0 * rms_error(&found.records[0].force, &exact[3]) / found.deviation;
     // Measured: 0.28 %; its branches have kinks, which a filter rounds.
     assert!(error < 0.5, "{error}");
-    let told = found.noise_percent().unwrap().hypot(found.smoothing_percent().unwrap());
+    let told = hypot(found.noise_percent().unwrap(), found.smoothing_percent().unwrap());
     assert!((0.7..1.4).contains(&(told / error)), "{told} {error}");
 }
 
@@ -202,7 +203,7 @@ fn the_storey_of_a_shaken_building_has_the_force_of_its_law() {
     let ground: Vec<f64> = (0..4000)
         .map(|row| {
             let t = row as f64 * step;
-            3.0 * (0.3 * t).sin() * ((11.0 * t).sin() + 0.6 * (17.0 * t + 1.0).sin())
+            3.0 * sin(0.3 * t) * (sin(11.0 * t) + 0.6 * sin(17.0 * t + 1.0))
         })
         .collect();
     let motion: Vec<_> = building.motion(ground.iter().copied(), step, 10).collect();

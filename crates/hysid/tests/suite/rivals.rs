@@ -2,6 +2,7 @@
 //! stepping and simulating agree, its parameters are named.
 
 use crate::scaffold::*;
+use hysid::elementary::sin;
 use hysid::law::Dimension;
 use hysid::law::lugre::Lugre;
 use hysid::law::series::samples;
@@ -187,7 +188,7 @@ fn the_friction_of_a_joint_is_found_again() {
         viscous: 0.4,
     };
     let time: Vec<f64> = (0..2000).map(|k| 0.01 * f64::from(k)).collect();
-    let x: Vec<f64> = time.iter().map(|t| 0.4 * t.sin() + 0.1 * (3.1 * t).sin()).collect();
+    let x: Vec<f64> = time.iter().map(|t| 0.4 * sin(*t) + 0.1 * sin(3.1 * t)).collect();
     let blank = Record::new("joint", vec![x], vec![0.0; 2000]).unwrap().with_time(time).unwrap();
     let output = Classical::from(law).run(&samples(&blank.excitation(), Some(RateMethod::Central)).unwrap());
     let data = Dataset::new(ColumnNames::plain(1), vec![blank.with_output(output).unwrap()]).unwrap();

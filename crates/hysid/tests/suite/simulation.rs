@@ -1,6 +1,7 @@
 //! Free runs in blocks: however a record is cut, the outputs are those of the whole to the last bit.
 
 use crate::scaffold::*;
+use hysid::elementary::cos;
 use hysid::model::{Prediction, Simulation};
 
 use crate::noisy_record::noisy;
@@ -12,14 +13,14 @@ const METHODS: [RateMethod; 4] =
 fn rich(rows: usize, name: &str) -> Record {
     let plain = record(rows, name);
     let x = plain.inputs()[0].to_vec();
-    let load = (0..rows).map(|k| (0.05 * k as f64).cos()).collect();
-    let rate = (0..rows).map(|k| (0.19 * k as f64).cos()).collect();
+    let load = (0..rows).map(|k| cos(0.05 * k as f64)).collect();
+    let rate = (0..rows).map(|k| cos(0.19 * k as f64)).collect();
     let rich = Record::new(name, vec![x, load], plain.output().to_vec()).unwrap();
     rich.with_time(plain.time().unwrap().to_vec()).unwrap().with_given_rate(rate).unwrap()
 }
 
 fn with_rate(rows: usize, name: &str) -> Record {
-    let rate = (0..rows).map(|k| (0.19 * k as f64).cos()).collect();
+    let rate = (0..rows).map(|k| cos(0.19 * k as f64)).collect();
     record(rows, name).with_given_rate(rate).unwrap()
 }
 

@@ -2,6 +2,7 @@
 //! are about those of an independent implementation, with room for another starting point.
 
 use crate::scaffold::*;
+use hysid::elementary::powf;
 use hysid::optimise::space_dilatation::{DilatationOptions, Minimum, SpaceDilatation};
 
 /// The lowest point found in so many iterations from `x`, and why the search ended by itself, if it did.
@@ -41,7 +42,7 @@ fn quadratic(condition: f64) -> impl FnMut(&[f64], &mut [f64]) -> f64 {
         let n = x.len() as f64;
         let mut value = 0.0;
         for (i, (x, g)) in x.iter().zip(g).enumerate() {
-            let weight = condition.powf(i as f64 / (n - 1.0));
+            let weight = powf(condition, i as f64 / (n - 1.0));
             value += weight * x * x;
             *g = 2.0 * weight * x;
         }
@@ -55,7 +56,7 @@ fn absolute_values(condition: f64) -> impl FnMut(&[f64], &mut [f64]) -> f64 {
         let n = x.len() as f64;
         let mut value = 0.0;
         for (i, (x, g)) in x.iter().zip(g).enumerate() {
-            let weight = condition.powf(i as f64 / (n - 1.0));
+            let weight = powf(condition, i as f64 / (n - 1.0));
             value += weight * x.abs();
             *g = weight * x.signum();
         }

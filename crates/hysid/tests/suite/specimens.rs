@@ -6,6 +6,7 @@ use crate::scaffold::*;
 use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use hysid::elementary::{atan, atan2, cos, exp, hypot, powf, sin, square};
 use hysid::specimens::generalized_play::{Envelope, GeneralizedPlays, PlayWeights, Start};
 use hysid::specimens::{
     BoucWenBaberNoori, Concrete, ConcreteParameters, Ferromagnet, MagnetostrictiveActuator, PiezoActuator,
@@ -44,7 +45,7 @@ fn without_degradation_the_branches_are_exponentials() {
     let loaded = through(&[0.0, 3.0], 40);
     for &xi in &loaded {
         element.step(xi);
-        let expected = a * (1.0 - (-xi * nu_0 * (beta + gamma) / eta_0).exp());
+        let expected = a * (1.0 - exp(-xi * nu_0 * (beta + gamma) / eta_0));
         assert_abs_diff_eq!(element.hysteretic_displacement(), expected, epsilon = 1e-8);
     }
 
@@ -52,7 +53,7 @@ fn without_degradation_the_branches_are_exponentials() {
     let mut compared = 0;
     for xi in through(&[3.0, 1.0], 40) {
         element.step(xi);
-        let expected = (z_r + c) * (-(3.0 - xi) * nu_0 * (beta - gamma) / eta_0).exp() - c;
+        let expected = (z_r + c) * exp(-(3.0 - xi) * nu_0 * (beta - gamma) / eta_0) - c;
         if expected >= 0.0 {
             assert_abs_diff_eq!(element.hysteretic_displacement(), expected, epsilon = 1e-8);
             compared += 1;
@@ -250,17 +251,17 @@ fn piezo_loops_are_ellipses_of_the_area_of_their_law() {
     for record in train.records().iter().chain(test.records()) {
         let frequency: f64 = record.name().trim_end_matches(" Hz").parse().unwrap();
         let (amplitude, lag) = (6.0 * (1.0 - 2e-4 * frequency), 0.10 + 6e-4 * frequency);
-        let area = PI * 40.0 * amplitude * lag.sin();
+        let area = PI * 40.0 * amplitude * sin(lag);
         assert_relative_eq!(PiezoActuator { frequency }.loop_area(), area, max_relative = 1e-12);
         let (u, y) = scored(record);
         let angle = TAU / u.len() as f64;
-        assert_relative_eq!(enclosed(&u, &y).abs(), area * angle.sin() / angle, max_relative = 1e-9);
+        assert_relative_eq!(enclosed(&u, &y).abs(), area * sin(angle) / angle, max_relative = 1e-9);
         let mean = y.iter().sum::<f64>() / y.len() as f64;
         assert_abs_diff_eq!(mean, 6.0, epsilon = 1e-12);
         // Every point lies on the conic of an ellipse with this amplitude and lag.
         for (u, y) in u.iter().zip(&y) {
             let (a, b) = ((u - 40.0) / 40.0, (y - 6.0) / amplitude);
-            assert_abs_diff_eq!(a * a - 2.0 * a * b * lag.cos() + b * b, lag.sin().powi(2), epsilon = 1e-12);
+            assert_abs_diff_eq!(a * a - 2.0 * a * b * cos(lag) + b * b, square(sin(lag)), epsilon = 1e-12);
         }
     }
 }
@@ -283,20 +284,20 @@ fn without_hysteresis_lag_and_resonance_have_their_frequency_response() {
         let (mut in_phase, mut out_of_phase) = (0.0, 0.0);
         for k in 1..=2 * periods * samples {
             let angle = TAU * k as f64 / samples as f64;
-            let y = actuator.step(angle.sin(), step);
+            let y = actuator.step(sin(angle), step);
             if k > periods * samples {
-                in_phase += y * angle.sin();
-                out_of_phase += y * angle.cos();
+                in_phase += y * sin(angle);
+                out_of_phase += y * cos(angle);
             }
         }
         let share = omega / resonance;
         let gain = 1.0
-            / ((1.0 + (omega * lag).powi(2)).sqrt()
-                * ((1.0 - share * share).powi(2) + (2.0 * damping * share).powi(2)).sqrt());
-        let behind = (omega * lag).atan() + (2.0 * damping * share).atan2(1.0 - share * share);
-        let found: f64 = 2.0 * in_phase.hypot(out_of_phase) / (periods * samples) as f64;
+            / ((1.0 + square(omega * lag)).sqrt()
+                * (square(1.0 - share * share) + square(2.0 * damping * share)).sqrt());
+        let behind = atan(omega * lag) + atan2(2.0 * damping * share, 1.0 - share * share);
+        let found: f64 = 2.0 * hypot(in_phase, out_of_phase) / (periods * samples) as f64;
         assert_relative_eq!(found, gain, max_relative = 1e-3);
-        assert_abs_diff_eq!((-out_of_phase).atan2(in_phase).rem_euclid(TAU), behind, epsilon = 1e-3);
+        assert_abs_diff_eq!(atan2(-out_of_phase, in_phase).rem_euclid(TAU), behind, epsilon = 1e-3);
     }
 }
 
@@ -349,7 +350,7 @@ fn the_envelope_has_its_strength_its_modulus_and_an_end() {
     assert_relative_eq!(concrete.envelope(1e-6) / 1e-6, 24.9, max_relative = 1e-6);
     // f_c η r/(r - 1 + η^r) with r = 24.9/(24.9 - 13.8), at η = 2.
     let r: f64 = 24.9 / 11.1;
-    assert_relative_eq!(concrete.envelope(4.0), 27.6 * 2.0 * r / (r - 1.0 + 2.0_f64.powf(r)));
+    assert_relative_eq!(concrete.envelope(4.0), 27.6 * 2.0 * r / (r - 1.0 + powf(2.0, r)));
     assert!(concrete.envelope(6.0) > 0.0);
     assert_eq!(concrete.envelope(6.001), 0.0);
     assert_eq!(concrete.envelope(-1.0), 0.0);
@@ -489,7 +490,7 @@ fn noise_has_the_deviation_asked_for_and_leaves_blanks_blank() {
     let moments = |values: &[f64]| {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
-        (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt())
+        (mean, (values.iter().map(|v| square(v - mean)).sum::<f64>() / n).sqrt())
     };
     let scored: Vec<f64> = clean.output().iter().copied().filter(|y| !y.is_nan()).collect();
     let deviation = moments(&scored).1;

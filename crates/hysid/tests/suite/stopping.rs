@@ -4,6 +4,7 @@ use crate::scaffold::*;
 use std::time::{Duration, Instant};
 
 use hysid::Error;
+use hysid::elementary::sin;
 use hysid::fit::network::{Checkpoint, fit, resume};
 use serde_json::json;
 
@@ -21,7 +22,7 @@ fn noisy(rows: usize, records: usize) -> Dataset {
         (state >> 33) as f64 / (1u64 << 31) as f64 - 0.5
     };
     let record = |index: usize| {
-        let x: Vec<f64> = (0..rows).map(|k| (0.004 * k as f64).sin() + 0.01 * noise()).collect();
+        let x: Vec<f64> = (0..rows).map(|k| sin(0.004 * k as f64) + 0.01 * noise()).collect();
         let mut play: f64 = 0.0;
         let y = x.iter().map(|x| {
             play = play.clamp(x - 0.3, x + 0.3);

@@ -1,6 +1,7 @@
 //! Fits of synthetic data that the library's own operators generate, and what every fit promises.
 
 use crate::scaffold::*;
+use hysid::elementary::{cos, exp, ln, sin, tanh};
 use hysid::fit::network::fit;
 use hysid::model::history::{Phase, Run};
 use hysid::options::network::Regularisation;
@@ -71,7 +72,7 @@ fn a_bank_of_stops_is_found() {
 fn a_network_of_the_family_is_found_and_carries_on() {
     let sizes = Sizes { stops: 3, hidden: 2, relaxation: 0 };
     let architecture = Architecture::new(Family::Xpnn, sizes, 1, false, false).unwrap();
-    let ln_beta = [60f64, 100.0, 1000.0].map(f64::ln);
+    let ln_beta = [60f64, 100.0, 1000.0].map(ln);
     let mut parameters = vec![4.0, 2.0, 1.2];
     parameters.extend(ln_beta);
     parameters.extend([0.8]);
@@ -100,12 +101,12 @@ fn a_network_of_the_family_is_found_and_carries_on() {
 fn two_speeds() -> Dataset {
     let record = |step: f64| {
         let x: Vec<f64> =
-            (0..220).map(|k| (0.2 * k as f64).sin() * (0.5 + 0.5 * (0.03 * k as f64).cos())).collect();
+            (0..220).map(|k| sin(0.2 * k as f64) * (0.5 + 0.5 * cos(0.03 * k as f64))).collect();
         let mut stop = Stop::new(0.3).unwrap();
         let y = (0..220)
             .map(|k| {
                 let speed = if k == 0 { 0.0 } else { (x[k] - x[k - 1]) / step };
-                stop.step(x[k]) + 0.4 * speed.tanh()
+                stop.step(x[k]) + 0.4 * tanh(speed)
             })
             .collect();
         let time = (0..220).map(|k| step * k as f64).collect();
@@ -274,7 +275,7 @@ fn pnn_and_gpnn_find_their_own_parameters() {
     let x: Vec<f64> = (0..900)
         .map(|k| {
             let t = 0.02 * f64::from(k);
-            (0.3 + 0.07 * t) * (2.0 * t).sin() + 0.2 * (5.3 * t).sin()
+            (0.3 + 0.07 * t) * sin(2.0 * t) + 0.2 * sin(5.3 * t)
         })
         .collect();
     // Threshold, capacity, weight.
@@ -301,7 +302,7 @@ fn pnn_and_gpnn_find_their_own_parameters() {
         let mut found: Vec<(f64, f64)> = (0..3)
             .map(|stop| {
                 let threshold = scale / parameters[layout.stop_weights.clone()][stop].abs();
-                let capacity = parameters[layout.ln_beta.clone()].get(stop).map_or(0.0, |ln| ln.exp());
+                let capacity = parameters[layout.ln_beta.clone()].get(stop).map_or(0.0, |ln| exp(*ln));
                 (threshold, capacity * threshold)
             })
             .collect();

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
+use hysid::elementary::{cos, sin};
 use tempfile::TempDir;
 
 /// A folder of its own for one test.
@@ -204,9 +205,9 @@ pub const ROWS: usize = 60;
 pub fn rows() -> Vec<Vec<String>> {
     let row = |k: usize| {
         let phase = 0.3 * k as f64;
-        let x = phase.sin() * (0.5 + k as f64 / 120.0);
+        let x = sin(phase) * (0.5 + k as f64 / 120.0);
         let number = |value: f64| format!("{value:.6}");
-        vec![format!("{}.{}", k / 10, k % 10), number(x), number(x + 0.2 * phase.cos())]
+        vec![format!("{}.{}", k / 10, k % 10), number(x), number(x + 0.2 * cos(phase))]
     };
     (0..ROWS).map(row).collect()
 }

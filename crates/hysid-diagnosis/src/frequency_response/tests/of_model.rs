@@ -1,5 +1,6 @@
 //! Responses of models whose law is known.
 
+use hysid_core::elementary::{cos, hypot};
 use hysid_core::law::hysteretic_dynamics::{Dynamics, Element, Hold, Mode};
 use hysid_core::law::hysteretic_oscillator::HystereticOscillator;
 use hysid_core::law::{Classical, Law};
@@ -64,7 +65,7 @@ fn a_linear_model_has_one_response() {
         assert_eq!(response.points.len(), found.measured.points.len());
         for (point, measured) in response.points.iter().zip(&found.measured.points) {
             // The model is what was measured; the transient of the first period differs with the amplitude only in size.
-            let distance = (point.real - measured.real).hypot(point.imaginary - measured.imaginary);
+            let distance = hypot(point.real - measured.real, point.imaginary - measured.imaginary);
             assert!(distance < 1e-6 * measured.magnitude().max(0.01), "{factor} {point:?} {measured:?}");
         }
     }
@@ -109,7 +110,7 @@ fn a_slider_moves_the_resonance_with_the_amplitude() {
     // A force that is a straight line over each row is weaker by 1.6 % at 35 Hz.
     let below = |point: &&ResponsePoint| point.frequency < 35.0;
     for (a, b) in found.model[2].response.points.iter().filter(below).zip(&closed.points) {
-        assert!((a.real - b.real).hypot(a.imaginary - b.imaginary) < 0.02 * b.magnitude(), "{a:?} {b:?}");
+        assert!(hypot(a.real - b.real, a.imaginary - b.imaginary) < 0.02 * b.magnitude(), "{a:?} {b:?}");
     }
     assert!(small.coherence.unwrap() > 1.0 - 1e-5, "{small:?}");
     // Sliding softens it and takes energy.
@@ -124,7 +125,7 @@ fn a_slider_moves_the_resonance_with_the_amplitude() {
 /// a motion that is no response to the input.
 #[test]
 fn a_bias_is_raised_smoothly() {
-    let rise = |row: usize| 0.5 - 0.5 * (std::f64::consts::PI * (row as f64 / 800.0).min(1.0)).cos();
+    let rise = |row: usize| 0.5 - 0.5 * cos(std::f64::consts::PI * (row as f64 / 800.0).min(1.0));
     let input: Vec<f64> =
         coloured(8000, 8).iter().enumerate().map(|(row, x)| rise(row) * (20.0 + x)).collect();
     let data = dataset(vec![moved(&input)]);

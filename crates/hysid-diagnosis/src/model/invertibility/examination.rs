@@ -1,5 +1,6 @@
 //! The scans of a model after many pasts, with steps of many lengths.
 
+use hysid_core::elementary::powi;
 use hysid_core::error::Result;
 use hysid_core::model::Stepper;
 
@@ -142,7 +143,7 @@ fn paces(probe: &Probe) -> Vec<Pace> {
     if !speeds.matter() {
         return vec![Pace { speed: speeds.middle, time_steps: vec![middle], is_worn: true }];
     }
-    let steps = DOUBLINGS.map(|power| middle * 2f64.powi(power)).collect();
+    let steps = DOUBLINGS.map(|power| middle * powi(2.0, power)).collect();
     let own = |speed: f64| Pace { speed, time_steps: vec![row(probe, speed)], is_worn: false };
     vec![
         own(speeds.vanishing),

@@ -1,5 +1,6 @@
 //! Pasts of a model: paths of the input, and the moments on them at which the next step is examined.
 
+use hysid_core::elementary::powi;
 use hysid_core::error::Result;
 use hysid_core::model::Stepper;
 
@@ -41,7 +42,7 @@ pub(super) struct Way {
 /// The paths. `worn` asks for repeated loops, which wear a model out, in place of a few.
 pub(super) fn ways(worn: bool) -> Vec<Way> {
     let (count, share) = SHRINKING;
-    let shrinking = (0..2 * count).map(|turn| (-1f64).powi(turn) * share.powi(turn / 2));
+    let shrinking = (0..2 * count).map(|turn| powi(-1.0, turn) * powi(share, turn / 2));
     let loops = if worn { repeated_loops() } else { WHOLE_LOOPS.to_vec() };
     vec![
         Way { name: "protocol", turning: PROTOCOL.to_vec() },

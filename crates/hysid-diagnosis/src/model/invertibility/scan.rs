@@ -167,6 +167,8 @@ fn jump(
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::tanh;
+
     use super::*;
 
     fn scan(function: impl Fn(f64) -> f64) -> Scan {
@@ -176,7 +178,7 @@ mod tests {
     #[test]
     fn a_monotone_function_has_neither_reversals_nor_jumps() {
         // A kink, and a slope that is steep without a jump.
-        for function in [|x: f64| x + f64::max(0.0, 9.0 * x), |x: f64| (2000.0 * x).tanh() + 0.01 * x] {
+        for function in [|x: f64| x + f64::max(0.0, 9.0 * x), |x: f64| tanh(2000.0 * x) + 0.01 * x] {
             let scan = scan(function);
             assert_eq!(scan.reversal(1.0).size(), 0.0);
             assert!(scan.ambiguous(1.0, 0.0).is_empty() && scan.jumps.is_empty(), "{:?}", scan.jumps);

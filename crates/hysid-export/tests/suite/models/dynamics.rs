@@ -1,6 +1,7 @@
 //! Modes with hysteretic elements, of random coefficients.
 
 use hysid::Model;
+use hysid_core::elementary::exp;
 use hysid_core::law::hysteretic_dynamics::{Dynamics, Element, Hold, Mode, Shape};
 use hysid_core::law::hysteretic_oscillator::HystereticOscillator;
 use hysid_core::law::hysteretic_state_space::HystereticStateSpace;
@@ -30,7 +31,7 @@ fn element(numbers: &mut Numbers, shape: Shape, modes: usize) -> Element {
         of_input: 0.3 * numbers.next(),
         compliances: numbers.many(modes, 0.3),
         in_output: numbers.next(),
-        thresholds: numbers.many(stops, 1.0).iter().map(|t| 0.3 * t.exp()).collect(),
+        thresholds: numbers.many(stops, 1.0).iter().map(|t| 0.3 * exp(*t)).collect(),
         stop_velocities: numbers.many(stops, 0.3),
         strength_losses: numbers
             .many(if deteriorates { stops } else { 0 }, 0.01)
@@ -45,7 +46,7 @@ fn element(numbers: &mut Numbers, shape: Shape, modes: usize) -> Element {
             .collect(),
         rising: numbers.many(states * neurons, 0.6),
         falling: numbers.many(states * neurons, 0.6),
-        path_leaks: numbers.many(states, 1.0).iter().map(|c| 2.0 * c.exp()).collect(),
+        path_leaks: numbers.many(states, 1.0).iter().map(|c| 2.0 * exp(*c)).collect(),
         initial: numbers.many(states, 0.5),
         force: numbers.many(stops + states + neurons, 0.6),
     }

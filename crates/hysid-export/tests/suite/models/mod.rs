@@ -5,6 +5,7 @@
 mod dynamics;
 
 use hysid::{ColumnNames, Dataset, Fit, Model, Record};
+use hysid_core::elementary::{cos, ln, sin};
 use serde_json::{Value, json};
 
 /// A spring, two plays and a term of the rate, with time stamps and a further input.
@@ -14,11 +15,9 @@ pub fn data(inputs: usize) -> Dataset {
         let time: Vec<f64> = (0..rows).map(|k| 0.02 * f64::from(k)).collect();
         let x: Vec<f64> = time
             .iter()
-            .map(|t| {
-                40.0 + 3.0 * (1.0 + 0.3 * t).ln() * (2.1 * t + f64::from(number)).sin() + (7.3 * t).sin()
-            })
+            .map(|t| 40.0 + 3.0 * ln(1.0 + 0.3 * t) * sin(2.1 * t + f64::from(number)) + sin(7.3 * t))
             .collect();
-        let further: Vec<f64> = time.iter().map(|t| 5.0 + (0.9 * t).cos()).collect();
+        let further: Vec<f64> = time.iter().map(|t| 5.0 + cos(0.9 * t)).collect();
         let mut plays: [f64; 2] = [40.0, 40.0];
         let mut before = x[0];
         let y: Vec<f64> = x
@@ -131,9 +130,9 @@ pub fn path(rows: usize, inputs: usize) -> Vec<Vec<f64>> {
         .map(|k| {
             let t = k as f64;
             let rest = if k % 97 < 6 { 0.0 } else { 1.0 };
-            let size = 2.0 + (0.001 * t).sin() * 4.0 + if k % 1000 > 980 { 30.0 } else { 0.0 };
-            let x = 40.0 + rest * size * ((0.211 * t).sin() + 0.4 * (1.7 * t).sin());
-            if inputs == 2 { vec![x, 5.0 + (0.013 * t).cos()] } else { vec![x] }
+            let size = 2.0 + sin(0.001 * t) * 4.0 + if k % 1000 > 980 { 30.0 } else { 0.0 };
+            let x = 40.0 + rest * size * (sin(0.211 * t) + 0.4 * sin(1.7 * t));
+            if inputs == 2 { vec![x, 5.0 + cos(0.013 * t)] } else { vec![x] }
         })
         .collect()
 }

@@ -3,13 +3,14 @@
 use hysid::Fit;
 use hysid::data::record::Dataset;
 use hysid::model::Model;
+use hysid_core::elementary::sin;
 use hysid_export::{Options, Target, export};
 
 /// Ends comments and lines of every language.
 const FOREIGN: &str = "a*\\\n/ int foreign_code; /*\r\n foreign_code = 1; \u{85}foreign_code\u{2028}*/\"\"\"'''??/\n\u{fffe}\u{1}\u{202e}<b>";
 
 fn model() -> Model {
-    let input: Vec<f64> = (0..80).map(|k| (0.2 * f64::from(k)).sin() * f64::from(k) / 40.0).collect();
+    let input: Vec<f64> = (0..80).map(|k| sin(0.2 * f64::from(k)) * f64::from(k) / 40.0).collect();
     let output: Vec<f64> = input.iter().map(|x| 2.0 * x + 0.1).collect();
     let name = format!("x {FOREIGN}");
     let data = Dataset::from_columns(None, &[(&name, &input)], ("", &output)).unwrap();

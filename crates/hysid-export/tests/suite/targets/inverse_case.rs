@@ -1,6 +1,7 @@
 //! Wanted outputs of all kinds, and what the inverse of the library gives for them.
 
 use hysid::{Model, Reach};
+use hysid_core::elementary::{cos, sin};
 use hysid_export::InverseOptions;
 use hysid_export::description::{Argument, Description, RateSource};
 use hysid_export::program::Precision;
@@ -57,11 +58,11 @@ impl InverseCase {
         for row in 0..rows {
             let t = row as f64;
             let others: Vec<f64> =
-                (1..ranges.inputs.len()).map(|input| 5.0 + (0.013 * t * input as f64).cos()).collect();
+                (1..ranges.inputs.len()).map(|input| 5.0 + cos(0.013 * t * input as f64)).collect();
             let before = time;
             time += time_step(row);
             time_on_path += time_step(row);
-            let place = 0.5 + 0.35 * ((0.043 * t).sin() + 0.4 * (0.31 * t).sin());
+            let place = 0.5 + 0.35 * (sin(0.043 * t) + 0.4 * sin(0.31 * t));
             let inputs = [&[low + place * (high - low)], &others[..]].concat();
             let on_path = specimen.step(&inputs, time_on_path, None).unwrap();
             let kind = unit();

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use hysid::Model;
+use hysid_core::elementary::{cos, sin};
 use hysid_core::law::bouc_wen::{BoucWen, Degradation};
 use hysid_core::law::{Classical, Law as _};
 use hysid_core::model::Predictor;
@@ -225,7 +226,7 @@ fn native_materials_approach_the_model_with_small_steps() {
         assert!(script.contains(&format!("uniaxialMaterial {command} $tag ")), "{script}");
         let origin = model.input_transform().origin(0);
         let rows: Vec<f64> =
-            (0..200).map(|k| 4.0 * (0.13 * f64::from(k)).sin() * (0.011 * f64::from(k)).cos()).collect();
+            (0..200).map(|k| 4.0 * sin(0.13 * f64::from(k)) * cos(0.011 * f64::from(k))).collect();
         let mut stepper = model.stepper();
         let expected: Vec<f64> =
             rows.iter().map(|x| stepper.step(&[x + origin], 0.0, None).unwrap() - law.offset).collect();

@@ -2,6 +2,8 @@
 //! weights predicts held-out data from the fits to folds and, with the fits of the same starts to everything, is
 //! the ensemble.
 
+use hysid_core::elementary::{exp, ln};
+
 use crate::error::Result;
 use crate::fit::auto::prior::{self, Evidence};
 use crate::fit::auto::score::{Score, weights};
@@ -120,10 +122,10 @@ impl Combination {
     /// The error to be expected on loops that the data do not show: the geometric mean of those of its candidates.
     pub fn unseen_error(&self, trials: &[Trial], evidence: Evidence) -> f64 {
         let of_candidate = |(place, share): (usize, Weights)| {
-            share.inside * trials[place].unseen_error(evidence).max(f64::MIN_POSITIVE).ln()
+            share.inside * ln(trials[place].unseen_error(evidence).max(f64::MIN_POSITIVE))
         };
         if evidence.is_one_loop() {
-            self.shares().into_iter().map(of_candidate).sum::<f64>().exp()
+            exp(self.shares().into_iter().map(of_candidate).sum::<f64>())
         } else {
             0.0
         }
@@ -158,7 +160,7 @@ impl Combination {
             let score = Score::of(&combination.predictions(trials, folds), folds, counted);
             score.with_unseen(combination.unseen_error(trials, evidence)).sum() / 2.0
         };
-        let enough = error(self) + WORTH.ln();
+        let enough = error(self) + ln(WORTH);
         let of_fewer = (FEWEST.min(most)..most).filter_map(|count| self.first(count));
         let mut of_fewer = of_fewer.filter(|fewer| error(fewer) <= enough);
         of_fewer.next().or_else(|| self.first(most))
@@ -240,6 +242,8 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_xoshiro::Xoshiro256PlusPlus;
 
+    use hysid_core::elementary::{powf, sin};
+
     use super::*;
     use crate::data::record::{ColumnNames, Dataset, Record};
     use crate::fit::auto::candidates::Candidate;
@@ -252,8 +256,7 @@ mod tests {
     use crate::validation::folds;
 
     fn data() -> Dataset {
-        let x: Vec<f64> =
-            (0..120).map(|k| (0.2 * f64::from(k)).sin() * (0.2 + 0.01 * f64::from(k))).collect();
+        let x: Vec<f64> = (0..120).map(|k| sin(0.2 * f64::from(k)) * (0.2 + 0.01 * f64::from(k))).collect();
         let y = x.iter().map(|x| x * x * x).collect();
         Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap()
     }
@@ -270,7 +273,7 @@ mod tests {
             let request = &requests[(generator.random::<u64>() % 3) as usize];
             let mut trial = Trial::of(Candidate::alone(request));
             for start in 0..=(generator.random::<u64>() % 3) as usize {
-                let mut off = || 10f64.powf(8.0 * generator.random::<f64>() - 6.0);
+                let mut off = || powf(10.0, 8.0 * generator.random::<f64>() - 6.0);
                 let (inside, outside) = (off(), off());
                 let predicted = |fold: &HeldOut| {
                     let rows = fold.rows.measured.iter().zip(&fold.rows.outside);
@@ -312,7 +315,7 @@ mod tests {
                 assert!(found <= most && found >= FEWEST.min(most).min(all.leaves().len()));
                 if found < most.min(all.leaves().len()) {
                     let score = smallest.score(&trials, &folds).sum();
-                    assert!(score <= error + 2.0 * WORTH.ln() + 1e-9, "{score} and {error}");
+                    assert!(score <= error + 2.0 * ln(WORTH) + 1e-9, "{score} and {error}");
                 }
                 for combination in [first, smallest] {
                     let members = |place: usize, start: usize| trials[place].members.get(&start).cloned();

@@ -182,6 +182,8 @@ fn errors_inside(candidate: &FitSpec) -> ErrorsInside {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{exp, powi, sin, tanh};
+
     use super::*;
     use crate::data::record::{ColumnNames, Record};
 
@@ -211,7 +213,7 @@ mod tests {
         let shape_of = |y: &dyn Fn(f64, f64) -> f64| {
             let data = data(&[1.0, -1.0, 1.0]);
             let record = &data.records()[0];
-            let noise = |row: usize| 0.01 * (1e4 * (row as f64).sin()).fract();
+            let noise = |row: usize| 0.01 * (1e4 * sin(row as f64)).fract();
             let mut falls = true;
             let output = record.inputs()[0].iter().enumerate().map(|(row, &x)| {
                 falls &= row < 20;
@@ -221,21 +223,18 @@ mod tests {
             shape(&data.of_record(record.clone().with_output(output).unwrap()))
         };
         // Coercive field 0.3; a stop that yields after a tenth, and one beside a spring that stiffens.
-        assert_eq!(shape_of(&|x, side| (8.0 * (x + 0.3 * side)).tanh()), Shape::Sigmoid);
-        let yields = |x: f64, side: f64| side * (1.0 - 2.0 * (1.0 - (-(1.0 - side * x) / 0.3).exp()));
+        assert_eq!(shape_of(&|x, side| tanh(8.0 * (x + 0.3 * side))), Shape::Sigmoid);
+        let yields = |x: f64, side: f64| side * (1.0 - 2.0 * (1.0 - exp(-(1.0 - side * x) / 0.3)));
         assert_eq!(shape_of(&yields), Shape::Softening);
         // A play, which is free after a reversal.
-        assert_eq!(
-            shape_of(&|x, side| x + 0.3 * side * (1.0 - (-(1.0 - side * x) / 0.3).exp())),
-            Shape::Other
-        );
-        assert_eq!(shape_of(&|x, side| 0.3 * yields(x, side) + x.powi(3)), Shape::Other);
+        assert_eq!(shape_of(&|x, side| x + 0.3 * side * (1.0 - exp(-(1.0 - side * x) / 0.3))), Shape::Other);
+        assert_eq!(shape_of(&|x, side| 0.3 * yields(x, side) + powi(x, 3)), Shape::Other);
     }
 
     #[test]
     fn one_loop_at_several_speeds_is_more_than_one_loop() {
         let record = |step: f64| {
-            let x: Vec<f64> = (0..200).map(|row| (0.1 * f64::from(row)).sin()).collect();
+            let x: Vec<f64> = (0..200).map(|row| sin(0.1 * f64::from(row))).collect();
             let time = (0..200).map(|row| step * f64::from(row)).collect();
             Record::new("r", vec![x.clone()], x).unwrap().with_time(time).unwrap()
         };

@@ -5,6 +5,8 @@
 //! w = (e^S / e^{S_best})^{-p}                                              theory.md (11.6)
 //! ```
 
+use hysid_core::elementary::{exp, hypot, ln};
+
 use crate::fit::auto::trial::{HeldOut, Rows};
 use crate::model::Weights;
 
@@ -69,7 +71,7 @@ impl Score {
         if error == 0.0 {
             return self;
         }
-        let with = |score: f64| score.exp().hypot(error).ln();
+        let with = |score: f64| ln(hypot(exp(score), error));
         Self { inside: with(self.inside), outside: with(self.outside) }
     }
 
@@ -80,12 +82,12 @@ impl Score {
 
     /// Both classes alike, as one error in percent of the standard deviation.
     pub fn mean_percent(self) -> f64 {
-        100.0 * (0.5 * self.sum()).exp()
+        100.0 * exp(0.5 * self.sum())
     }
 
     /// As errors in percent of the standard deviation.
     pub fn percent(self) -> (f64, f64) {
-        (100.0 * self.inside.exp(), 100.0 * self.outside.exp())
+        (100.0 * exp(self.inside), 100.0 * exp(self.outside))
     }
 }
 
@@ -100,7 +102,7 @@ fn logarithm(squares: impl Iterator<Item = f64>, deviation: f64) -> f64 {
     let error = (sum / f64::from(rows.max(1))).sqrt() / deviation;
     // No error at all may look like a small one.
     let error = if error.is_nan() { ERRORS.1 } else { error };
-    error.clamp(ERRORS.0, ERRORS.1).ln()
+    ln(error.clamp(ERRORS.0, ERRORS.1))
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
@@ -116,7 +118,7 @@ pub(super) fn weights(scores: &[Score], power: f64, most: usize) -> Vec<Weights>
         order.sort_by(|&a, &b| score(&scores[a]).total_cmp(&score(&scores[b])));
         let mut weights = vec![0.0; scores.len()];
         for &index in order.iter().take(most) {
-            weights[index] = (power * (best - score(&scores[index]))).exp();
+            weights[index] = exp(power * (best - score(&scores[index])));
         }
         weights
     };
@@ -130,7 +132,7 @@ mod tests {
 
     #[test]
     fn weights_fall_with_the_power_of_the_error() {
-        let score = |inside: f64, outside: f64| Score { inside: inside.ln(), outside: outside.ln() };
+        let score = |inside: f64, outside: f64| Score { inside: ln(inside), outside: ln(outside) };
         let weights = weights(&[score(2.0, 1.0), score(1.0, 3.0), score(4.0, 2.0)], 4.0, 2);
         let close = |a: f64, b: f64| (a - b).abs() < 1e-12;
         assert!(close(weights[0].inside, 1.0 / 16.0) && close(weights[0].outside, 1.0));
@@ -140,9 +142,9 @@ mod tests {
 
     #[test]
     fn no_error_that_is_none_looks_small() {
-        assert_eq!(logarithm([f64::NAN].into_iter(), 1.0), ERRORS.1.ln());
-        assert_eq!(logarithm([f64::INFINITY].into_iter(), 1.0), ERRORS.1.ln());
-        assert_eq!(logarithm([0.0].into_iter(), 1.0), ERRORS.0.ln());
+        assert_eq!(logarithm([f64::NAN].into_iter(), 1.0), ln(ERRORS.1));
+        assert_eq!(logarithm([f64::INFINITY].into_iter(), 1.0), ln(ERRORS.1));
+        assert_eq!(logarithm([0.0].into_iter(), 1.0), ln(ERRORS.0));
         assert!((logarithm([4.0, 4.0].into_iter(), 2.0)).abs() < 1e-15);
     }
 }

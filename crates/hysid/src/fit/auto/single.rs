@@ -12,6 +12,8 @@
 //! at a half and three quarters of their size, and `σ` the standard deviation of the measured output. A network can
 //! predict all held-out rows well and still diverge on other paths.
 
+use hysid_core::elementary::{exp, ln};
+
 use crate::data::record::{Dataset, Record, Thinning};
 use crate::error::Result;
 use crate::fit::auto::candidates::{Candidate, Kind};
@@ -125,7 +127,7 @@ impl Makers<'_, '_, '_> {
         let error = |score: Score, model: &Model| -> Result<f64> {
             let mean_square = unmeasured.square_distance(model)? / unmeasured.rows().max(1) as f64;
             let square = mean_square / (deviation * deviation);
-            let logarithm = |score: f64| ((2.0 * score).exp() + square).ln() / 2.0;
+            let logarithm = |score: f64| ln(exp(2.0 * score) + square) / 2.0;
             Ok(logarithm(score.inside) + logarithm(score.outside))
         };
         let mut plain: Vec<Plain> = Vec::new();

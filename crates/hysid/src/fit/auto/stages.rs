@@ -3,6 +3,8 @@
 //! further starts and members come last. Candidates with errors far above the best are dropped after their
 //! first folds.
 
+use hysid_core::elementary::{exp, ln};
+
 use crate::fit::auto::candidates::{Candidate, Kind};
 use crate::fit::auto::combination::Combination;
 use crate::fit::auto::prior::Evidence;
@@ -180,7 +182,7 @@ impl Stages<'_, '_, '_> {
         let Some(best) = lowest(scored.iter().map(|(_, score)| *score)) else { return Vec::new() };
         let best = lowest([best].into_iter().chain(self.best(folds))).unwrap_or(best);
         let above = |score: &Score| (score.inside - best.inside).min(score.outside - best.outside);
-        scored.retain(|(_, score)| above(score) <= HOPELESS.ln());
+        scored.retain(|(_, score)| above(score) <= ln(HOPELESS));
         scored.sort_by(|(_, a), (_, b)| above(a).total_cmp(&above(b)));
         let mut of_kinds = [0; Kind::ALL.len()];
         scored.retain(|(place, _)| {
@@ -188,7 +190,7 @@ impl Stages<'_, '_, '_> {
             *of_kind += 1;
             *of_kind <= HOPEFUL_OF_KIND
         });
-        let enough = 0.5 * best.sum() + ABOUT_AS_GOOD.ln();
+        let enough = 0.5 * best.sum() + ln(ABOUT_AS_GOOD);
         let scored = scored.into_iter().map(|(place, score)| (place, 0.5 * score.sum() <= enough));
         self.without_needless_parts(scored.collect())
     }
@@ -234,7 +236,7 @@ impl Stages<'_, '_, '_> {
         let score = |trial: &&Trial| Score::of(&trial.predicted, self.bench.folds, |_| true).sum();
         let mut networks: Vec<&Trial> = self.trials.iter().filter(is_network).collect();
         networks.sort_by(|a, b| score(a).total_cmp(&score(b)));
-        let is_without_noise = networks.first().is_some_and(|best| score(best) < 2.0 * WITHOUT_NOISE.ln());
+        let is_without_noise = networks.first().is_some_and(|best| score(best) < 2.0 * ln(WITHOUT_NOISE));
         let refined = |trial: &&Trial| trial.candidate.with_other_penalties(is_without_noise);
         networks.iter().take(REFINED).flat_map(refined).collect()
     }
@@ -244,10 +246,10 @@ impl Stages<'_, '_, '_> {
         let all: Vec<usize> = (0..self.bench.folds.len()).collect();
         let Some(best) = self.best(&all) else { return laws };
         let few = self.bench.data.thinned(ROWS_IN_HASTE);
-        let is_without_noise = best.inside < WITHOUT_NOISE.ln();
+        let is_without_noise = best.inside < ln(WITHOUT_NOISE);
         let least = if is_without_noise { NEARLY_EXACT } else { 0.0 };
         let most_percent = |law: &Candidate| {
-            let (most, unseen) = (WORTH_A_TRIAL * best.inside.exp(), self.evidence.unseen_error(law.asked()));
+            let (most, unseen) = (WORTH_A_TRIAL * exp(best.inside), self.evidence.unseen_error(law.asked()));
             let worth = (most * most - unseen * unseen).max(0.0).sqrt();
             100.0 * worth.max(least)
         };

@@ -58,6 +58,8 @@ fn rotate(a: &mut [Vec<f64>], vectors: &mut [Vec<f64>], p: usize, q: usize) {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::cos;
+
     use super::*;
 
     /// The matrix with 2 on the diagonal and -1 beside it has the eigenvalues `2 - 2 cos(kπ/(n+1))`.
@@ -77,7 +79,7 @@ mod tests {
         }
         values.sort_by(f64::total_cmp);
         for (k, value) in values.iter().enumerate() {
-            let exact = 2.0 - 2.0 * ((k + 1) as f64 * std::f64::consts::PI / (n + 1) as f64).cos();
+            let exact = 2.0 - 2.0 * cos((k + 1) as f64 * std::f64::consts::PI / (n + 1) as f64);
             assert!((value - exact).abs() < 1e-12);
         }
     }

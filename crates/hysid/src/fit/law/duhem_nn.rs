@@ -36,6 +36,7 @@ use crate::options::classical::ClassicalOptions;
 use crate::options::table::check_counts;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
+use hysid_core::elementary::ln;
 use rand::RngExt;
 
 /// Share of the data that judges the starts.
@@ -246,9 +247,9 @@ impl<'a> Task<'a> {
         }
         parameters[layout.rate_gains.clone()].fill(1.0);
         for (i, place) in layout.ln_path_leaks.clone().enumerate() {
-            parameters[place] = -spaced(FIRST_PATHS, i, shape.states).ln();
+            parameters[place] = -ln(spaced(FIRST_PATHS, i, shape.states));
         }
-        let (shortest, longest) = ((2.0 * step).ln(), (0.25 * duration).max(4.0 * step).ln());
+        let (shortest, longest) = (ln(2.0 * step), ln((0.25 * duration).max(4.0 * step)));
         for place in layout.ln_relaxation_times.clone() {
             parameters[place] = shortest + (longest - shortest) * generator.random::<f64>();
         }
@@ -331,9 +332,9 @@ fn time_scales(series: &[Series]) -> (f64, f64) {
 
 fn bounds(layout: &Layout, index: usize, (step, duration): (f64, f64)) -> (f64, f64) {
     if layout.ln_path_leaks.contains(&index) {
-        (PATH_LEAKS.0.ln(), PATH_LEAKS.1.ln())
+        (ln(PATH_LEAKS.0), ln(PATH_LEAKS.1))
     } else if layout.ln_relaxation_times.contains(&index) {
-        let usable = |time: f64| time.clamp(f64::MIN_POSITIVE, LARGEST_VALUE).ln();
+        let usable = |time: f64| ln(time.clamp(f64::MIN_POSITIVE, LARGEST_VALUE));
         (usable(0.1 * step), usable(100.0 * duration))
     } else {
         (-LARGEST_WEIGHT, LARGEST_WEIGHT)

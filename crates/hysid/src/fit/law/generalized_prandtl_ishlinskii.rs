@@ -5,6 +5,8 @@
 //! divided by it, or if both envelopes are raised and `c` is lowered. The search therefore fixes `γ_l` at 0
 //! and 1 at the ends of the input range.
 
+use hysid_core::elementary::tanh;
+
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::SearchedLaw;
@@ -80,7 +82,7 @@ impl Plays {
     /// The envelope with the value `from` at the lower end of the range, rising by `rise` to the upper end.
     fn envelope(&self, centre: f64, width: f64, from: f64, rise: f64) -> Envelope {
         let (a1, a2) = (1.0 / width, -centre / width);
-        let shape = |x: f64| (a1 * x + a2).tanh();
+        let shape = |x: f64| tanh(a1 * x + a2);
         let share = (shape(self.high) - shape(self.low)).max(SMALLEST_SHARE);
         let a0 = rise / share;
         Envelope { a0, a1, a2, a3: from - a0 * shape(self.low) }
@@ -126,7 +128,7 @@ impl LawFamily for Plays {
     fn searched(&self, law: &GeneralizedPrandtlIshlinskii) -> Vec<f64> {
         let (left, right) = (law.left, law.right);
         let from = right.value(self.low) - left.value(self.low);
-        let shape = |x: f64| (right.a1 * x + right.a2).tanh();
+        let shape = |x: f64| tanh(right.a1 * x + right.a2);
         let rise = right.a0 * (shape(self.high) - shape(self.low)).max(SMALLEST_SHARE);
         let largest = law.spacing * (self.operators - 1).max(1) as f64;
         let initial = law.initial / (0.5 * (right.value(0.0) - left.value(0.0)).abs() + largest);

@@ -1,5 +1,7 @@
 //! Thresholds that a fit tries, and numbers spread between bounds.
 
+use hysid_core::elementary::powf;
+
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::linear::lowest;
 use crate::law::thresholds::check_thresholds;
@@ -7,7 +9,7 @@ use crate::law::thresholds::check_thresholds;
 /// Thresholds `r_i = X (i/(n+1))^e` with the largest input `X` (theory.md (7.5)); an error for none or more than 1000.
 fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
     check_count("operators", count, MOST_OPERATORS)?;
-    Ok((1..=count).map(|i| largest * (i as f64 / (count + 1) as f64).powf(exponent)).collect())
+    Ok((1..=count).map(|i| largest * powf(i as f64 / (count + 1) as f64, exponent)).collect())
 }
 
 /// Rejects the value of an option that is not from 1 to `most`.
@@ -59,5 +61,5 @@ pub(crate) fn best_on_grids(
 /// Number `index` of `count` between two bounds, logarithmically spaced; a single one lies in the middle.
 pub(crate) fn spaced((low, high): (f64, f64), index: usize, count: usize) -> f64 {
     let share = if count == 1 { 0.5 } else { index as f64 / (count - 1) as f64 };
-    low * (high / low).powf(share)
+    low * powf(high / low, share)
 }

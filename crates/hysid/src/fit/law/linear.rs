@@ -14,6 +14,8 @@
 
 use std::ops::Range;
 
+use hysid_core::elementary::{exp, ln};
+
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{DataProblem, Error, Result};
@@ -156,7 +158,7 @@ impl FoldSums {
             let mut rest = total.clone();
             rest.add(fold, -1.0);
             let candidates = solve(&rest.quadratic())?;
-            Some(candidates.iter().map(|weights| fold.mean_square_error(weights).ln()).collect())
+            Some(candidates.iter().map(|weights| ln(fold.mean_square_error(weights))).collect())
         };
         let by_fold: Vec<Option<Vec<f64>>> = parallel::each(&held_out, judge);
         let by_fold: Vec<Vec<f64>> = by_fold.into_iter().flatten().collect();
@@ -283,12 +285,14 @@ impl<'a> Gatherer<'a> {
 
 /// Logarithmically even values from `first` to `last`, both included.
 pub(crate) fn logarithmic(first: f64, last: f64, count: usize) -> Vec<f64> {
-    let ratio = (last / first).ln() / (count.max(2) - 1) as f64;
-    (0..count).map(|k| first * (ratio * k as f64).exp()).collect()
+    let ratio = ln(last / first) / (count.max(2) - 1) as f64;
+    (0..count).map(|k| first * exp(ratio * k as f64)).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{sin, square};
+
     use super::*;
 
     #[test]
@@ -297,10 +301,10 @@ mod tests {
         let mut gatherer = Gatherer::new(2, &one, StopCheck::never());
         for k in 0..1000 {
             let x = f64::from(k) * 0.01;
-            gatherer.add(0, &[1.0, x], if k % 10 == 0 { f64::NAN } else { 2.0 + 3.0 * x + (x * 7.0).sin() });
+            gatherer.add(0, &[1.0, x], if k % 10 == 0 { f64::NAN } else { 2.0 + 3.0 * x + sin(x * 7.0) });
         }
         let sums = gatherer.finish().unwrap().total();
-        let rows = (0..1000).filter(|k| k % 10 != 0).map(|k| ((f64::from(k) * 0.07).sin()).powi(2));
+        let rows = (0..1000).filter(|k| k % 10 != 0).map(|k| square(sin(f64::from(k) * 0.07)));
         approx::assert_relative_eq!(
             sums.mean_square_error(&[2.0, 3.0]),
             rows.sum::<f64>() / 900.0,

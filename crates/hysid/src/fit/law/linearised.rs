@@ -7,6 +7,8 @@
 //! `z` are the variables of the fit: the searched parameters on the scale of the search, 0 to 1, and the weights that
 //! follow by least squares. `ŷ_t` is the free run at the scored rows of the fit and `p_i` are the parameters of the law.
 
+use hysid_core::elementary::square;
+
 use crate::data::record::Thinning;
 use crate::fit::law::search::{Columns, Family, Unknowns, measured};
 use crate::law::Law;
@@ -145,8 +147,8 @@ fn scored(series: &[Series]) -> impl Iterator<Item = impl Iterator<Item = f64> +
 fn is_kinked(above: &[f64], here: &[f64], below: &[f64]) -> bool {
     let (mut bend, mut change) = (0.0, 0.0);
     for ((a, h), b) in above.iter().zip(here).zip(below) {
-        bend += (a - 2.0 * h + b).powi(2);
-        change += (a - b).powi(2);
+        bend += square(a - 2.0 * h + b);
+        change += square(a - b);
     }
     bend > KINK * KINK * change
 }

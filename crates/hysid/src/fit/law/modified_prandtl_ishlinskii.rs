@@ -9,6 +9,8 @@
 //! is 1 at knot `j` and 0 at all others. There is no hat at the ends of the range of `y`, which excludes the
 //! trivial solution. Step 1 minimizes the error before the dead zones, step 2 that of the output.
 
+use hysid_core::elementary::{ln, square};
+
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
@@ -225,7 +227,7 @@ impl Problem {
             }
             let mut point = rest.refine(rest.convex_start(prior, stop)?, ITERATIONS_IN_VALIDATION, stop);
             point.prior.ridge = 0.0;
-            Ok(held_out.objective(&point).max(1e-30).ln())
+            Ok(ln(held_out.objective(&point).max(1e-30)))
         };
         let sum: f64 = self.folds.judged.iter().map(judge).sum::<Result<f64>>()?;
         Ok(sum / self.folds.judged.len() as f64)
@@ -318,7 +320,7 @@ impl Problem {
     fn objective(&self, point: &Point) -> f64 {
         let zones = point.dead_zones();
         let rows = self.drives.iter().zip(&self.targets);
-        let squares = rows.map(|(drive, y)| (zones.value(point.before(drive)) - y).powi(2)).sum::<f64>();
+        let squares = rows.map(|(drive, y)| square(zones.value(point.before(drive)) - y)).sum::<f64>();
         let penalty: f64 = point.hysteresis[2..].iter().map(|w| w * w).sum();
         0.5 * (squares / self.targets.len() as f64 + point.prior.ridge * penalty)
     }

@@ -13,6 +13,8 @@
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
+use hysid_core::elementary::tanh;
+
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
@@ -333,7 +335,7 @@ fn derivatives(branch: Branch<'_>, inputs: &[f64], at_turning_point: &[f64]) -> 
     let mut by_y_t = 0.0;
     rest[0] = along;
     for (index, neuron) in branch.hidden.chunks_exact(run).enumerate() {
-        let h = argument(neuron, seen).tanh();
+        let h = tanh(argument(neuron, seen));
         let c = branch.output[1 + index];
         slope += c * h;
         rest[1 + index] = along * h;

@@ -9,6 +9,8 @@
 //! cells. `D²` takes second differences along both axes of the plane, counted in cells. Cross-validation
 //! chooses `λ`.
 
+use hysid_core::elementary::{powf, powi, square};
+
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::Identify;
@@ -133,8 +135,8 @@ impl Problem {
         // A cell on the edge has half the area of the others, so its weight counts twice.
         let term = |i: usize, j: usize, c: f64| (cell(i, j), if i == j { 2.0 * c } else { c });
         let mut penalty = Penalty::ridge([0.0, 1e-6]);
-        let size = (n as f64 / INTERVALS_FOR_CHOICE as f64).powi(2);
-        let (ridge, bend) = (1e-4 * size, size.powi(3));
+        let size = square(n as f64 / INTERVALS_FOR_CHOICE as f64);
+        let (ridge, bend) = (1e-4 * size, powi(size, 3));
         for i in 0..n {
             for j in 0..=i {
                 penalty.add_square(&[term(i, j, 1.0)], ridge);
@@ -150,7 +152,7 @@ impl Problem {
             penalty.add_square(&[(FIRST + j, 1.0)], 1e-2 * size.sqrt());
             if j >= 2 {
                 let terms = [(FIRST + j, 1.0), (FIRST + j - 1, -2.0), (FIRST + j - 2, 1.0)];
-                penalty.add_square(&terms, size.powf(2.5));
+                penalty.add_square(&terms, powf(size, 2.5));
             }
         }
         Self { plane, penalty }

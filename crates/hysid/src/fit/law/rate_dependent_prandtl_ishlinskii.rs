@@ -1,6 +1,8 @@
 //! Identification of a rate-dependent Prandtl-Ishlinskii model: the thresholds and their growth are found by
 //! search, and for each of their values the weights by least squares.
 
+use hysid_core::elementary::{ln, powf};
+
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::SearchedLaw;
@@ -77,8 +79,8 @@ impl Plays {
         let steps = self.operators as f64;
         let (thresholds, spacing) = if self.logarithmic {
             let (beta, epsilon) = (parameters[1], parameters[3]);
-            let lambda = parameters[2] / self.rate.powf(epsilon);
-            (Thresholds::Logarithmic { beta, lambda, epsilon }, largest / (steps * beta.ln()))
+            let lambda = parameters[2] / powf(self.rate, epsilon);
+            (Thresholds::Logarithmic { beta, lambda, epsilon }, largest / (steps * ln(beta)))
         } else {
             (Thresholds::Linear { beta: parameters[1] * self.input / self.rate }, largest / steps)
         };
@@ -112,8 +114,8 @@ impl LawFamily for Plays {
         let (largest, form) = match law.thresholds {
             Thresholds::Linear { beta } => (law.spacing * steps, vec![beta * self.rate / self.input]),
             Thresholds::Logarithmic { beta, lambda, epsilon } => {
-                let growth = lambda * self.rate.powf(epsilon);
-                (law.spacing * steps * beta.ln(), vec![beta, growth, epsilon])
+                let growth = lambda * powf(self.rate, epsilon);
+                (law.spacing * steps * ln(beta), vec![beta, growth, epsilon])
             }
         };
         let mut all = vec![largest / self.input];

@@ -23,6 +23,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
+use hysid_core::elementary::{ln, powf};
 use rand::RngExt;
 use serde_json::json;
 
@@ -76,7 +77,7 @@ impl Variable {
     /// The parameter at `u`: `l + (h - l) u`, or `l (h/l)^u` on a logarithmic scale (theory.md (8.2)).
     pub fn value(self, u: f64) -> f64 {
         let value = if self.logarithmic {
-            self.low * (self.high / self.low).powf(u)
+            self.low * powf(self.high / self.low, u)
         } else {
             self.low + (self.high - self.low) * u
         };
@@ -86,7 +87,7 @@ impl Variable {
     /// The inverse of [`Variable::value`].
     pub fn place(self, value: f64) -> f64 {
         let u = if self.logarithmic {
-            (value / self.low).ln() / (self.high / self.low).ln()
+            ln(value / self.low) / ln(self.high / self.low)
         } else {
             (value - self.low) / (self.high - self.low)
         };

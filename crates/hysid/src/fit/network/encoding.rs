@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use hysid_core::elementary::ln;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
@@ -58,7 +59,7 @@ impl Encoding {
             } else if layout.linear.contains(&index) {
                 (-LARGEST_BIAS, LARGEST_BIAS)
             } else if layout.ln_tau.contains(&index) {
-                (shortest.ln(), longest.ln())
+                (ln(shortest), ln(longest))
             } else if (index - layout.hidden.start).is_multiple_of(run) {
                 (-LARGEST_BIAS, LARGEST_BIAS)
             } else {
@@ -127,6 +128,8 @@ fn deviation(run: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{powi, sin};
+
     use super::*;
     use crate::data::record::{ColumnNames, Dataset, Record};
     use crate::network::scaling::Scaling;
@@ -137,8 +140,8 @@ mod tests {
     fn every_gene_within_its_bounds_is_a_parameter_within_its_own() {
         // A range that fills the scale, and one that is a ten-thousandth of it.
         for offset in [0.0, 10_000.0] {
-            let x: Vec<f64> = (0..60).map(|k| offset + (0.3 * k as f64).sin()).collect();
-            let y = x.iter().map(|x| (x - offset).powi(3)).collect();
+            let x: Vec<f64> = (0..60).map(|k| offset + sin(0.3 * k as f64)).collect();
+            let y = x.iter().map(|x| powi(x - offset, 3)).collect();
             let data =
                 Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap();
             let sizes = Sizes { stops: 3, hidden: 2, relaxation: 0 };

@@ -7,6 +7,7 @@
 //! data, so that the observer can store it. No run depends on another, nor on how many advance
 //! together.
 
+use hysid_core::elementary::{exp, ln};
 use serde::{Deserialize, Serialize};
 
 use crate::data::FEWEST_ROWS;
@@ -572,8 +573,8 @@ impl OnFold {
 /// Geometric mean of the errors on several folds: one fold that goes far beyond the others does not decide it.
 fn mean_error(folds: &[&OnFold]) -> f64 {
     let errors = folds.iter().filter_map(|fold| fold.errors.as_ref());
-    let logarithms: Vec<f64> = errors.map(|errors| errors.rmse.max(f64::MIN_POSITIVE).ln()).collect();
-    (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp()
+    let logarithms: Vec<f64> = errors.map(|errors| ln(errors.rmse.max(f64::MIN_POSITIVE))).collect();
+    exp(logarithms.iter().sum::<f64>() / logarithms.len() as f64)
 }
 
 fn onward(objective: usize, run: &TrainingRun) -> Beginning {

@@ -301,6 +301,8 @@ impl Problem for Objective<'_> {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
     use crate::data::record::{ColumnNames, Record};
     use crate::network::{Family, Sizes};
@@ -309,8 +311,8 @@ mod tests {
     #[test]
     fn few_rows_give_the_same_step_as_the_matrix() {
         let rows = 40;
-        let x: Vec<f64> = (0..rows).map(|k| (0.3 * k as f64).sin() * (1.0 + 0.02 * k as f64)).collect();
-        let y = (0..rows).map(|k| (0.3 * k as f64 - 0.6).sin() + 0.1 * x[k]).collect();
+        let x: Vec<f64> = (0..rows).map(|k| sin(0.3 * k as f64) * (1.0 + 0.02 * k as f64)).collect();
+        let y = (0..rows).map(|k| sin(0.3 * k as f64 - 0.6) + 0.1 * x[k]).collect();
         let record = Record::new("r", vec![x], y).unwrap();
         let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
         let sizes = Sizes { stops: 20, hidden: 20, relaxation: 0 };
@@ -353,10 +355,10 @@ mod tests {
         for noise in [0.0, 2e-4] {
             let x = |k: usize| {
                 let of_noise = noise * (hysid_core::random::mix(k as u64) as f64 / u64::MAX as f64 - 0.5);
-                (2e-3 * k as f64).sin() * (1.0 + 0.5 * (1e-4 * k as f64).sin()) + of_noise
+                sin(2e-3 * k as f64) * (1.0 + 0.5 * sin(1e-4 * k as f64)) + of_noise
             };
             let x: Vec<f64> = (0..rows).map(x).collect();
-            let y = (0..rows).map(|k| (2e-3 * k as f64 - 0.6).sin() + 0.1 * x[k]).collect();
+            let y = (0..rows).map(|k| sin(2e-3 * k as f64 - 0.6) + 0.1 * x[k]).collect();
             let time = (0..rows).map(|k| 0.1 * k as f64).collect();
             let record = Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
             let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
@@ -381,9 +383,8 @@ mod tests {
     fn the_gradient_is_the_same_with_and_without_the_jacobian() {
         for family in Family::ALL {
             for rows in [64, 200, 331] {
-                let x: Vec<f64> =
-                    (0..rows).map(|k| (0.17 * k as f64).sin() * (1.0 + 0.01 * k as f64)).collect();
-                let mut y: Vec<f64> = (0..rows).map(|k| (0.17 * k as f64 - 0.6).sin() + 0.1 * x[k]).collect();
+                let x: Vec<f64> = (0..rows).map(|k| sin(0.17 * k as f64) * (1.0 + 0.01 * k as f64)).collect();
+                let mut y: Vec<f64> = (0..rows).map(|k| sin(0.17 * k as f64 - 0.6) + 0.1 * x[k]).collect();
                 y[5] = f64::NAN;
                 let time = (0..rows).map(|k| 0.1 * k as f64).collect();
                 let record = Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();

@@ -14,6 +14,8 @@
 //! after Farrokh, Ghasemi, Noori, Wang and Sarhosis (2022), with a ridge instead of their support vector
 //! machine.
 
+use hysid_core::elementary::exp;
+
 use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
@@ -173,7 +175,7 @@ fn fit_readout(
     Ok(RandomStops {
         network: Network::new(architecture, parameters, output)?,
         scaling: scaling.clone(),
-        validation_nrmse_percent: 100.0 * (0.5 * choice.score).exp(),
+        validation_nrmse_percent: 100.0 * exp(0.5 * choice.score),
     })
 }
 

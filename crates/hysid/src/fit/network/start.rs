@@ -1,5 +1,6 @@
 //! Random networks to start from.
 
+use hysid_core::elementary::{ln, powf};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -43,7 +44,7 @@ pub(crate) fn draw(
     let first_further_input = 1 + usize::from(architecture.rate);
     for (j, weights) in values[layout.stop_weights.clone()].chunks_exact_mut(channels).enumerate() {
         let place = (j as f64 + generator.random::<f64>()) / architecture.stops as f64;
-        let threshold = SMALLEST_THRESHOLD.powf(1.0 - place);
+        let threshold = powf(SMALLEST_THRESHOLD, 1.0 - place);
         weights[0] = 1.0 / threshold;
         if architecture.rate {
             weights[1] = RATE_WEIGHT * normal(&mut generator) / threshold;
@@ -53,7 +54,7 @@ pub(crate) fn draw(
         }
     }
     for ln_beta in &mut values[layout.ln_beta.clone()] {
-        *ln_beta = capacities.typical.ln() + capacities.spread * normal(&mut generator);
+        *ln_beta = ln(capacities.typical) + capacities.spread * normal(&mut generator);
     }
     for (c, weight) in values[layout.linear.clone()].iter_mut().enumerate() {
         *weight = if c == 0 { 1.0 } else { RATE_WEIGHT * normal(&mut generator) };
@@ -62,7 +63,7 @@ pub(crate) fn draw(
         for (m, ln_tau) in values[layout.ln_tau.clone()].iter_mut().enumerate() {
             let place = (m % architecture.relaxation) as f64 + generator.random::<f64>();
             let share = place / architecture.relaxation as f64;
-            *ln_tau = step.ln() + share * (longest / step).ln();
+            *ln_tau = ln(step) + share * ln(longest / step);
         }
     }
     let run = 1 + architecture.memory_neurons();

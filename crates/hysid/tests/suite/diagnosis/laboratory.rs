@@ -4,6 +4,7 @@
 use super::subjects::{bouc_wen, m330, prandtl_ishlinskii, protocol};
 use super::*;
 use hysid::diagnosis::DataIssueKind;
+use hysid::elementary::{cos, exp, ln, sin};
 
 /// A record of the protocol's law, with what happens to each output.
 fn record_of(x: &[f64], y: Vec<f64>, dt: f64) -> Dataset {
@@ -27,7 +28,7 @@ fn coloured(rows: usize, seed: u64) -> Vec<f64> {
     let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut normal = move || {
         let (u, v): (f64, f64) = (generator.random(), generator.random());
-        (-2.0 * (1.0 - u).ln()).sqrt() * (TAU * v).cos()
+        (-2.0 * ln(1.0 - u)).sqrt() * cos(TAU * v)
     };
     let mut value = normal();
     let next = |_| {
@@ -115,7 +116,7 @@ fn hum_is_named() {
     let x = protocol();
     let y = steel(&x);
     let height = range(&y);
-    let humming = y.iter().enumerate().map(|(row, y)| y + 0.005 * height * (TAU * row as f64 / 11.3).sin());
+    let humming = y.iter().enumerate().map(|(row, y)| y + 0.005 * height * sin(TAU * row as f64 / 11.3));
     let diagnosis = diagnose(&record_of(&x, humming.collect(), 0.01));
     let hum = diagnosis.doctor.iter().find(|issue| issue.kind == DataIssueKind::Hum).expect("hum");
     assert!((hum.value.unwrap() / (0.005 * height) - 1.0).abs() < 0.3, "{hum:?}");
@@ -126,13 +127,13 @@ fn hum_is_named() {
 #[test]
 fn loops_of_a_relaxation_are_not_called_static() {
     let dt = 0.01;
-    let wave = |row: usize| (TAU * 0.2 * row as f64 * dt).sin() * (0.4 + 0.6 * row as f64 / 4000.0);
+    let wave = |row: usize| sin(TAU * 0.2 * row as f64 * dt) * (0.4 + 0.6 * row as f64 / 4000.0);
     let x: Vec<f64> = (0..4000).map(wave).collect();
     for beside in [0.0, 1.0] {
         let mut force = 0.0;
         let mut y = vec![0.0];
         for pair in x.windows(2) {
-            let kept = f64::exp(-dt / 0.5);
+            let kept = exp(-dt / 0.5);
             force = kept * force + (pair[1] - pair[0]) * (1.0 - kept) * 0.5 / dt;
             y.push(force + beside * pair[1]);
         }
@@ -163,7 +164,7 @@ fn a_lead_is_no_delay() {
 /// Repeats with one past say nothing about congruency: the beginning of a record is no turning point.
 #[test]
 fn one_loop_again_and_again_is_not_congruent() {
-    let swing = |row: usize| (TAU * row as f64 / 200.0).sin();
+    let swing = |row: usize| sin(TAU * row as f64 / 200.0);
     let x: Vec<f64> = (0..2000).map(swing).collect();
     let diagnosis = diagnose(&record_of(&x, steel(&x), 0.01));
     assert_eq!(diagnosis.verdict(Property::Congruency), Verdict::NotTestable);

@@ -4,6 +4,7 @@ use crate::scaffold::*;
 use std::f64::consts::TAU;
 
 use hysid::diagnosis::Property;
+use hysid::elementary::{ln, sin};
 use hysid::law::bouc_wen::BoucWen;
 use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid::specimens::{Ferromagnet, Specimen, shape_memory_actuator};
@@ -111,7 +112,7 @@ fn network(family: Family, x: &[f64], fill: impl Fn(&Layout, &mut Vec<f64>), out
 
 /// A generalized Prandtl network whose stops wear out: β = 25.
 pub fn gpnn(x: &[f64]) -> Dataset {
-    let fill = |layout: &Layout, values: &mut Vec<f64>| values[layout.ln_beta.clone()].fill(25f64.ln());
+    let fill = |layout: &Layout, values: &mut Vec<f64>| values[layout.ln_beta.clone()].fill(ln(25.0));
     network(Family::Gpnn, x, fill, vec![0.0, 0.5, 0.4, 0.4, 0.3, 0.3, 0.3])
 }
 
@@ -122,7 +123,7 @@ pub fn preisach_nn(x: &[f64]) -> Dataset {
             values[layout.linear.start] = 1.0;
         }
         for (k, weight) in values[layout.hidden.clone()].iter_mut().enumerate() {
-            *weight = 0.7 * (1.0 + 1.7 * k as f64).sin();
+            *weight = 0.7 * sin(1.0 + 1.7 * k as f64);
         }
     };
     network(Family::PreisachNn, x, fill, vec![0.1, 1.0, 0.8, -0.6, 0.5])
@@ -184,7 +185,7 @@ pub fn at_three_speeds(law: impl Fn(&[f64]) -> Vec<f64>, sampling: f64, delay: f
     let records = [2.0, 6.0, 20.0].map(|frequency: f64| {
         let rows = (4.0 / frequency / sampling).round() as usize;
         let time: Vec<f64> = (0..rows).map(|row| row as f64 * sampling).collect();
-        let wave = |t: f64| if t > 0.0 { (TAU * frequency * t).sin() } else { 0.0 };
+        let wave = |t: f64| if t > 0.0 { sin(TAU * frequency * t) } else { 0.0 };
         let x: Vec<f64> = time.iter().map(|&t| wave(t)).collect();
         // The law runs on the input of then: the sensor is late, not the specimen.
         let earlier: Vec<f64> = time.iter().map(|&t| wave(t - delay)).collect();

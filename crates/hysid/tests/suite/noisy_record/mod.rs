@@ -1,13 +1,14 @@
 //! A record with an error that no model can represent, so that several candidates of `auto` count.
 
 use hysid::data::record::Record;
+use hysid::elementary::sin;
 
 use crate::small_models::record;
 
 /// As [`record`], with an error of up to 0.1, some percent of the range of its output.
 pub fn noisy(rows: usize, name: &str) -> Record {
     let exact = record(rows, name);
-    let error = |row: usize| 0.1 * ((row * row) as f64).sin();
+    let error = |row: usize| 0.1 * sin((row * row) as f64);
     let output = exact.output().iter().enumerate().map(|(row, y)| y + error(row)).collect();
     exact.with_output(output).unwrap()
 }

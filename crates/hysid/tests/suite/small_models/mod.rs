@@ -2,6 +2,7 @@
 
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Record;
+use hysid::elementary::sin;
 use hysid::network::Sizes;
 use hysid::operator::{Operator, Stop};
 use hysid::options::auto::AutoOptions;
@@ -14,7 +15,7 @@ pub fn record(rows: usize, name: &str) -> Record {
     let letters: u32 = name.bytes().map(u32::from).sum();
     let pace = 0.19 + 0.004 * f64::from((letters + 1) % 7);
     let x: Vec<f64> =
-        (0..rows).map(|k| (pace * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs())).collect();
+        (0..rows).map(|k| sin(pace * k as f64) * (0.4 + 0.6 * sin(0.011 * k as f64).abs())).collect();
     let mut stop = Stop::new(0.25).unwrap();
     let y = x.iter().map(|x| 20.0 + 3.0 * x - 1.8 * stop.step(*x)).collect();
     let time = (0..rows).map(|k| 0.1 * k as f64).collect();

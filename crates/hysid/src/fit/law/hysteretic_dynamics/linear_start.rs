@@ -1,6 +1,8 @@
 //! The linear system that a search begins with: modes one after the other, each the best of a grid of frequencies and
 //! damping ratios, then all together by Levenberg-Marquardt.
 
+use hysid_core::elementary::{ln, powf, square};
+
 use super::records::Records;
 use super::task::{Beginning, Begun, Task, Value};
 use super::{Asked, Kind};
@@ -74,9 +76,9 @@ impl LinearStarts {
         let mut one_mode = all_modes.clone();
         if asked.modes > 1 {
             one_mode = finished(&systems[0])?.0;
-            let first = one_mode.modes[0].frequency.ln();
+            let first = ln(one_mode.modes[0].frequency);
             // The mode that is nearest to it is left out.
-            let distance = |mode: &Mode| (mode.frequency.ln() - first).abs();
+            let distance = |mode: &Mode| (ln(mode.frequency) - first).abs();
             let mut others = all_modes.modes.clone();
             others.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
             one_mode.modes.extend(others[1..].iter().map(|mode| Mode { gain: 0.0, ..*mode }));
@@ -234,14 +236,14 @@ fn rows_of_quarter(frequency: f64, step: f64) -> usize {
 
 /// True if the input has next to no power at the highest frequencies, by the variance of its fourth difference.
 fn is_smooth(drives: &[Drive]) -> bool {
-    let (mut difference, mut square) = (0.0, 0.0);
+    let (mut difference, mut squares) = (0.0, 0.0);
     for drive in drives {
         let mean = drive.x.iter().sum::<f64>() / drive.x.len() as f64;
-        square += drive.x.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
+        squares += drive.x.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
         let fourth = |x: &[f64]| x[0] - 4.0 * x[1] + 6.0 * x[2] - 4.0 * x[3] + x[4];
-        difference += drive.x.windows(5).map(|x| fourth(x).powi(2)).sum::<f64>();
+        difference += drive.x.windows(5).map(|x| square(fourth(x))).sum::<f64>();
     }
-    difference < SMOOTH * OF_RANDOM_SEQUENCE * square
+    difference < SMOOTH * OF_RANDOM_SEQUENCE * squares
 }
 
 /// The mode that lowers the error most beside those that there are.
@@ -259,7 +261,7 @@ fn best_of_grid(
     let points: Vec<(f64, f64)> = (0..FREQUENCIES)
         .flat_map(|k| {
             let share = k as f64 / (FREQUENCIES - 1) as f64;
-            let frequency = lowest * (highest / lowest).powf(share);
+            let frequency = lowest * powf(highest / lowest, share);
             ratios.iter().map(move |&ratio| (frequency, ratio))
         })
         .collect();

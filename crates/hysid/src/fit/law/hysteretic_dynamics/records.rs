@@ -3,6 +3,8 @@
 //! Of a record that repeats its input, as a measurement with several periods of a multisine does, two periods are
 //! enough: the first, and one that is the mean of the others. It counts as many times as it is the mean of.
 
+use hysid_core::elementary::square;
+
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::search::{measured, spread};
@@ -142,7 +144,7 @@ fn averaged(drive: &Drive, equal: f64) -> Option<Drive> {
     };
     // What the later periods differ by is noise; with the second it would be more in a transient.
     let deviation = |of: usize, others: usize| -> f64 {
-        let square = |k: usize| (drive.targets[of * period + k] - mean_from(others, k)).powi(2);
+        let square = |k: usize| square(drive.targets[of * period + k] - mean_from(others, k));
         (0..period).map(square).sum::<f64>() / period as f64
     };
     let counted = (periods - 2) as f64;
@@ -167,15 +169,17 @@ fn averaged(drive: &Drive, equal: f64) -> Option<Drive> {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{cos, exp, sin};
+
     use super::*;
 
     /// A periodic input, and an output with a transient and a little noise that differs from period to period.
     fn drive(periods: usize, transient: f64) -> Drive {
         let period = 64;
         let rows = periods * period + 10;
-        let x = |k: usize| (0.1 * (k % period) as f64).sin() + 0.3 * (0.7 * (k % period) as f64).cos();
+        let x = |k: usize| sin(0.1 * (k % period) as f64) + 0.3 * cos(0.7 * (k % period) as f64);
         let noise = |k: usize| 1e-3 * ((k * k) as f64 * 0.618_033_988_749_895).fract();
-        let y = |k: usize| x(k) + transient * (-(k as f64) / 40.0).exp() + noise(k);
+        let y = |k: usize| x(k) + transient * exp(-(k as f64) / 40.0) + noise(k);
         Drive {
             x: (0..rows).map(x).collect(),
             steps: vec![0.1; rows],

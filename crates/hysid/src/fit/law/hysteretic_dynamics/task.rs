@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use hysid_core::elementary::ln;
+
 use super::EXPECTED_SQUARE;
 use crate::error::LARGEST_VALUE;
 use crate::law::hysteretic_dynamics::{DAMPING_RATIOS, Drive, Dynamics, LARGEST_WEIGHT, Layout, Run};
@@ -155,10 +157,10 @@ impl<'a> Task<'a> {
     }
 
     fn bounds(&self, index: usize) -> (f64, f64) {
-        let of_ln = |(low, high): (f64, f64)| (low.ln(), high.ln());
+        let of_ln = |(low, high): (f64, f64)| (ln(low), ln(high));
         if let Some(place) = self.layout.modes.iter().position(|mode| mode.ln_frequency == index) {
-            let ln = self.template.modes[place].frequency.ln();
-            return (ln - LARGEST_SHIFT.ln(), ln + LARGEST_SHIFT.ln());
+            let of_mode = ln(self.template.modes[place].frequency);
+            return (of_mode - ln(LARGEST_SHIFT), of_mode + ln(LARGEST_SHIFT));
         }
         if self.layout.modes.iter().any(|mode| mode.ln_damping == index) {
             return of_ln(DAMPING_RATIOS);

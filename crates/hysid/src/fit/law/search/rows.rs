@@ -128,6 +128,8 @@ pub(crate) fn spread(values: &[f64]) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::{cos, sin};
+
     use super::*;
 
     fn zigzag(rows: usize) -> Series {
@@ -156,10 +158,9 @@ mod tests {
     /// Long paths keep time and short steps, and their beginning alone has as many compared rows.
     #[test]
     fn long_paths_keep_their_shape_and_their_time() {
-        let signal = |row: usize| (0.002 * row as f64).sin();
+        let signal = |row: usize| sin(0.002 * row as f64);
         let series = |rows: usize, step: f64| {
-            let sample =
-                |row| Sample { x: signal(row), rate: 0.002 / step * (0.002 * row as f64).cos(), step };
+            let sample = |row| Sample { x: signal(row), rate: 0.002 / step * cos(0.002 * row as f64), step };
             Series { samples: (0..rows).map(sample).collect(), output: (0..rows).map(signal).collect() }
         };
         let found = &thinned(vec![series(100_000, 0.5)], Memory::Path)[0];
