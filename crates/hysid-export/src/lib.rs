@@ -29,3 +29,5 @@ pub use options::{FmiVersion, InverseOptions, Options};
 pub use program::Precision;
 pub use subject::File;
 pub use target::Target;
+#[doc(hidden)]
+pub use target::c::elementary::all_elementary_functions;

@@ -4,7 +4,7 @@
 use std::f64::consts::SQRT_2;
 
 use hysid_core::data::record::Record;
-use hysid_core::elementary::{powf, powi};
+use hysid_core::elementary::{hypot, powf, powi};
 use hysid_core::linear_algebra::Symmetric;
 use hysid_core::operator::relaxation::{advance, decay};
 use hysid_core::stop_check::StopCheck;

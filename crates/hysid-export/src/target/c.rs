@@ -1,5 +1,6 @@
 //! C99: a header and a source file of the model, the same of its inverse, and a program that tests them.
 
+pub(crate) mod elementary;
 mod header;
 mod inverse;
 mod inverse_test;
@@ -69,8 +70,8 @@ y = {name}_step(&model, x);      /* further arguments: see {name}.h */
 A solver that iterates calls `{name}_trial` or `{name}_trial_tangent` as often as it needs, each time from the committed
 state, and `{name}_commit` once it accepts.
 {inverse}
-Compile with `-ffp-contract=off`: the outputs then equal those of Hysid to the last bit, if the C library computes
-`exp` and its like as that of Hysid does. `-ffast-math` is refused.{fast}
+Compile with `-ffp-contract=off`: the outputs then equal those of Hysid to the last bit, on every machine. `exp` and its
+like are in {name}.c, not those of the C library. `-ffast-math` is refused.{fast}
 
 ```
 cc -std=c99 -O3 -ffp-contract=off -o {name}_test {name}_test.c {name}.c{more} -lm && ./{name}_test

@@ -3,6 +3,7 @@
 mod c;
 mod case;
 mod closed_loop;
+mod elementary;
 mod fmu;
 mod foreign;
 mod fused;

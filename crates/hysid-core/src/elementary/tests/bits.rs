@@ -31,7 +31,7 @@ fn checksum(function: impl Fn(u64) -> f64) -> u32 {
 #[test]
 fn results_have_the_bits_of_every_computer() {
     let of_one = FUNCTIONS.map(|(name, function)| (name, checksum(|k| function(argument(k)))));
-    let of_two: [(&str, fn(f64, f64) -> f64); 2] = [("powf", powf), ("hypot", hypot)];
+    let of_two = [("powf", powf as fn(f64, f64) -> f64), ("hypot", hypot)];
     let of_two =
         of_two.map(|(name, function)| (name, checksum(|k| function(argument(k).abs(), argument(k + COUNT)))));
     let found: Vec<(&str, u32)> = of_one.into_iter().chain(of_two).collect();

@@ -10,6 +10,7 @@ use crate::program::unused::used_arrays;
 use crate::program::uses::Uses;
 use crate::program::{Array, Declaration, Precision, Program, Storage};
 use crate::subject::Subject;
+use crate::target::c::elementary;
 use crate::target::printer::{Binding, Language, Printer, Syntax, rows_of_numbers};
 
 /// Refuses options of compilers that change results, and switches off the optimisation of gcc that fuses products and sums
@@ -45,12 +46,14 @@ pub(super) fn source(subject: &Subject<'_>) -> String {
     if functions.infinity || is_fused || uses_math(&functions) {
         text += "#include <math.h>\n";
     }
-    if is_fused || functions.unary.contains(&Unary::PowerOfTwo) {
+    let elementary = elementary::functions(&functions, subject.precision());
+    if is_fused || functions.unary.contains(&Unary::PowerOfTwo) || !elementary.is_empty() {
         text += "#include <stdint.h>\n";
     }
     text += &format!("#include <string.h>\n\n#include \"{name}.h\"\n\n");
     text += EXACT;
     text += &format!("typedef {name}_real real;\n\n");
+    text += &elementary;
     text += &prelude(&functions, subject.precision());
     if is_fused {
         text += FUSED;
@@ -219,11 +222,11 @@ int {name}_restore({name}_model *model, const unsigned char *bytes)
     )
 }
 
-/// Functions that the C library does not have.
+/// Rounding functions that the C library does not have.
 fn prelude(functions: &Uses, precision: Precision) -> String {
-    let (f, round, bits, shift) = match precision {
-        Precision::Double => ("", "6755399441056767.0", "uint64_t", 52),
-        Precision::Single => ("f", "12583039.0f", "uint32_t", 23),
+    let (round, bits, shift) = match precision {
+        Precision::Double => ("6755399441056767.0", "uint64_t", 52),
+        Precision::Single => ("12583039.0f", "uint32_t", 23),
     };
     let mut text = String::new();
     if functions.unary.contains(&Unary::PowerOfTwo) {
@@ -235,19 +238,6 @@ static real power_of_two(real a)
     number.value = a + {round};
     number.bits <<= {shift};
     return number.value;
-}}
-
-"
-        );
-    }
-    if functions.unary.contains(&Unary::InverseSinh) {
-        text += &format!(
-            "static real inverse_sinh(real a)
-{{
-    const real magnitude = fabs{f}(a);
-    const real inverse = 1 / magnitude;
-    const real root = hypot{f}(1, inverse) + inverse;
-    return copysign{f}(log1p{f}(magnitude + magnitude / root), a);
 }}
 
 "
@@ -320,24 +310,24 @@ impl Language for C {
             Unary::Negative => return None,
             Unary::Detached => "",
             Unary::PowerOfTwo => "power_of_two",
-            Unary::InverseSinh => "inverse_sinh",
             Unary::Magnitude => self.of_precision("fabs", "fabsf"),
             Unary::SquareRoot => self.of_precision("sqrt", "sqrtf"),
-            Unary::Exp => self.of_precision("exp", "expf"),
-            Unary::ExpMinusOne => self.of_precision("expm1", "expm1f"),
-            Unary::Ln => self.of_precision("log", "logf"),
-            Unary::LnOnePlus => self.of_precision("log1p", "log1pf"),
-            Unary::Tanh => self.of_precision("tanh", "tanhf"),
             Unary::Ceiling => self.of_precision("ceil", "ceilf"),
+            Unary::Exp => self.of_precision("hysid_exp", "hysid_exp_single"),
+            Unary::ExpMinusOne => self.of_precision("hysid_exp_m1", "hysid_exp_m1_single"),
+            Unary::Ln => self.of_precision("hysid_ln", "hysid_ln_single"),
+            Unary::LnOnePlus => self.of_precision("hysid_ln_1p", "hysid_ln_1p_single"),
+            Unary::Tanh => self.of_precision("hysid_tanh", "hysid_tanh_single"),
+            Unary::InverseSinh => self.of_precision("hysid_asinh", "hysid_asinh_single"),
         })
     }
 
     fn binary(&self, function: Binary) -> Option<&'static str> {
         match function {
             Binary::Sum | Binary::Difference | Binary::Product | Binary::Quotient => None,
-            Binary::Power => Some(self.of_precision("pow", "powf")),
+            Binary::Power => Some(self.of_precision("hysid_powf", "hysid_powf_single")),
             Binary::CopySign => Some(self.of_precision("copysign", "copysignf")),
-            Binary::Hypotenuse => Some(self.of_precision("hypot", "hypotf")),
+            Binary::Hypotenuse => Some(self.of_precision("hysid_hypot", "hysid_hypot_single")),
         }
     }
 

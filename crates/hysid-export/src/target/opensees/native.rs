@@ -7,6 +7,7 @@
 //!
 //! So `β = b/z_u^n` and `γ = (1 - b)/z_u^n`. The native energy is in the unit of work, ours in `(1 - α) k z_u²`.
 
+use hysid_core::elementary::powf;
 use hysid_core::law::Classical;
 use hysid_core::law::bouc_wen::{BoucWen, Degradation};
 use hysid_core::model::Model;
@@ -43,7 +44,7 @@ impl Native {
         if stiffness == 0.0 {
             return Err("its initial stiffness is 0, which the native law divides by".into());
         }
-        let exponent = law.yield_displacement.powf(law.n);
+        let exponent = powf(law.yield_displacement, law.n);
         let mut arguments = vec![
             ("alpha", law.alpha()),
             ("ko", stiffness),

@@ -29,7 +29,7 @@ fn outputs_are_those_of_the_library() {
         fs::write(folder.path().join("rows"), case.bytes()).unwrap();
         let arguments = ["-c", DRIVER, &case.arguments.len().to_string()];
         succeeds(Command::new(&python).current_dir(&folder).args(arguments));
-        // Python rounds products and sums one by one.
+        // Python rounds products and sums one by one, and has its own `exp` and its like.
         let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());
         println!("{name}: {difference:.1e}");
         assert!(difference <= 1e-12, "{name}: {difference:e}");
