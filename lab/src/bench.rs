@@ -20,6 +20,7 @@ use hysid::network::{Family, Network, Sizes};
 use hysid::operator::{Operator, Stop};
 use hysid::options::network::{FitOptions, Method, Trainer};
 use hysid::significant::Significant;
+use hysid_core::elementary::{powi, sin};
 use hysid_document::plain::indented;
 
 use spread::Spread;
@@ -220,11 +221,11 @@ fn speeds(instructions: &str) -> Result<BTreeMap<&'static str, Speed>> {
 /// A specimen with memory under a swept, modulated input.
 fn record(samples: usize) -> Result<Record> {
     let time: Vec<f64> = (0..samples).map(|k| 0.01 * k as f64).collect();
-    let x: Vec<f64> = time.iter().map(|t| (3.0 * t).sin() * (0.6 + 0.4 * (0.37 * t).sin())).collect();
+    let x: Vec<f64> = time.iter().map(|t| sin(3.0 * t) * (0.6 + 0.4 * sin(0.37 * t))).collect();
     let sliders = [0.1, 0.3, 0.7].map(|r| Stop::new(r).map(|mut stop| stop.run(&x)));
     let [a, b, c] = sliders;
     let (a, b, c) = (a?, b?, c?);
-    let y = (0..samples).map(|k| a[k] + b[k] + c[k] + 0.1 * x[k].powi(3)).collect();
+    let y = (0..samples).map(|k| a[k] + b[k] + c[k] + 0.1 * powi(x[k], 3)).collect();
     Ok(Record::new("bench", vec![x], y)?.with_time(time)?)
 }
 

@@ -14,6 +14,7 @@ use hysid::options::chosen::RateChoice;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::options::{FitSpec, ModelName};
 use hysid::{Model, Reference};
+use hysid_core::elementary::square;
 
 use crate::cases::{aligned, row};
 use references::{Shape, shapes};
@@ -189,7 +190,7 @@ fn line(train: &Dataset, wanted: &[f64], (low, high): (f64, f64)) -> Vec<f64> {
     let mean_x = pairs().map(|(x, _)| x).sum::<f64>() / count;
     let mean_y = pairs().map(|(_, y)| y).sum::<f64>() / count;
     let covariance: f64 = pairs().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
-    let variance: f64 = pairs().map(|(x, _)| (x - mean_x).powi(2)).sum();
+    let variance: f64 = pairs().map(|(x, _)| square(x - mean_x)).sum();
     let slope = covariance / variance;
     wanted.iter().map(|wanted| (mean_x + (wanted - mean_y) / slope).clamp(low, high)).collect()
 }
@@ -264,6 +265,6 @@ fn models(all: &[Compensated]) -> String {
 }
 
 fn rms(found: &[f64], wanted: &[f64]) -> f64 {
-    let sum: f64 = found.iter().zip(wanted).map(|(found, wanted)| (found - wanted).powi(2)).sum();
+    let sum: f64 = found.iter().zip(wanted).map(|(found, wanted)| square(found - wanted)).sum();
     (sum / wanted.len() as f64).sqrt()
 }

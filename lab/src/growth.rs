@@ -23,6 +23,7 @@ use hysid::options::FitSpec;
 use hysid::options::auto::AutoOptions;
 use hysid::options::network::FitOptions;
 use hysid::termination::Termination;
+use hysid_core::elementary::{ln, square};
 use hysid_document::chart::{self, Appearance, Axis, Chart, Colour, Curve};
 use hysid_document::{Cell, Page, Part, Table, markdown};
 
@@ -209,11 +210,11 @@ impl Series {
     /// The exponent `b` of `time = a size^b` for the largest sizes, by least squares of the logarithms.
     fn exponent(&self) -> f64 {
         let points: Vec<(f64, f64)> =
-            self.measured().rev().take(LARGEST).map(|(size, time)| (size.ln(), time.ln())).collect();
+            self.measured().rev().take(LARGEST).map(|(size, time)| (ln(size), ln(time))).collect();
         let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
         let (x, y) = (mean(|point| point.0), mean(|point| point.1));
         let covariance: f64 = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum();
-        covariance / points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>()
+        covariance / points.iter().map(|point| square(point.0 - x)).sum::<f64>()
     }
 
     /// With two decimals: a cell with a number would omit zeros at its end.

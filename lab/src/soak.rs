@@ -10,6 +10,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use hysid::options::ModelName;
+use hysid_core::elementary::sin;
 
 use crate::program::{self, InFolder, last_line};
 
@@ -223,7 +224,7 @@ fn record(rows: u64, records: u64) -> String {
     for record in 0..records {
         let mut play: f64 = 0.0;
         for row in 0..rows {
-            let x = (0.02 * row as f64).sin() + 0.02 * share(row + rows * record);
+            let x = sin(0.02 * row as f64) + 0.02 * share(row + rows * record);
             play = play.clamp(x - 0.3, x + 0.3);
             text += &format!("{record},{},{x},{}\n", 0.01 * row as f64, 0.5 * x + play);
         }
@@ -237,7 +238,7 @@ fn nasty() -> Vec<(&'static str, String)> {
         let rows = (0..rows).map(|k| format!("{},{},{}\n", 0.1 * k as f64, x(k), y(k)));
         format!("t,x,y\n{}", rows.collect::<String>())
     };
-    let sine = |k: u64| (0.1 * k as f64).sin();
+    let sine = |k: u64| sin(0.1 * k as f64);
     vec![
         ("200,000 noisy rows", record(200_000, 1)),
         ("3000 records", record(40, 3000)),

@@ -1,8 +1,10 @@
 //! Means of errors over specimens and seeds, and how they are shown.
 
+use hysid_core::elementary::{exp, ln};
+
 /// The geometric mean.
 pub fn geometric_mean(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value.ln()).sum::<f64>() / values.len() as f64).exp()
+    exp(values.iter().map(|value| ln(*value)).sum::<f64>() / values.len() as f64)
 }
 
 /// The median; the mean of the middle two of an even number.

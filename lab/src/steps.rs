@@ -10,6 +10,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use hysid::{Fit, Model};
+use hysid_core::elementary::{cos, sin};
 use hysid_export::description::{Argument, Description, RateSource};
 use hysid_export::{InverseOptions, Options, Precision, Target, export};
 use serde_json::json;
@@ -81,7 +82,7 @@ fn wanted(model: &Model) -> Vec<(f64, f64)> {
     let mut time = 0.0;
     let output = |row: usize| {
         let t = row as f64;
-        let place = 0.5 + 0.45 * (0.031 * t).sin() * (0.0017 * t).cos();
+        let place = 0.5 + 0.45 * sin(0.031 * t) * cos(0.0017 * t);
         time += models::time_step(row);
         (stepper.step(&[low + place * (high - low)], time, None).unwrap(), models::time_step(row))
     };

@@ -10,6 +10,7 @@ use hysid::model::{BandLevel, Model};
 use hysid::options::auto::AutoOptions;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::options::{FitSpec, ModelName};
+use hysid_core::elementary::square;
 use hysid_lab::generated::generated;
 
 fn fitted(data: &Dataset, spec: &FitSpec) -> Model {
@@ -70,15 +71,14 @@ fn linear_error(train: &Dataset, test: &Dataset, rate: RateMethod) -> f64 {
     let seen = rows(train);
     let [x, v, y] = [0, 1, 2].map(|column| mean(&seen, &|row| row[column]));
     let product = |a: usize, b: usize| mean(&seen, &|row| (row[a] - [x, v, y][a]) * (row[b] - [x, v, y][b]));
-    let determinant = product(0, 0) * product(1, 1) - product(0, 1).powi(2);
+    let determinant = product(0, 0) * product(1, 1) - square(product(0, 1));
     let of_x = (product(0, 2) * product(1, 1) - product(1, 2) * product(0, 1)) / determinant;
     let of_rate = (product(1, 2) * product(0, 0) - product(0, 2) * product(0, 1)) / determinant;
     let unseen = rows(test);
     let middle = mean(&unseen, &|row| row[2]);
     let residual = |row: &[f64; 3]| row[2] - y - of_x * (row[0] - x) - of_rate * (row[1] - v);
     100.0
-        * (mean(&unseen, &|row| residual(row).powi(2)) / mean(&unseen, &|row| (row[2] - middle).powi(2)))
-            .sqrt()
+        * (mean(&unseen, &|row| square(residual(row))) / mean(&unseen, &|row| square(row[2] - middle))).sqrt()
 }
 
 #[test]

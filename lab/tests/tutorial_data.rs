@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use hysid::data::record::{Dataset, Record};
 use hysid::specimens::{BoucWenBaberNoori, ReinforcedConcreteJoint, with_noise};
+use hysid_core::elementary::{cos, exp, sin};
 use hysid_lab::generated::{DrivenSpecimen, driven_specimen};
 
 /// Noise of the load cell, and of the coil, in percent of the standard deviation of the output.
@@ -83,8 +84,8 @@ fn the_column_test_is_that_of_its_law() {
 fn earthquake() -> Vec<f64> {
     let tones = [(0.9, 1.0, 0.0), (1.4, 0.7, 1.0), (2.3, 0.45, 2.5), (0.35, 0.5, 4.0)];
     let at = |t: f64| {
-        let envelope = (t / 2.0).min(1.0) * (-(t - 4.0).max(0.0) / 4.0).exp();
-        envelope * tones.iter().map(|(f, a, phase)| a * (TAU * f * t + phase).sin()).sum::<f64>()
+        let envelope = (t / 2.0).min(1.0) * exp(-(t - 4.0).max(0.0) / 4.0);
+        envelope * tones.iter().map(|(f, a, phase)| a * sin(TAU * f * t + phase)).sum::<f64>()
     };
     let raw: Vec<f64> = (0..700).map(|row| at(0.02 * f64::from(row))).collect();
     let largest = raw.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
@@ -119,12 +120,12 @@ fn the_sheet_is_that_of_its_law() {
         for amplitude in [0.4, 0.7, 1.0] {
             let step = 1.0 / (60.0 * frequency);
             let name = format!("{frequency} Hz, {:.0} %", 100.0 * amplitude);
-            sines.push(record(&name, 121, step, &|t| amplitude * (TAU * frequency * t).sin()));
+            sines.push(record(&name, 121, step, &|t| amplitude * sin(TAU * frequency * t)));
         }
     }
     check("sheet.csv", &table(&sheet.names, sines, 1, COIL_NOISE));
-    let inverter = |t: f64| 0.75 * (TAU * 50.0 * t).sin() + 0.25 * (TAU * 250.0 * t).sin();
-    let biased = |t: f64| 0.3 * (1.0 - (-t / 0.01).exp()) + 0.5 * (TAU * 50.0 * t).sin();
+    let inverter = |t: f64| 0.75 * sin(TAU * 50.0 * t) + 0.25 * sin(TAU * 250.0 * t);
+    let biased = |t: f64| 0.3 * (1.0 - exp(-t / 0.01)) + 0.5 * sin(TAU * 50.0 * t);
     let waveforms = vec![
         record("fifth harmonic", 361, 1.0 / 6000.0, &inverter),
         record("bias", 361, 1.0 / 6000.0, &biased),
@@ -145,7 +146,7 @@ fn swings(start: f64, legs: impl IntoIterator<Item = (f64, usize)>) -> Vec<f64> 
     let mut path = vec![start];
     for (to, rows) in legs {
         let from = path[path.len() - 1];
-        let at = |row: usize| 0.5 * (1.0 - (0.5 * TAU * row as f64 / rows as f64).cos());
+        let at = |row: usize| 0.5 * (1.0 - cos(0.5 * TAU * row as f64 / rows as f64));
         path.extend((1..=rows).map(|row| from + (to - from) * at(row)));
     }
     path

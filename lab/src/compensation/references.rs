@@ -3,6 +3,8 @@
 
 use std::f64::consts::TAU;
 
+use hysid_core::elementary::sin;
+
 /// A wanted output by its name.
 pub struct Shape {
     /// Its name.
@@ -43,7 +45,7 @@ fn scaled(values: Vec<f64>) -> Vec<f64> {
 }
 
 fn sines(share: f64) -> f64 {
-    SINES.iter().map(|(order, amplitude, phase)| amplitude * (TAU * order * share + phase).sin()).sum()
+    SINES.iter().map(|(order, amplitude, phase)| amplitude * sin(TAU * order * share + phase)).sum()
 }
 
 fn staircase(share: f64) -> f64 {
@@ -58,7 +60,7 @@ fn noise(share: f64) -> f64 {
     let sine = |order: usize| {
         let (amplitude, phase) =
             ((GOLDEN * order as f64).fract(), (GOLDEN * (order + ORDERS) as f64).fract());
-        (0.3 + amplitude) * (TAU * (order as f64 * share + phase)).sin()
+        (0.3 + amplitude) * sin(TAU * (order as f64 * share + phase))
     };
     (1..=ORDERS).map(sine).sum()
 }

@@ -1,5 +1,7 @@
 //! Laws of the battery, a step of the input at a time.
 
+use hysid_core::elementary::{powi, tanh};
+
 /// A law with hysteresis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
@@ -63,7 +65,7 @@ impl State {
                 40.0 * self.z / 0.04 + 4.0 * x
             }
             Law::BoucWen => {
-                let slope = 1.0 - 0.5 * (self.z * dx.signum() + self.z.abs()) * self.z.abs().powi(0);
+                let slope = 1.0 - 0.5 * (self.z * dx.signum() + self.z.abs()) * powi(self.z.abs(), 0);
                 self.z += slope * 20.0 * dx;
                 30.0 * self.z + 10.0 * x
             }
@@ -80,7 +82,7 @@ impl State {
                     let radius = 0.5 * (number + 1) as f64 / count;
                     *play = play.clamp(x - radius, x + radius);
                 }
-                1.5 * (2.5 * self.plays.iter().sum::<f64>() / count).tanh() + 0.05 * x
+                1.5 * tanh(2.5 * self.plays.iter().sum::<f64>() / count) + 0.05 * x
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use hysid_core::elementary::sin;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -257,7 +258,7 @@ impl Trial {
         let amplitudes: Vec<f64> =
             protocol.steps.iter().flat_map(|&(amplitude, count)| vec![amplitude; count]).collect();
         let wave = |phase: f64| match protocol.wave {
-            Wave::Sine => (TAU * phase).sin(),
+            Wave::Sine => sin(TAU * phase),
             Wave::Lines => {
                 let phase = phase.rem_euclid(1.0);
                 if phase < 0.25 {
@@ -268,7 +269,7 @@ impl Trial {
                     4.0 * phase - 4.0
                 }
             }
-            Wave::Rippled => ((TAU * phase).sin() + 0.25 * (5.0 * TAU * phase).sin()) / 1.037,
+            Wave::Rippled => (sin(TAU * phase) + 0.25 * sin(5.0 * TAU * phase)) / 1.037,
         };
         let mut state = law.begin();
         if protocol.is_steady {

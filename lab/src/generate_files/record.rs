@@ -1,5 +1,7 @@
 //! The record that every file has: a spring and a play under a displacement of growing amplitude.
 
+use hysid_core::elementary::sin;
+
 /// Rows.
 pub const ROWS: usize = 48;
 
@@ -20,7 +22,7 @@ pub fn rows() -> Vec<Row> {
     let mut play = 0.0_f64;
     let row = |k: usize| {
         let phase = std::f64::consts::TAU * k as f64 / 16.0;
-        let x = (1000.0 * (1.0 + 0.05 * k as f64) * phase.sin()).round() / 1000.0;
+        let x = (1000.0 * (1.0 + 0.05 * k as f64) * sin(phase)).round() / 1000.0;
         play = play.max(x - PLAY).min(x + PLAY);
         Row {
             t: k as i64,

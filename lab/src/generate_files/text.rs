@@ -1,5 +1,7 @@
 //! Text files: delimiters, headers, numbers, missing values, time, names in several languages.
 
+use hysid_core::elementary::{powi, sin};
+
 use super::record::{COMMA, POINT, Row, lines, table};
 
 type Named = (&'static str, String);
@@ -107,7 +109,7 @@ fn headers() -> Vec<Named> {
             with_header(
                 "t_s,x_mm,F_kN,T_degC",
                 table(",", |k, row| {
-                    [POINT.cells(row), vec![format!("{:.2}", 20.0 + (0.3 * k as f64).sin())]].concat()
+                    [POINT.cells(row), vec![format!("{:.2}", 20.0 + sin(0.3 * k as f64))]].concat()
                 }),
             ),
         ),
@@ -147,7 +149,7 @@ fn numbers() -> Vec<Named> {
     let exponent = |letter: &'static str| {
         move |_: usize, row: Row| {
             let number = |value: i64, digits: i32| {
-                let text = format!("{:.4e}", value as f64 / 10f64.powi(digits));
+                let text = format!("{:.4e}", value as f64 / powi(10.0, digits));
                 let (mantissa, power) = text.split_once('e').unwrap();
                 let power: i32 = power.parse().unwrap();
                 format!("{mantissa:>9}{letter}{}{:02}", if power < 0 { '-' } else { '+' }, power.abs())
@@ -297,14 +299,14 @@ fn unclear() -> Vec<Named> {
     let swapped = |_: usize, row: Row| vec![POINT.time(row), POINT.y(row), POINT.x(row)];
     let many = |k: usize, row: Row| {
         let mut cells = vec![POINT.time(row)];
-        cells.extend((1..=6).map(|gauge| format!("{:.3}", (f64::from(gauge) * 0.37 * k as f64).sin())));
+        cells.extend((1..=6).map(|gauge| format!("{:.3}", sin(f64::from(gauge) * 0.37 * k as f64))));
         cells.extend([POINT.x(row), POINT.y(row)]);
         cells
     };
     let doubled = |k: usize, row: Row| {
         vec![
             POINT.time(row),
-            format!("{:.3}", 0.001 * row.x as f64 + 0.01 * (1.7 * k as f64).sin()),
+            format!("{:.3}", 0.001 * row.x as f64 + 0.01 * sin(1.7 * k as f64)),
             POINT.x(row),
             POINT.y(row),
         ]

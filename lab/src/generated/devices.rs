@@ -7,6 +7,7 @@ use super::magnetorheological_damper::{MagnetorheologicalDamper, Magnetorheologi
 use super::phase_transformation::{PhaseTransformation, PhaseTransformationParameters};
 use hysid::specimens::generalized_play::{Envelope, GeneralizedPlays, Start};
 use hysid::specimens::{MagnetostrictiveActuator, RateDependentActuator};
+use hysid_core::elementary::exp;
 use hysid_core::error::Result;
 use hysid_core::law::Law;
 use hysid_core::law::bouc_wen::BoucWen;
@@ -80,7 +81,7 @@ fn plays(draw: &mut Draw, half: f64, slope: f64) -> (Vec<f64>, Vec<f64>) {
     let count = draw.whole(8, 14);
     let decline = draw.between(0.5, 2.5);
     let thresholds: Vec<f64> = (1..=count).map(|j| 0.9 * half * j as f64 / (count + 1) as f64).collect();
-    let weight = |&r: &f64| slope * draw.around((-decline * r / half).exp()) / count as f64;
+    let weight = |&r: &f64| slope * draw.around(exp(-decline * r / half)) / count as f64;
     let weights = thresholds.iter().map(weight).collect();
     (thresholds, weights)
 }
@@ -116,7 +117,7 @@ pub(super) fn bender(draw: &mut Draw) -> Result<Subject> {
 /// An actuator whose thresholds grow with the rate.
 pub(super) fn rate_dependent_actuator(draw: &mut Draw) -> Result<Subject> {
     let decline = draw.around(0.12);
-    let weights = (1..=10).map(|i| 0.4 * draw.factor(0.1) * (-decline * f64::from(i)).exp()).collect();
+    let weights = (1..=10).map(|i| 0.4 * draw.factor(0.1) * exp(-decline * f64::from(i))).collect();
     let mut actuator =
         RateDependentActuator::new(draw.around(0.5), weights, draw.around(0.6), draw.around(1e-3));
     Ok(Subject::new((-10.0, 10.0), move |sample| actuator.step(sample.x, sample.rate)))

@@ -1,5 +1,6 @@
 //! Random numbers of the cases.
 
+use hysid_core::elementary::{cos, exp, ln};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -27,7 +28,7 @@ impl Draw {
 
     /// Evenly between two positive values on a logarithmic scale.
     pub fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
+        exp(self.between(ln(low), ln(high)))
     }
 
     /// A whole number, both ends included.
@@ -38,12 +39,12 @@ impl Draw {
     /// `N(0, 1)`, by Box and Muller
     pub fn normal(&mut self) -> f64 {
         let (u, v): (f64, f64) = (self.0.random(), self.0.random());
-        (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+        (-2.0 * ln(1.0 - u)).sqrt() * cos(std::f64::consts::TAU * v)
     }
 
     /// `e^{spread N(0, 1)}`
     pub fn factor(&mut self, spread: f64) -> f64 {
-        (spread * self.normal().clamp(-LARGEST_NORMAL, LARGEST_NORMAL)).exp()
+        exp(spread * self.normal().clamp(-LARGEST_NORMAL, LARGEST_NORMAL))
     }
 
     /// A parameter: the value times `e^{0.2 N(0, 1)}`.

@@ -97,6 +97,8 @@ fn samples(input: &[f64], step: f64) -> Vec<Sample> {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
 
     /// A parabola is a cubic polynomial: values and rates inside are exact.
@@ -115,7 +117,7 @@ mod tests {
     #[test]
     fn a_specimen_is_untouched_at_the_beginning_of_each_record() {
         let damper = driven_specimen("damper-random", 3).unwrap().unwrap();
-        let input: Vec<f64> = (0..200).map(|k| damper.range.1 * (0.1 * f64::from(k)).sin()).collect();
+        let input: Vec<f64> = (0..200).map(|k| damper.range.1 * sin(0.1 * f64::from(k))).collect();
         let run = || damper.run("r", &input, Some(0.01)).unwrap();
         assert_eq!(run(), run());
         assert!(driven_specimen("jelly", 1).unwrap().is_none());

@@ -72,6 +72,8 @@ impl Elastomer {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::sin;
+
     use super::*;
 
     fn bush(elements: Vec<(f64, f64)>) -> Elastomer {
@@ -99,8 +101,7 @@ mod tests {
     fn the_friction_never_exceeds_its_limit() {
         let mut bush = bush(vec![(0.0, 1.0)]);
         for k in 0..1000 {
-            let force =
-                bush.step(3.0 * (0.37 * f64::from(k)).sin() + 2.0 * (0.11 * f64::from(k)).sin(), 0.01);
+            let force = bush.step(3.0 * sin(0.37 * f64::from(k)) + 2.0 * sin(0.11 * f64::from(k)), 0.01);
             assert!(force.abs() < 30.0);
         }
     }

@@ -10,6 +10,7 @@
 //! Carlson; the hyperbolic tangent of the speed of Kwok and co-workers. *Designed*: the lag before both, and
 //! the values.
 
+use hysid_core::elementary::tanh;
 use hysid_core::law::bouc_wen::{BoucWen, BoucWenState};
 use hysid_core::law::{Law, Sample};
 use hysid_core::operator::relaxation;
@@ -54,7 +55,7 @@ impl MagnetorheologicalDamper {
         self.x = x;
         let v = self.squeezed / values.lag;
         let friction = values.friction.step(&mut self.state, Sample { x, rate: 0.0, step: duration });
-        friction + values.damping * v + values.viscous_force * (v / values.viscous_speed).tanh()
+        friction + values.damping * v + values.viscous_force * tanh(v / values.viscous_speed)
     }
 }
 
@@ -74,7 +75,7 @@ mod tests {
             lag: 0.01,
         });
         let force = (1..=2000).map(|k| damper.step(0.06 * f64::from(k), 0.001)).last().unwrap();
-        let expected = 50.0 + 0.2 * 60.0 + 80.0 * 1.5f64.tanh();
+        let expected = 50.0 + 0.2 * 60.0 + 80.0 * tanh(1.5);
         assert!((force - expected).abs() < 1e-9, "{force} {expected}");
     }
 }

@@ -1,6 +1,7 @@
 //! Soft magnets and ferroelectrics of the cases.
 
 use hysid::specimens::{Everett, Ferromagnet};
+use hysid_core::elementary::{exp, square};
 use hysid_core::error::Result;
 use hysid_core::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid_core::law::preisach::{Preisach, PreisachWeights};
@@ -156,7 +157,7 @@ fn plane(
             let (half_width, centre) = (0.5 * (middle(i) - middle(j)), 0.5 * (middle(i) + middle(j)));
             let distance = (half_width - coercivity) / (width * coercivity);
             let area = if i == j { 0.5 } else { 1.0 };
-            cells.push(area * shape(distance * distance) * shape((centre / (spread * coercivity)).powi(2)));
+            cells.push(area * shape(distance * distance) * shape(square(centre / (spread * coercivity))));
         }
     }
     let sum: f64 = cells.iter().sum();
@@ -165,7 +166,7 @@ fn plane(
 }
 
 fn gaussian(square: f64) -> f64 {
-    (-0.5 * square).exp()
+    exp(-0.5 * square)
 }
 
 fn lorentzian(square: f64) -> f64 {

@@ -16,6 +16,8 @@
 //! (pinching by a broken line, strength that decreases with energy). *Designed*: that the strength decreases
 //! exponentially, equally for both sides.
 
+use hysid_core::elementary::{exp, powf};
+
 /// Strength that is left at last, as a share of the yield force.
 const RESIDUAL: f64 = 0.1;
 
@@ -97,14 +99,14 @@ impl PeakOriented {
     fn pass_zero(&mut self, side: usize, zero: f64) {
         let Self { parameters, work, .. } = self;
         let unit = parameters.endurance * parameters.yield_force * parameters.yield_displacement;
-        self.strength = (-work.max(0.0) / unit).exp();
+        self.strength = exp(-work.max(0.0) / unit);
         self.zeros[side] = zero;
     }
 
     fn unloading_slope(&self) -> f64 {
         let PeakOrientedParameters { yield_force, yield_displacement, unloading, .. } = self.parameters;
         let largest = self.peaks[0].max(self.peaks[1]);
-        yield_force / yield_displacement * (yield_displacement / largest).powf(unloading)
+        yield_force / yield_displacement * powf(yield_displacement / largest, unloading)
     }
 
     /// Force of the envelope at a displacement in the direction of loading.
@@ -191,6 +193,6 @@ mod tests {
         // Triangle, trapezium, and back along 10 kN/mm to 0.
         let work = 500.0 + 1025.0 - 0.5 * 10.5 * 105.0;
         let f = run(&mut member, &[9.5, -10.0]);
-        assert!((f[1] + 100.0 * (-work / 2000.0f64).exp()).abs() < 1e-9, "{f:?}");
+        assert!((f[1] + 100.0 * exp(-work / 2000.0f64)).abs() < 1e-9, "{f:?}");
     }
 }

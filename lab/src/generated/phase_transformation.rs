@@ -12,6 +12,8 @@
 
 use std::f64::consts::PI;
 
+use hysid_core::elementary::cos;
+
 /// Values of a wire.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PhaseTransformationParameters {
@@ -57,7 +59,7 @@ impl PhaseTransformation {
 fn left(from: f64, to: f64, (start, finish): (f64, f64)) -> f64 {
     let remaining = |temperature: f64| {
         let progress = ((temperature - start) / (finish - start)).clamp(0.0, 1.0);
-        0.5 * (1.0 + (PI * progress).cos())
+        0.5 * (1.0 + cos(PI * progress))
     };
     let before = remaining(from);
     if before > 0.0 { remaining(to) / before } else { 0.0 }

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::{powf, powi, sin};
 use hysid_core::error::Result;
 
 use super::Parts;
@@ -92,7 +93,7 @@ fn levels(draw: &mut Draw, course: Course) -> Vec<f64> {
         let share = step as f64 / steps as f64;
         match course {
             Course::Growing | Course::Repeated => levels.extend(vec![share; cycles]),
-            Course::Irregular => levels.push(draw.between(0.35, 1.0) * share.powf(0.6)),
+            Course::Irregular => levels.push(draw.between(0.35, 1.0) * powf(share, 0.6)),
         }
         if smaller_cycle_after {
             levels.push(0.6 * share);
@@ -114,10 +115,10 @@ pub(super) fn loops(draw: &mut Draw, subject: &Subject, left_out: LeftOut) -> Re
     for index in 0..count {
         let place = index as f64 / (count - 1) as f64;
         let amplitude =
-            half * smallest.powf(1.0 - place) * if index + 1 < count { draw.factor(0.05) } else { 1.0 };
+            half * powf(smallest, 1.0 - place) * if index + 1 < count { draw.factor(0.05) } else { 1.0 };
         let input = |row: usize| {
-            let sine = (TAU * row as f64 / rows as f64).sin();
-            middle + amplitude * sine * (roundness + (1.0 - roundness) * sine.powi(4))
+            let sine = sin(TAU * row as f64 / rows as f64);
+            middle + amplitude * sine * (roundness + (1.0 - roundness) * powi(sine, 4))
         };
         let input: Vec<f64> = (0..2 * rows).map(input).collect();
         let mut output = subject.run_still(&input);

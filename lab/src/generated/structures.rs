@@ -3,6 +3,7 @@
 use super::cyclic_plasticity::{Backstress, CyclicPlasticity, CyclicPlasticityParameters};
 use super::peak_oriented::{PeakOriented, PeakOrientedParameters};
 use hysid::specimens::{BoucWenBaberNoori, Concrete, ConcreteParameters, ReinforcedConcreteJoint};
+use hysid_core::elementary::powf;
 use hysid_core::error::Result;
 use hysid_core::law::Law;
 use hysid_core::law::bouc_wen::BoucWen;
@@ -180,7 +181,7 @@ pub(super) fn brace(draw: &mut Draw) -> Result<Subject> {
 /// Mild steel by Masing's rule on a skeleton of Ramberg and Osgood: `ε = σ/E + (σ/K)^{1/n}`, in mm/m.
 pub(super) fn ramberg_osgood_steel(draw: &mut Draw) -> Result<Subject> {
     let (modulus, strength, exponent) = (draw.around(200.0), draw.around(260.0), draw.between(0.08, 0.2));
-    let strain = |stress: f64| stress / modulus + (stress / strength).powf(1.0 / exponent);
+    let strain = |stress: f64| stress / modulus + powf(stress / strength, 1.0 / exponent);
     let largest = draw.between(10.0, 18.0);
     // The skeleton as a polygon through evenly spaced stresses, up to the largest branch.
     let (mut stress, mut thresholds, mut slopes) = (0.0, Vec::new(), Vec::new());

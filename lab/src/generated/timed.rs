@@ -3,6 +3,7 @@
 
 use super::tones::{self, Tone};
 use hysid_core::data::record::Record;
+use hysid_core::elementary::powf;
 use hysid_core::error::Result;
 use hysid_core::law::Sample;
 
@@ -74,7 +75,7 @@ pub(super) fn frequencies(draw: &mut Draw, subject: &Subject, (low, high): Band)
     let mut parts = Parts { train: Vec::new(), test: Vec::new() };
     for index in 0..count {
         let place = index as f64 / (count - 1) as f64;
-        let frequency = low * (high / low).powf(place) * draw.factor(0.05);
+        let frequency = low * powf(high / low, place) * draw.factor(0.05);
         let wave = if is_triangle {
             tones::rounded_triangle(half, frequency)
         } else {
@@ -100,7 +101,7 @@ pub(super) fn pairs(draw: &mut Draw, subject: &Subject, (low, high): Band) -> Re
     let mut parts = Parts { train: Vec::new(), test: Vec::new() };
     for (index, (share, place)) in amplitudes.into_iter().zip(places).enumerate() {
         let amplitude = half * share * draw.factor(0.05);
-        let frequency = low * (high / low).powf(place) * draw.factor(0.1);
+        let frequency = low * powf(high / low, place) * draw.factor(0.1);
         let step = 1.0 / (frequency * rows as f64);
         let motion = driven(subject, mean, &[Tone::sine(amplitude, frequency)], step, (1 + periods) * rows);
         let record = motion.record(format!("{:.3} at {frequency:.3} Hz", amplitude), rows, 0)?;

@@ -2,12 +2,14 @@
 
 use std::f64::consts::TAU;
 
+use hysid_core::elementary::sin;
+
 pub(super) use hysid::specimens::tones::{Tone, rate, value};
 
 /// A triangle whose corners are round: the first three terms of its series, scaled to the amplitude.
 pub(super) fn rounded_triangle(amplitude: f64, frequency: f64) -> Vec<Tone> {
     let shares = [(1.0, 1.0), (3.0, -1.0 / 9.0), (5.0, 1.0 / 25.0)];
-    let peak: f64 = shares.iter().map(|(order, share)| share * (0.25 * TAU * order).sin()).sum();
+    let peak: f64 = shares.iter().map(|(order, share)| share * sin(0.25 * TAU * order)).sum();
     shares.map(|(order, share)| Tone::sine(amplitude * share / peak, order * frequency)).to_vec()
 }
 

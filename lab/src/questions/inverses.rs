@@ -3,6 +3,7 @@
 use anyhow::Result;
 use hysid::plan::Path;
 use hysid::{Model, Record, Reference};
+use hysid_core::elementary::square;
 
 use super::{auto, by_specimen};
 use crate::cases::{aligned, row};
@@ -42,7 +43,7 @@ fn deviations(name: &str, seed: u64) -> Result<[f64; 3]> {
     let mut deviations = [0.0; 3];
     for (deviation, drive) in deviations.iter_mut().zip([of_line, of_loop, of_reversals]) {
         let reached = rig.run("driven", &drive)?;
-        let squares = reached.output().iter().zip(wanted.output()).map(|(y, wanted)| (y - wanted).powi(2));
+        let squares = reached.output().iter().zip(wanted.output()).map(|(y, wanted)| square(y - wanted));
         *deviation = 100.0 * (squares.sum::<f64>() / ROWS as f64).sqrt() / (high - low);
     }
     Ok(deviations)
@@ -54,7 +55,7 @@ fn drive_of_line(record: &Record, path: &Path, wanted: &[f64]) -> Vec<f64> {
     let rows = x.len() as f64;
     let (mean_x, mean_y) = (x.iter().sum::<f64>() / rows, y.iter().sum::<f64>() / rows);
     let slope = x.iter().zip(y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum::<f64>()
-        / x.iter().map(|x| (x - mean_x).powi(2)).sum::<f64>();
+        / x.iter().map(|x| square(x - mean_x)).sum::<f64>();
     let (low, high) = path.limits.range;
     wanted.iter().map(|wanted| (mean_x + (wanted - mean_y) / slope).clamp(low, high)).collect()
 }

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use hysid_core::elementary::sin;
+
 use super::residual::uniform;
 
 /// An input.
@@ -29,7 +31,7 @@ pub const DRIVES: [Drive; 5] = [
 
 fn sines(cycles: &[(f64, usize)]) -> Vec<f64> {
     let of_cycle = |&(amplitude, rows): &(f64, usize)| {
-        (0..rows).map(move |row| amplitude * (TAU * row as f64 / rows as f64).sin())
+        (0..rows).map(move |row| amplitude * sin(TAU * row as f64 / rows as f64))
     };
     cycles.iter().flat_map(of_cycle).collect()
 }

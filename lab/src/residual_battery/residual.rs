@@ -1,6 +1,7 @@
 //! Residuals: noise, and dependences that are planted beside it.
 
 use hysid::diagnosis::residuals::ResidualTest;
+use hysid_core::elementary::{cos, ln, square};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -39,10 +40,10 @@ impl Noise {
             Self::White => [0.0, 0.0],
             Self::Correlated => [0.6, 0.0],
             Self::Slow => [0.95, 0.0],
-            Self::Waves => [2.0 * 0.99 * (std::f64::consts::TAU / 25.0).cos(), -0.99 * 0.99],
+            Self::Waves => [2.0 * 0.99 * cos(std::f64::consts::TAU / 25.0), -0.99 * 0.99],
         };
         let mut draw = uniform(seed);
-        let mut normal = || (-2.0 * draw().max(1e-300).ln()).sqrt() * (std::f64::consts::TAU * draw()).cos();
+        let mut normal = || (-2.0 * ln(draw().max(1e-300))).sqrt() * cos(std::f64::consts::TAU * draw());
         // Begins in the steady state, after a while that is not used.
         const BEFORE: usize = 500;
         let (mut last, mut earlier) = (0.0, 0.0);
@@ -52,7 +53,7 @@ impl Noise {
                 last
             })
             .collect();
-        let variance = (1.0 - b) / ((1.0 + b) * ((1.0 - b).powi(2) - a * a));
+        let variance = (1.0 - b) / ((1.0 + b) * (square(1.0 - b) - a * a));
         drawn[BEFORE..].iter().map(|e| e / variance.sqrt()).collect()
     }
 }

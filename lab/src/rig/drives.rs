@@ -1,6 +1,7 @@
 //! Drives of tests: cycles, and random reversals.
 
 use hysid::plan::{Leg, Limits, Path};
+use hysid_core::elementary::powf;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -27,7 +28,7 @@ pub fn random(path: &Path, rows: usize, seed: u64) -> Vec<f64> {
         let nearest = if rises { (x + least).min(end) } else { (x - least).max(end) };
         x = nearest + (end - nearest) * generator.random::<f64>();
         rises = !rises;
-        let speed = SLOWEST.powf(generator.random::<f64>());
+        let speed = powf(SLOWEST, generator.random::<f64>());
         Leg::Swing { to: x, speed: if step.is_some() { speed } else { 1.0 } }
     });
     drive(path, legs, rows)

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use hysid_core::elementary::sin;
+
 use super::Column;
 
 /// Rows of a table.
@@ -37,7 +39,7 @@ pub fn rows(columns: &[Column]) -> String {
             's' => (1 + k / (CYCLE / 2) % 4) as f64,
             'k' => 25.0 + noise(0.05),
             'l' => [5.0, 50.0, 150.0, 300.0][k * 4 / ROWS],
-            'd' => 25.0 + 3.0 * (k as f64 / 300.0).sin() + noise(0.02),
+            'd' => 25.0 + 3.0 * sin(k as f64 / 300.0) + noise(0.02),
             'f' => 1.0,
             'a' => sums[k],
             'v' => 10.0 * step(k),
@@ -67,7 +69,7 @@ pub fn rows(columns: &[Column]) -> String {
 }
 
 fn input(k: usize) -> f64 {
-    (TAU * k as f64 / CYCLE as f64).sin() * (0.3 + 0.7 * k as f64 / ROWS as f64)
+    sin(TAU * k as f64 / CYCLE as f64) * (0.3 + 0.7 * k as f64 / ROWS as f64)
 }
 
 /// A stop operator of this threshold, with a spring beside it.
@@ -83,5 +85,5 @@ fn stop(input: &[f64], threshold: f64, spring: f64) -> Vec<f64> {
 
 /// A sequence between -1 and 1 that repeats nowhere in a table.
 fn noise(k: usize, place: usize) -> f64 {
-    2.0 * (43_758.545 * (12.9898 * (k + 1) as f64 + 78.233 * place as f64).sin()).rem_euclid(1.0) - 1.0
+    2.0 * (43_758.545 * sin(12.9898 * (k + 1) as f64 + 78.233 * place as f64)).rem_euclid(1.0) - 1.0
 }

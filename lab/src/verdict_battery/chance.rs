@@ -1,5 +1,6 @@
 //! Numbers by chance: the same names and seed give the same numbers.
 
+use hysid_core::elementary::{cos, ln};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -23,6 +24,6 @@ impl Chance {
 
     /// Normally distributed with deviation 1, by Box and Muller.
     pub fn normal(&mut self) -> f64 {
-        (-2.0 * (1.0 - self.even()).ln()).sqrt() * (std::f64::consts::TAU * self.even()).cos()
+        (-2.0 * ln(1.0 - self.even())).sqrt() * cos(std::f64::consts::TAU * self.even())
     }
 }

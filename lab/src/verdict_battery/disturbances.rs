@@ -1,5 +1,7 @@
 //! What a laboratory does to a record. Sizes are shares of the ranges of the undisturbed record.
 
+use hysid_core::elementary::{exp, powi, sin};
+
 use super::chance::Chance;
 use super::paths::{Path, SUBSTEPS};
 use super::run::Run;
@@ -134,7 +136,7 @@ impl Disturbance {
                 let (begin, mut row) = (chance.even(), 0.0);
                 add(output, size * height, || {
                     row += 1.0;
-                    (std::f64::consts::TAU * (begin + 0.137_431 * row)).sin()
+                    sin(std::f64::consts::TAU * (begin + 0.137_431 * row))
                 });
             }
             Kind::Quantised(bits) => {
@@ -200,7 +202,7 @@ fn correlated(memory: f64, chance: &mut Chance) -> impl FnMut() -> f64 {
 /// Noise whose power falls as one over the frequency, of deviation 1: equal shares of noise with memories of 1, 4, 16,
 /// ... rows.
 fn pink(chance: &mut Chance) -> impl FnMut() -> f64 {
-    let memories: Vec<f64> = (0..6).map(|octave| (-0.25_f64.powi(octave)).exp()).collect();
+    let memories: Vec<f64> = (0..6).map(|octave| exp(-powi(0.25, octave))).collect();
     let mut states: Vec<f64> = memories.iter().map(|_| chance.normal()).collect();
     move || {
         for (state, memory) in states.iter_mut().zip(&memories) {
@@ -225,7 +227,7 @@ fn walk(rows: usize, chance: &mut Chance) -> Vec<f64> {
 /// Rounded to so many bits of a measuring range 10 % larger than the values.
 fn quantise(values: &mut [f64], bits: i32) {
     let (low, high) = range(values);
-    let step = 1.1 * (high - low) / 2.0_f64.powi(bits);
+    let step = 1.1 * (high - low) / powi(2.0, bits);
     values.iter_mut().for_each(|value| *value = step * (*value / step).round());
 }
 
@@ -238,6 +240,8 @@ fn middle_of_second_branch(inputs: &[f64]) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::elementary::square;
+
     use super::super::{laws, paths};
     use super::*;
 
@@ -257,7 +261,7 @@ mod tests {
 
     fn deviation(values: &[f64]) -> f64 {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
-        (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+        (values.iter().map(|v| square(v - mean)).sum::<f64>() / values.len() as f64).sqrt()
     }
 
     fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {

@@ -5,6 +5,8 @@
 
 use std::f64::consts::PI;
 
+use hysid_core::elementary::{cos, exp, ln, powi, sin};
+
 use super::chance::Chance;
 
 /// Steps of the simulation from one row to the next.
@@ -82,7 +84,7 @@ fn sampled(shape: Shape, pieces: &[(f64, f64)], seconds: f64) -> Vec<f64> {
             let share = (time - begin) / duration;
             let share = match shape {
                 Shape::Triangle => share,
-                Shape::Sine => 0.5 - 0.5 * (PI * share).cos(),
+                Shape::Sine => 0.5 - 0.5 * cos(PI * share),
             };
             inputs.push(from + (to - from) * share);
         }
@@ -170,12 +172,12 @@ fn at_speeds(shape: Shape, pattern: &[f64], times: usize, seconds: [f64; 3]) -> 
 }
 
 fn two_tones() -> Course {
-    let x = |t: f64| 0.66 * (0.5 * PI * t).sin() + 0.345 * (0.5 * PI * 3.7 * t).sin();
+    let x = |t: f64| 0.66 * sin(0.5 * PI * t) + 0.345 * sin(0.5 * PI * 3.7 * t);
     Course::Function(x, 33.0)
 }
 
 fn decaying() -> Course {
-    let amplitudes = (0..12).map(|k| 0.8_f64.powi(k));
+    let amplitudes = (0..12).map(|k| powi(0.8, k));
     Course::between(Shape::Triangle, &cycles(amplitudes))
 }
 
@@ -183,8 +185,8 @@ fn decaying() -> Course {
 fn chirp() -> Course {
     const SECONDS: f64 = 52.0;
     let x = |t: f64| {
-        let growth = 10.0_f64.ln() / SECONDS;
-        (2.0 * PI * 0.05 * ((growth * t).exp() - 1.0) / growth).sin()
+        let growth = ln(10.0) / SECONDS;
+        sin(2.0 * PI * 0.05 * (exp(growth * t) - 1.0) / growth)
     };
     Course::Function(x, SECONDS)
 }

@@ -1,5 +1,6 @@
 //! The relay, and the two laws of memory: wiping-out and congruency.
 
+use hysid_core::elementary::tanh;
 use hysid_core::operator::{Operator, Relay};
 use hysid_document::chart::{Chart, Colour};
 
@@ -54,7 +55,7 @@ pub fn congruency() -> Vec<Chart> {
     let x = path(&turning);
     let rows = rows(&turning);
     let sum = sum_of_stops(&x);
-    let mixed: Vec<f64> = sum.iter().map(|y| (1.6 * y + 0.6).tanh()).collect();
+    let mixed: Vec<f64> = sum.iter().map(|y| tanh(1.6 * y + 0.6)).collect();
     let drawn = |title: &str, y: &[f64]| {
         let points = loops(&x, y);
         let curves = vec![

@@ -1,6 +1,7 @@
 //! Rate dependence, and what a prediction band means.
 
 use hysid_core::data::record::Record;
+use hysid_core::elementary::sin;
 use hysid_core::model::Model;
 use hysid_core::operator::Relaxation;
 use hysid_document::chart::{Chart, Colour, Curve};
@@ -15,7 +16,7 @@ pub fn rate() -> Vec<Chart> {
     let curves = [0.1, 1.0, 10.0].iter().enumerate().map(|(series, omega)| {
         let phase = |k: usize| std::f64::consts::TAU * k as f64 / rows as f64;
         let time: Vec<f64> = (0..=periods * rows).map(|k| phase(k) / omega).collect();
-        let x: Vec<f64> = (0..=periods * rows).map(|k| phase(k).sin()).collect();
+        let x: Vec<f64> = (0..=periods * rows).map(|k| sin(phase(k))).collect();
         let stress = Relaxation::new(tau).unwrap().run(&time, &x).unwrap();
         let y: Vec<f64> = x.iter().zip(stress).map(|(x, stress)| 0.5 * x + stress).collect();
         line(&loops(&x, &y)[(periods - 1) * rows..], Colour::Series(series))
@@ -38,7 +39,7 @@ pub fn band() -> Vec<Chart> {
     let x: Vec<f64> = (0..rows)
         .map(|k| {
             let phase = f64::from(k) / 30.0;
-            (0.4 + 1.2 * f64::from(k) / f64::from(rows)) * phase.sin()
+            (0.4 + 1.2 * f64::from(k) / f64::from(rows)) * sin(phase)
         })
         .collect();
     let record = Record::new("drive", vec![x.clone()], vec![f64::NAN; x.len()]).unwrap();

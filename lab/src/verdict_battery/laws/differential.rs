@@ -1,5 +1,7 @@
 //! Laws that are differential equations of the input's way, `dy = f(x, y, sign x') dx`.
 
+use hysid_core::elementary::{exp, powf, square, tanh};
+
 use super::{Law, Specimen};
 
 /// Longest step of the integration, in the unit of the input.
@@ -58,11 +60,11 @@ struct BoucWen {
 
 impl BoucWen {
     fn slope(self, z: f64, direction: f64, nu: f64) -> f64 {
-        self.a - nu * z.abs().powf(self.n) * (self.beta * (direction * z).signum() + self.gamma)
+        self.a - nu * powf(z.abs(), self.n) * (self.beta * (direction * z).signum() + self.gamma)
     }
 
     fn ultimate(self) -> f64 {
-        (self.a / (self.beta + self.gamma)).powf(self.n.recip())
+        powf(self.a / (self.beta + self.gamma), self.n.recip())
     }
 }
 
@@ -89,7 +91,7 @@ fn degrading() -> Box<dyn Specimen> {
 fn pinching() -> Box<dyn Specimen> {
     let law = |_: f64, z: f64, way: f64, _: f64| {
         let ultimate = SOFTENING.ultimate();
-        let slip = 0.85 * (-((z * way - 0.1 * ultimate) / (0.25 * ultimate)).powi(2)).exp();
+        let slip = 0.85 * exp(-square((z * way - 0.1 * ultimate) / (0.25 * ultimate)));
         (1.0 - slip) * SOFTENING.slope(z, way, 1.0)
     };
     Box::new(Along::law(law, |x, z| 0.1 * x + z))
@@ -102,7 +104,7 @@ fn dahl() -> Box<dyn Specimen> {
 
 /// `dy/dx = a sign(x') (f(x) - y) + b` with a saturating curve. Macki, Nistri & Zecca, SIAM Review 35 (1993) 94.
 fn duhem() -> Box<dyn Specimen> {
-    Box::new(Along::law(|x: f64, y, way, _| 4.0 * way * ((3.0 * x).tanh() - y) + 0.2, |_, y| y))
+    Box::new(Along::law(|x: f64, y, way, _| 4.0 * way * (tanh(3.0 * x) - y) + 0.2, |_, y| y))
 }
 
 /// `dy/dx = a sign(x') (b x - y) + c`. Coleman & Hodgdon, International Journal of Engineering Science 24 (1986) 897.
@@ -112,7 +114,7 @@ fn coleman_hodgdon() -> Box<dyn Specimen> {
 
 /// Langevin's curve.
 fn langevin(h: f64) -> f64 {
-    if h.abs() < 1e-3 { h / 3.0 } else { h.tanh().recip() - h.recip() }
+    if h.abs() < 1e-3 { h / 3.0 } else { tanh(h).recip() - h.recip() }
 }
 
 /// `dM/dH = [(1 - c) δ_M (M_an - M)/(δ k - α (M_an - M)) + c dM_an/dH] / (1 - α c)`. Jiles, Thoelke & Devine, IEEE
@@ -144,12 +146,12 @@ impl Specimen for LuGre {
         const STIFFNESS: f64 = 8.0;
         let speed = if seconds > 0.0 { (x - self.x) / seconds } else { 0.0 };
         self.x = x;
-        let friction = 1.0 + 0.3 * (-(speed / 0.5).powi(2)).exp();
+        let friction = 1.0 + 0.3 * exp(-square(speed / 0.5));
         // Exact while the speed is constant.
         let bound = speed.signum() * friction / STIFFNESS;
         let before = self.z;
         if speed != 0.0 {
-            self.z = bound + (self.z - bound) * (-STIFFNESS * speed.abs() * seconds / friction).exp();
+            self.z = bound + (self.z - bound) * exp(-STIFFNESS * speed.abs() * seconds / friction);
         }
         let rate = if seconds > 0.0 { (self.z - before) / seconds } else { 0.0 };
         STIFFNESS * self.z + 0.05 * rate + 0.15 * speed

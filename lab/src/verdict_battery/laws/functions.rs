@@ -1,5 +1,7 @@
 //! Laws without memory: the output is a function of the input.
 
+use hysid_core::elementary::{powi, tanh};
+
 use super::{Law, Specimen};
 
 struct Function(fn(f64) -> f64);
@@ -22,19 +24,19 @@ pub fn laws() -> Vec<Law> {
             name: "cubic",
             answers: "n - n  y y n  y n  n y",
             why: "branches depend on their place, not on the past",
-            specimen: || Box::new(Function(|x| x.powi(3) + 0.05 * x)),
+            specimen: || Box::new(Function(|x| powi(x, 3) + 0.05 * x)),
         },
         Law {
             name: "tanh-2",
             answers: "n - n  y y n  y -  n y",
             why: "saturates to a tenth of the largest slope: neither clearly nor clearly not",
-            specimen: || Box::new(Function(|x| (2.0 * x).tanh())),
+            specimen: || Box::new(Function(|x| tanh(2.0 * x))),
         },
         Law {
             name: "tanh-4",
             answers: "n - n  y y n  y y  n y",
             why: "saturates clearly",
-            specimen: || Box::new(Function(|x| (4.0 * x).tanh())),
+            specimen: || Box::new(Function(|x| tanh(4.0 * x))),
         },
         Law {
             name: "abs",

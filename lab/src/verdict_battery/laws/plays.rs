@@ -1,5 +1,7 @@
 //! Laws that are made of plays: their outputs lag behind the input.
 
+use hysid_core::elementary::{exp, ln, tanh};
+
 use super::elements::{Play, Plays};
 use super::{Law, Specimen};
 
@@ -39,7 +41,7 @@ struct Envelopes {
 
 impl Specimen for Envelopes {
     fn advance(&mut self, x: f64, _: f64) -> f64 {
-        let (up, down) = ((3.5 * x - 0.9).tanh() - 0.1, 0.8 * (3.0 * x + 0.3).tanh() + 0.2);
+        let (up, down) = (tanh(3.5 * x - 0.9) - 0.1, 0.8 * tanh(3.0 * x + 0.3) + 0.2);
         let mut sum = 0.0;
         for (k, value) in self.values.iter_mut().enumerate() {
             let r = 0.05 * k as f64;
@@ -63,7 +65,7 @@ impl Specimen for RateDependent {
     fn advance(&mut self, x: f64, seconds: f64) -> f64 {
         let speed = if seconds > 0.0 { (x - self.before).abs() / seconds } else { 0.0 };
         self.before = x;
-        self.plays.advance(x, 0.9 * (1.0 + speed / 0.2).ln())
+        self.plays.advance(x, 0.9 * ln(1.0 + speed / 0.2))
     }
 }
 
@@ -77,7 +79,7 @@ struct Lagged {
 impl Specimen for Lagged {
     fn advance(&mut self, x: f64, seconds: f64) -> f64 {
         let target = self.plays.advance(x, 0.0);
-        self.value = target + (self.value - target) * (-seconds / self.lag).exp();
+        self.value = target + (self.value - target) * exp(-seconds / self.lag);
         self.value
     }
 }
@@ -92,7 +94,7 @@ struct Creeping {
 impl Specimen for Creeping {
     fn advance(&mut self, x: f64, seconds: f64) -> f64 {
         for (state, time) in self.states.iter_mut().zip([0.3, 3.0, 30.0_f64]) {
-            *state = x + (*state - x) * (-seconds / time).exp();
+            *state = x + (*state - x) * exp(-seconds / time);
         }
         self.plays.advance(x, 0.0) + 0.25 * self.states.iter().sum::<f64>()
     }
@@ -145,7 +147,7 @@ pub fn laws() -> Vec<Law> {
             specimen: || {
                 Box::new(Superposition {
                     plays: plays(8, 0.4, 0.3),
-                    of_input: |x| (4.0 * x).tanh(),
+                    of_input: |x| tanh(4.0 * x),
                     of_output: |p| p,
                 })
             },

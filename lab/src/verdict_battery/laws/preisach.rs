@@ -1,5 +1,7 @@
 //! Laws with the memory of Preisach: nested turning points are all that counts.
 
+use hysid_core::elementary::{exp, powi, square};
+
 use super::memory::{Branches, Memory};
 use super::{Law, Specimen};
 
@@ -57,7 +59,7 @@ impl Branches for Everett {
 fn normal((width, of_width): (f64, f64), (centre, of_centre): (f64, f64)) -> Everett {
     Everett::of(move |half, middle| {
         let (a, b) = ((half - width) / of_width, (middle - centre) / of_centre);
-        (-0.5 * (a * a + b * b)).exp()
+        exp(-0.5 * (a * a + b * b))
     })
 }
 
@@ -129,7 +131,7 @@ struct RambergOsgood;
 impl Branches for RambergOsgood {
     fn growth(&self, low: f64, high: f64) -> f64 {
         let x = 0.5 * (high - low);
-        let strain = |y: f64| y / 3.0 + (y / 1.0_f64).powi(4);
+        let strain = |y: f64| y / 3.0 + powi(y / 1.0_f64, 4);
         let (mut least, mut most) = (0.0, 3.0 * x);
         for _ in 0..60 {
             let middle = 0.5 * (least + most);
@@ -161,10 +163,8 @@ pub fn laws() -> Vec<Law> {
             why: "relays of one sign of the centre prevail, so that no turn maps the loop onto itself",
             specimen: || {
                 let density = Everett::of(|half, middle| {
-                    let narrow =
-                        (-0.5 * (((half - 0.15) / 0.08).powi(2) + ((middle + 0.35) / 0.12).powi(2))).exp();
-                    let wide =
-                        (-0.5 * (((half - 0.4) / 0.1).powi(2) + ((middle - 0.15) / 0.1).powi(2))).exp();
+                    let narrow = exp(-0.5 * (square((half - 0.15) / 0.08) + square((middle + 0.35) / 0.12)));
+                    let wide = exp(-0.5 * (square((half - 0.4) / 0.1) + square((middle - 0.15) / 0.1)));
                     narrow + wide
                 });
                 Box::new(Remembering { memory: Memory::saturated(density, -REACH), output: |_, p| p })

@@ -1,5 +1,7 @@
 //! Laws that are made of stops: forces of friction and plasticity.
 
+use hysid_core::elementary::exp;
+
 use super::elements::Stop;
 use super::{Law, Specimen};
 
@@ -35,7 +37,7 @@ impl Specimen for Parallel {
         }
         self.before = x;
         for (stop, threshold, stiffness, slip) in &mut self.stops {
-            let left = self.wear.map_or(1.0, |wear| WORN + (1.0 - WORN) * (-*slip / wear).exp());
+            let left = self.wear.map_or(1.0, |wear| WORN + (1.0 - WORN) * exp(-*slip / wear));
             let (value, slipped) = stop.advance(x, *threshold * left);
             *slip += slipped;
             force += *stiffness * value;

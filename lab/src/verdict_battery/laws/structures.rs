@@ -1,5 +1,7 @@
 //! Laws of structural members: straight lines and curves that aim at points of the past.
 
+use hysid_core::elementary::powf;
+
 use super::{Law, Specimen};
 
 /// Peak-oriented: from zero force a straight line to the largest deformation of that side. Clough & Johnston,
@@ -131,7 +133,7 @@ impl Specimen for MenegottoPinto {
         let way = (x - x_r) / (x_0 - x_r);
         let b = Self::HARDENING;
         let r = self.exponent;
-        let height = b * way + (1.0 - b) * way / (1.0 + way.abs().powf(r)).powf(r.recip());
+        let height = b * way + (1.0 - b) * way / powf(1.0 + powf(way.abs(), r), r.recip());
         self.x = x;
         self.y = y_r + (y_0 - y_r) * height;
         self.y

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use hysid_core::elementary::{exp, powi, sin, square};
+
 use super::super::property::{OF_MEMBERS, PROPERTIES};
 use super::*;
 
@@ -32,7 +34,7 @@ fn close(a: f64, b: f64, tolerance: f64) -> bool {
 /// Area of a loop between -1 and 1 at `cycles` sines per second, clockwise, after some loops.
 fn area(law: &Law, cycles: f64) -> f64 {
     const ROWS: usize = 4000;
-    let x = |k: usize| (2.0 * PI * k as f64 / ROWS as f64).sin();
+    let x = |k: usize| sin(2.0 * PI * k as f64 / ROWS as f64);
     let inputs: Vec<f64> = (0..=4 * ROWS).map(x).collect();
     let outputs = law.run(&inputs, (cycles * ROWS as f64).recip());
     let last = 3 * ROWS..4 * ROWS;
@@ -87,21 +89,21 @@ fn memories_of_turning_points_close_an_excursion_and_differential_laws_leave_a_g
 fn bouc_wen_and_dahl_follow_their_exact_solutions() {
     // n = 1, loading from 0: z = z_u (1 - exp(-x/z_u)), with z_u = 1/3; beside it a spring of 0.1.
     let y = visited("bouc-wen-softening", &[0.4])[0];
-    let exact = 0.04 + (1.0 - (-1.2_f64).exp()) / 3.0;
+    let exact = 0.04 + (1.0 - exp(-1.2)) / 3.0;
     assert!(close(y, exact, 1e-9), "{y} {exact}");
     let force = visited("dahl", &[0.3])[0];
-    assert!(close(force, 1.0 - (-1.5_f64).exp(), 1e-9), "{force}");
+    assert!(close(force, 1.0 - exp(-1.5), 1e-9), "{force}");
 }
 
 #[test]
 fn friction_and_magnetization_follow_their_exact_solutions() {
     // Sliding at 0.5 per second: Stribeck's curve and the viscosity; no slope of the bristles is left.
     let force = visited("lugre", &[1.0])[0];
-    let exact = 1.0 + 0.3 * (-1.0_f64).exp() + 0.15 * 0.5;
+    let exact = 1.0 + 0.3 * exp(-1.0) + 0.15 * 0.5;
     assert!(close(force, exact, 1e-3), "{force} {exact}");
     // dy/dx = 3 (x - y) + 0.2 from 0.
     let y = visited("coleman-hodgdon", &[0.5])[0];
-    let exact = 0.5 - 0.8 / 3.0 * (1.0 - (-1.5_f64).exp());
+    let exact = 0.5 - 0.8 / 3.0 * (1.0 - exp(-1.5));
     assert!(close(y, exact, 1e-9), "{y} {exact}");
     // A settled loop is odd and stays below saturation.
     let m = visited("jiles-atherton", &[1.0, -1.0, 1.0, -1.0]);
@@ -121,7 +123,7 @@ fn preisach_operators_span_the_same_whatever_came_before() {
 #[test]
 fn ramberg_osgoods_branches_are_its_curve_twice_as_large() {
     let y = visited("ramberg-osgood", &[0.3, 0.6, 0.0, 0.6]);
-    let strain = |y: f64| y / 3.0 + y.powi(4);
+    let strain = |y: f64| y / 3.0 + powi(y, 4);
     assert!(close(strain(y[0]), 0.3, 1e-9) && close(strain(y[1]), 0.6, 1e-9), "{y:?}");
     assert!(close(y[1] - y[2], 2.0 * y[0], 1e-9), "{y:?}");
     assert!(close(y[3], y[1], 1e-9), "{y:?}");
@@ -133,7 +135,7 @@ fn areas_of_viscous_loops_are_those_of_the_textbook() {
         let omega = 2.0 * PI * cycles;
         // π c ω, and π k ωτ/(1 + ω²τ²), for an amplitude of 1.
         let voigt = PI * 0.15 * omega;
-        let relaxing = PI * omega * 0.15 / (1.0 + (omega * 0.15).powi(2));
+        let relaxing = PI * omega * 0.15 / (1.0 + square(omega * 0.15));
         assert!(close(area(&named("kelvin-voigt"), cycles), voigt, 1e-3 * voigt));
         for name in ["maxwell", "standard-linear-solid"] {
             let area = area(&named(name), cycles);

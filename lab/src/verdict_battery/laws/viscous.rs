@@ -1,5 +1,7 @@
 //! Viscoelastic laws: springs and dashpots. Christensen, Theory of Viscoelasticity (1982), section 1.3.
 
+use hysid_core::elementary::exp;
+
 use super::{Law, Specimen};
 
 /// `y = k x + c x'` beside springs in series with dashpots, `y_m' = k_m x' - y_m/τ_m`.
@@ -19,7 +21,7 @@ impl Specimen for Springs {
         if let Some((stiffness, time, state)) = &mut self.maxwell {
             // Exact while the speed is constant.
             let steady = *stiffness * *time * speed;
-            *state = steady + (*state - steady) * (-seconds / *time).exp();
+            *state = steady + (*state - steady) * exp(-seconds / *time);
             force += *state;
         }
         force
