@@ -6,8 +6,8 @@
 //! [`Model::stepper`](model::Model::stepper).
 //!
 //! The crate has no input or output, no clock, no threads, no random numbers and no unsafe code. Each of
-//! these modules uses only those before it: [`data`], [`operator`], [`network`], [`law`], [`options`],
-//! [`model`].
+//! these modules uses only those before it: [`elementary`], [`data`], [`operator`], [`network`], [`law`],
+//! [`options`], [`model`].
 //!
 //! `theory.md (1.5)` on these pages is the number of an equation in `docs/theory.md` of the repository.
 

@@ -98,7 +98,7 @@ pub fn ln(x: f64) -> f64 {
 }
 
 /// The logarithm of what is not positive and finite.
-pub(super) fn outside(x: f64) -> f64 {
+fn outside(x: f64) -> f64 {
     if x == 0.0 {
         f64::NEG_INFINITY
     } else if x > 0.0 {

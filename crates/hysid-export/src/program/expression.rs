@@ -25,7 +25,7 @@ pub enum Unary {
     /// `ln(1 + a)`, accurate near 0.
     LnOnePlus,
     Tanh,
-    /// Inverse hyperbolic sine: `ln(1 + |a| + |a|/(sqrt(1 + 1/a²) + 1/|a|))` with the sign of `a`.
+    /// Inverse hyperbolic sine. Languages without one: `ln(1 + |a| + |a|/(sqrt(1 + 1/a²) + 1/|a|))` with the sign of `a`.
     InverseSinh,
     /// The smallest whole number that is not below `a`.
     Ceiling,
@@ -254,7 +254,7 @@ impl Real {
         self.clone().apply(Unary::SquareRoot)
     }
 
-    /// Hyperbolic tangent of the standard library. Networks have one of their own.
+    /// Hyperbolic tangent of `hysid_core::elementary`. Networks have one of their own.
     pub fn tanh(&self) -> Self {
         self.clone().apply(Unary::Tanh)
     }
