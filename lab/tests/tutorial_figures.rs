@@ -71,7 +71,7 @@ fn the_stage_is_drawn_from_its_records() {
         Curve::new(deviation.collect(), colour, 1.2)
     });
     let description = "Deviation of the stage from the wanted position over time: up to 1.7 um with a straight line, \
-                       0.16 um with the inverse, 0.05 um after a second fit";
+                       0.12 um with the inverse, 0.08 um after a second fit";
     let chart = Chart::new(description, "time, s", "deviation, um", curves.into()).sized(SIZE.0, SIZE.1);
     check("tutorial-stage.svg", &chart.with_legend(drives.map(|(_, colour, name)| (colour, name))));
 }

@@ -54,7 +54,8 @@ fn usage(subject: &Subject<'_>) -> String {
     };
     let fast = match source::is_fused(subject) {
         true => {
-            " On x86-64, `-mfma` makes the code several times faster, for processors that have this instruction."
+            " On x86-64, `-mfma` makes the code several times faster, for processors that have this instruction. Without
+one, `-DHYSID_TWO_ROUNDINGS` makes it as fast; the outputs then differ from those of Hysid by rounding."
         }
         false => "",
     };

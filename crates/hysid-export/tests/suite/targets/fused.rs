@@ -53,6 +53,13 @@ fn outputs_do_not_depend_on_the_instruction() {
             }
         }
         println!("{name}: {} ways are equal", compilers().len() * ways().len());
+        let mut command = Command::new("gcc");
+        command.current_dir(folder.path()).args(STRICT).arg("-DHYSID_TWO_ROUNDINGS");
+        succeeds(command.args(["actuator.c", "driver.c", "-lm", "-o", "driver"]));
+        let mut run = Command::new(folder.path().join("driver"));
+        let difference = case.difference(name, &succeeds(run.stdin(fs::File::open(&input).unwrap())).stdout);
+        println!("{name}: {difference:.1e} with two roundings");
+        assert!(difference > 0.0 && difference < 1e-12, "{name}: {difference:e}");
     }
 }
 
