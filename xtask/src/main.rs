@@ -43,7 +43,11 @@ enum DeveloperCommand {
     /// Build the Python package's source distribution and install it alone (some minutes)
     Sdist,
     /// Compare models and exported C to the last bit with several instruction sets, some of them emulated
-    SameArithmetic,
+    SameArithmetic {
+        /// Only every so many of the fits: all of them take hours where a processor is emulated
+        #[arg(long, value_name = "NUMBER", default_value = "1")]
+        every: std::num::NonZeroUsize,
+    },
     /// Check the house rules; a part of `check`
     Tidy,
 }
@@ -56,7 +60,7 @@ fn main() -> ExitCode {
         DeveloperCommand::Python => python::build_and_test(),
         DeveloperCommand::Site => site::run(),
         DeveloperCommand::Sdist => python::source_distribution(),
-        DeveloperCommand::SameArithmetic => same_arithmetic::run(),
+        DeveloperCommand::SameArithmetic { every } => same_arithmetic::run(every.get()),
         DeveloperCommand::Tidy => tidy::run(),
     };
     match outcome {

@@ -61,9 +61,14 @@ pub(crate) fn nearest_power<S: Simd>(a: f64, b: f64) -> (f64, f64) {
     (rounded - ROUND, f64::from_bits(rounded.to_bits() << 52))
 }
 
+/// `a * b + c` in one rounding, as kernels compute it, with any instruction set.
+pub fn product_and_sum(a: f64, b: f64, c: f64) -> f64 {
+    fused::in_software(a, b, c)
+}
+
 /// `a * b + c` in one rounding.
 #[inline(always)]
-#[allow(clippy::disallowed_methods, reason = "networks fuse where the hardware does")]
+#[allow(clippy::disallowed_methods, reason = "the instruction rounds as the software does")]
 pub(crate) fn multiply_add<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
     if S::IS_SCALAR || cfg!(target_family = "wasm") { fused::in_software(a, b, c) } else { a.mul_add(b, c) }
 }
@@ -102,6 +107,7 @@ pub(crate) fn run_with_all<K: WithSimd>(kernel: impl Fn() -> K) -> Vec<K::Output
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::powi;
     use crate::random::mix;
 
     struct SumOfLanes([f64; LANES]);
@@ -118,7 +124,7 @@ mod tests {
     #[test]
     fn lanes_are_summed_in_one_order() {
         for seed in 0..1000 {
-            let lanes = std::array::from_fn(|l| mix(8 * seed + l as u64) as f64 / 2f64.powi(50 + l as i32));
+            let lanes = std::array::from_fn(|l| mix(8 * seed + l as u64) as f64 / powi(2.0, 50 + l as i32));
             for sum in run_with_all(|| SumOfLanes(lanes)) {
                 assert_eq!(sum.to_bits(), sum_of_lanes(lanes).to_bits());
             }

@@ -1,7 +1,8 @@
 //! Pages of `docs` as a reader follows them: every line of a `sh` block that calls `hysid`, a compiler, or a program of the
 //! folder is run, in order, in a folder of the page's own. Each page is a test of its own. Every line of a `text` block must
-//! be among the lines that these commands print: the same words, and numbers that are near enough. The figures in the text and
-//! the tables of how-to pages and tutorials must be printed too; the tables of the other pages are the laboratory's.
+//! be among the lines that these commands print, word by word: a fit is the same on every computer. The figures in the text
+//! and the tables of how-to pages and tutorials must be printed too, to their last digit; the tables of the other pages are
+//! the laboratory's.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,9 +27,6 @@ fn commands(page: &str) -> Vec<&str> {
     commands
 }
 
-/// How far a number on a page may be from the printed one, as a share of the larger: fits end elsewhere on another processor.
-const NEAR: f64 = 0.25;
-
 /// The lines of the `text` blocks of a page, without those that say that something is left out.
 fn shown(page: &str) -> Vec<&str> {
     let blocks = page.split("\n```text\n").skip(1).filter_map(|rest| rest.split_once("\n```"));
@@ -36,19 +34,9 @@ fn shown(page: &str) -> Vec<&str> {
     lines.filter(|line| !line.trim().is_empty() && !line.trim().starts_with("...")).collect()
 }
 
-/// True for lines of the same words, with numbers that are near each other.
+/// True for lines of the same words.
 fn is_alike(shown: &str, printed: &str) -> bool {
-    let number = |word: &str| {
-        let bare = word.trim_matches(|c: char| "(),.;:%".contains(c)).replace('−', "-");
-        bare.parse::<f64>().ok()
-    };
-    let are_alike = |(shown, printed): (&str, &str)| match (number(shown), number(printed)) {
-        (Some(a), Some(b)) => (a - b).abs() <= NEAR * a.abs().max(b.abs()),
-        _ => shown == printed,
-    };
-    let (shown, printed): (Vec<_>, Vec<_>) =
-        (shown.split_whitespace().collect(), printed.split_whitespace().collect());
-    shown.len() == printed.len() && shown.into_iter().zip(printed).all(are_alike)
+    shown.split_whitespace().eq(printed.split_whitespace())
 }
 
 /// The figures in the text and the tables of a page, each with its line: numbers with a decimal point or in percent, of at
@@ -98,7 +86,8 @@ impl Figure {
     }
 
     fn is_near(&self, printed: f64) -> bool {
-        (self.value - printed).abs() <= self.rounding.max(0.003 * self.value)
+        // A printed number is rounded too.
+        (self.value - printed).abs() <= self.rounding + 1e-9 * self.value
     }
 }
 

@@ -122,6 +122,7 @@ fn factorise_group(group: &mut [f64], n: usize, first: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::sin;
 
     struct Factor(usize);
 
@@ -131,7 +132,7 @@ mod tests {
         fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
             let n = self.0;
             let entry = |i: usize, j: usize| {
-                ((i * 31 + j * 17) as f64 * 0.7).sin() + if i == j { 2.0 * n as f64 } else { 0.0 }
+                sin((i * 31 + j * 17) as f64 * 0.7) + if i == j { 2.0 * n as f64 } else { 0.0 }
             };
             let mut data: Vec<f64> = (0..n * n).map(|k| entry(k / n, k % n)).collect();
             let factorise = Factorise { data: &mut data, n, pace: Pace::new(StopCheck::never()) };

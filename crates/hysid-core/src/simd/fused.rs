@@ -106,6 +106,7 @@ mod tests {
     use crate::random::mix;
 
     /// Compares with the instruction, or with the correctly rounded function of the system.
+    #[allow(clippy::disallowed_methods, reason = "it is what we compare with")]
     fn must_round_once(a: f64, b: f64, c: f64) {
         let exact = a.mul_add(b, c);
         for found in [in_software(a, b, c), by_integers(a, b, c)] {

@@ -5,6 +5,7 @@
 use std::cell::Cell;
 
 use hysid_core::elementary::{asinh, exp, exp_m1, hypot, ln, ln_1p, powf, tanh};
+use hysid_core::simd::product_and_sum;
 
 use crate::program::expression::{Binary, Real, Truth, Unary, Whole};
 use crate::program::{Array, Precision, Program, Statement, Storage};
@@ -145,7 +146,7 @@ impl<'p> Machine<'p> {
                 self.count();
                 let [a, b, c] = [a, b, c].map(|part| self.real(part));
                 match precision {
-                    Precision::Double => a.mul_add(b, c),
+                    Precision::Double => product_and_sum(a, b, c),
                     Precision::Single => f64::from(a as f32 * b as f32 + c as f32),
                 }
             }

@@ -2,6 +2,7 @@
 
 use super::cell::{Cell, Input, Shape};
 use super::*;
+use crate::elementary::exp;
 use crate::random::mix;
 use crate::stop_check::StopCheck;
 
@@ -14,7 +15,7 @@ fn numbers(seed: u64, count: usize) -> Vec<f64> {
 }
 
 fn cell() -> Cell {
-    let positive = |seed: u64| numbers(seed, SHAPE.states).iter().map(|ln| ln.exp()).collect();
+    let positive = |seed: u64| numbers(seed, SHAPE.states).iter().map(|ln| exp(*ln)).collect();
     Cell {
         stops: numbers(1, SHAPE.channels * SHAPE.stops).iter().map(|w| 3.0 * w).collect(),
         hidden: numbers(2, SHAPE.inputs() * SHAPE.neurons),
