@@ -394,7 +394,6 @@ fn noise_makes_no_cycles_and_its_deviation_of_the_energy_is_what_it_is() {
     let widths = table_of(&data(x, noisy_y), Field::Actuator);
     for row in widths.complete().skip(1) {
         let (width, deviation) = (row.width.unwrap(), row.width_deviation.unwrap());
-        println!("{width} {deviation}");
         assert!((1e-3..0.03).contains(&deviation), "{deviation}");
         assert!((width - 2.0).abs() < 4.0 * deviation, "{width} with a deviation of {deviation}");
     }
