@@ -200,11 +200,9 @@ fn every_page_with_commands_is_followed() {
 }
 
 #[test]
-fn lines_are_alike_whose_words_are_equal_and_whose_numbers_are_near() {
-    assert!(is_alike("loss  at 5 Hz: 97.2 J/m3", "loss at 5 Hz: 97.18   J/m3"));
-    for other in
-        ["loss at 5 Hz: 150 J/m3", "loss at 5 Hz: 97.18 W/m3", "loss at 5 Hz: 97.18", "loss at 5 Hz: no J/m3"]
-    {
+fn lines_are_alike_whose_words_are_equal() {
+    assert!(is_alike("loss  at 5 Hz: 97.2 J/m3", "loss at 5 Hz: 97.2   J/m3"));
+    for other in ["loss at 5 Hz: 97.3 J/m3", "loss at 5 Hz: 97.2 W/m3", "loss at 5 Hz: 97.2"] {
         assert!(!is_alike("loss at 5 Hz: 97.2 J/m3", other), "{other}");
     }
 }
@@ -215,7 +213,7 @@ fn figures_are_found_in_the_text_and_the_tables_alone() {
     let found: Vec<f64> = figures(page).iter().map(|(figure, _)| figure.value).collect();
     assert_eq!(found, [3.4, 1.5, 12.5]);
     let figure = |word: &str| Figure::of(word.into()).unwrap();
-    assert!(figure("3.4").is_near(3.449) && figure("3.40").is_near(3.41) && !figure("3.40").is_near(3.42));
+    assert!(figure("3.4").is_near(3.449) && figure("3.40").is_near(3.404) && !figure("3.40").is_near(3.41));
 }
 
 #[test]
