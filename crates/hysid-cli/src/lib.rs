@@ -60,7 +60,7 @@ pub fn run() -> ExitCode {
         && !set.to_str().is_some_and(hysid::simd::narrow_to)
     {
         insist(format_args!(
-            "HYSID_INSTRUCTIONS={}: no instruction set of this machine (AVX2, baseline)",
+            "error: HYSID_INSTRUCTIONS={}: this machine has no such instruction set (AVX2 or baseline)",
             set.display()
         ));
         return ExitCode::from(2);

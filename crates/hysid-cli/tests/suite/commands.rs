@@ -79,6 +79,22 @@ fn the_model_depends_on_the_seed_and_not_on_the_threads() {
 }
 
 #[test]
+#[cfg(target_arch = "x86_64")]
+fn the_model_does_not_depend_on_the_instruction_set() {
+    let bench = Workbench::new();
+    bench.put("loop.csv", table());
+    let fit = "hysid fit loop.csv -o m.json --no-report --model xpnn+ --starts 1 --epochs 2";
+    let ran = bench.shell(fit);
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let model = bench.text("m.json");
+    let ran = bench.shell(&format!("HYSID_INSTRUCTIONS=baseline {fit}"));
+    assert_eq!((ran.status, bench.text("m.json")), (Some(0), model), "{}", ran.stderr);
+    let ran = bench.shell(&format!("HYSID_INSTRUCTIONS=SSE9 {fit}"));
+    assert_eq!(ran.status, Some(2));
+    assert!(ran.stderr.starts_with("error: HYSID_INSTRUCTIONS=SSE9: "), "{}", ran.stderr);
+}
+
+#[test]
 fn simulate_keeps_every_column_as_it_is() {
     let bench = Workbench::with_model();
     let text = "note,t,x\n\"a, b\",0,0.10\n,1.0,+.5\nc,2e0,-0.25\n";
