@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
@@ -220,9 +220,12 @@ impl Machine {
                     ["fit", &data, "--model"].into_iter().chain(model.split(' ')).chain(options.split(' '));
                 self.hysid(place, arguments.chain([&*file]))?;
                 results.insert(format!("{model} of {specimen}"), fs::read(place.join(&file))?);
+                let walk = self.compiled(place, &file)?;
                 for steps in self.steps() {
-                    let checksum = self.exported(place, &file, steps)?;
-                    results.insert(format!("{steps} outputs of exported {model} of {specimen}"), checksum);
+                    let output = self.command(&walk).arg(steps).output()?;
+                    ensure!(output.status.success(), "exported {model} on {}", self.name);
+                    results
+                        .insert(format!("{steps} outputs of exported {model} of {specimen}"), output.stdout);
                 }
             }
         }
@@ -233,8 +236,8 @@ impl Machine {
         if self.processor.is_some() { &[STEPS] } else { &[STEPS, MANY_STEPS] }
     }
 
-    /// The checksum of the outputs of an exported model along a random walk.
-    fn exported(&self, place: &Path, model: &str, steps: &str) -> Result<Vec<u8>> {
+    /// The program of the walk of an exported model.
+    fn compiled(&self, place: &Path, model: &str) -> Result<PathBuf> {
         self.hysid(place, ["export", "--to", "c", "--name", "exported", "--force", "-o", "c", model])?;
         let folder = place.join("c");
         fs::write(folder.join("walk.c"), WALK)?;
@@ -244,9 +247,7 @@ impl Machine {
             .current_dir(&folder)
             .output()?;
         ensure!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
-        let output = self.command(&folder.join("walk")).arg(steps).output()?;
-        ensure!(output.status.success(), "exported {model} on {}", self.name);
-        Ok(output.stdout)
+        Ok(folder.join("walk"))
     }
 }
 

@@ -11,7 +11,7 @@
 //! computes with the same few operations.
 
 mod circular;
-mod error_free;
+pub(crate) mod error_free;
 mod exponential;
 mod hyperbolic;
 mod logarithm;

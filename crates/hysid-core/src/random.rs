@@ -7,3 +7,8 @@ pub fn mix(value: u64) -> u64 {
     let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     value ^ (value >> 31)
 }
+
+/// A number from 0 to 1, from [`mix`].
+pub fn uniform(value: u64) -> f64 {
+    mix(value) as f64 / u64::MAX as f64
+}

@@ -110,6 +110,15 @@ impl Precision {
         }
     }
 
+    /// Adding this leaves no digits behind the point: the low bits of the sum are a whole number plus the bias of
+    /// exponents.
+    pub(crate) fn rounding(self) -> f64 {
+        match self {
+            Self::Double => 6_755_399_441_055_744.0 + 1023.0,
+            Self::Single => 12_582_912.0 + 127.0,
+        }
+    }
+
     /// A constant in single precision. A finite one that is too large becomes the largest.
     pub(crate) fn single(value: f64) -> f32 {
         let rounded = value as f32;

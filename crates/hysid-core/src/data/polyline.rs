@@ -119,7 +119,7 @@ pub fn noise(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::elementary::{cos, sin};
-    use crate::random::mix;
+    use crate::random::uniform;
 
     fn column(values: &[f64], tolerance: f64) -> Column<'_> {
         Column { values, tolerance, longest: f64::INFINITY }
@@ -182,7 +182,7 @@ mod tests {
     #[test]
     fn noise_is_found_beside_a_smooth_signal() {
         // The sum of twelve numbers between 0 and 1 less its mean: nearly normal, of deviation 1.
-        let uniform = |seed: u64| mix(seed) as f64 / u64::MAX as f64 - 0.5;
+        let uniform = |seed: u64| uniform(seed) - 0.5;
         let normal = |row: usize| (0..12).map(|k| uniform(12 * row as u64 + k)).sum::<f64>();
         let smooth: Vec<f64> =
             (0..50_000).map(|k| sin(std::f64::consts::TAU / 20.0 * f64::from(k))).collect();

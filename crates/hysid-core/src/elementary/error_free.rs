@@ -1,8 +1,11 @@
 //! Sums and products with their rounding errors: the result and the error are the exact value.
 
+/// Adding this constant rounds to an integer, which the low bits of the sum hold.
+pub(super) const ROUND: f64 = 6_755_399_441_055_744.0;
+
 /// `a + b` and the rounding error of that sum.
 #[inline(always)]
-pub(super) fn sum(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let of_b = sum - a;
     (sum, (a - (sum - of_b)) + (b - of_b))

@@ -6,11 +6,8 @@
 //!
 //! `k` and `j` are integers, `0 <= j < 64` and `|s| <= (ln 2)/128`. A table holds `2^(j/64)`.
 
-use super::error_free::{polynomial, sum};
+use super::error_free::{ROUND, polynomial, sum};
 use super::tables::POWERS_OF_TWO;
-
-/// Adding this constant rounds to an integer, which the low bits of the sum hold.
-const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// `64 / ln 2`
 const STEPS: f64 = 92.33248261689366;

@@ -1,6 +1,6 @@
 //! Division of an angle by a quarter turn: `x = n π/2 + r`, `|r| <= π/4`.
 
-use super::error_free::{ordered_sum, product, sum};
+use super::error_free::{ROUND, ordered_sum, product, sum};
 
 /// An angle within an eighth of a turn of a multiple of quarter turns.
 pub(super) struct Turned {
@@ -16,9 +16,6 @@ pub(super) const FAR: f64 = 1_647_099.0;
 
 /// `2/π`
 const INVERSE: f64 = std::f64::consts::FRAC_2_PI;
-
-/// Adding this constant rounds to an integer, which the low bits of the sum hold.
-const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// `π/2` as a sum. The first three parts have at most 33 bits, so that products with `n < 2^20` are exact.
 const QUARTER: [f64; 4] =

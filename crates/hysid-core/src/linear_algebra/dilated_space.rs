@@ -4,12 +4,10 @@ use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use crate::linear_algebra::dot;
-use crate::simd;
+use crate::simd::{self, LANES};
 
 /// Rows that are worked on together.
 const ROWS: usize = 4;
-/// Partial sums of a scalar product.
-const SUMS: usize = 8;
 
 /// Variables from which on the dilatations are kept in place of their matrix: a matrix of 1000 variables has 8 MB.
 const MANY_VARIABLES: usize = 1000;
@@ -255,7 +253,7 @@ impl WithSimd for Dilate<'_> {
         let Self { entries, along, gamma, u, product } = self;
         // B'u = Bu + (γ - 1) (B along) (alongᵀu)
         let share = dot(along, u);
-        let mut largest = [0.0; SUMS];
+        let mut largest = [0.0; LANES];
         for (row, product) in entries.chunks_exact_mut(along.len()).zip(product) {
             let [stretched, of_u] = products(row, along, u);
             let factor = (gamma - 1.0) * stretched;
@@ -270,13 +268,13 @@ impl WithSimd for Dilate<'_> {
 #[inline(always)]
 fn products(a: &[f64], b: &[f64], c: &[f64]) -> [f64; 2] {
     let ((a, a_rest), (b, b_rest), (c, c_rest)) =
-        (a.as_chunks::<SUMS>(), b.as_chunks::<SUMS>(), c.as_chunks::<SUMS>());
-    let (mut with_b, mut with_c) = ([0.0; SUMS], [0.0; SUMS]);
+        (a.as_chunks::<LANES>(), b.as_chunks::<LANES>(), c.as_chunks::<LANES>());
+    let (mut with_b, mut with_c) = ([0.0; LANES], [0.0; LANES]);
     for ((a, b), c) in a.iter().zip(b).zip(c) {
-        for l in 0..SUMS {
+        for l in 0..LANES {
             with_b[l] += a[l] * b[l];
         }
-        for l in 0..SUMS {
+        for l in 0..LANES {
             with_c[l] += a[l] * c[l];
         }
     }
@@ -286,14 +284,14 @@ fn products(a: &[f64], b: &[f64], c: &[f64]) -> [f64; 2] {
 
 /// `row += factor other`; keeps the largest magnitudes.
 #[inline(always)]
-fn add_multiple(row: &mut [f64], other: &[f64], factor: f64, largest: &mut [f64; SUMS]) {
-    let (row, row_rest) = row.as_chunks_mut::<SUMS>();
-    let (other, other_rest) = other.as_chunks::<SUMS>();
+fn add_multiple(row: &mut [f64], other: &[f64], factor: f64, largest: &mut [f64; LANES]) {
+    let (row, row_rest) = row.as_chunks_mut::<LANES>();
+    let (other, other_rest) = other.as_chunks::<LANES>();
     for (row, other) in row.iter_mut().zip(other) {
-        for l in 0..SUMS {
+        for l in 0..LANES {
             row[l] += factor * other[l];
         }
-        for l in 0..SUMS {
+        for l in 0..LANES {
             largest[l] = if row[l].abs() > largest[l] { row[l].abs() } else { largest[l] };
         }
     }

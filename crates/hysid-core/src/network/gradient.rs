@@ -18,11 +18,8 @@ use crate::network::memory::{BLOCK, Row};
 use crate::network::readout::{Backward, Readout};
 use crate::network::sweep::{Block, Drive, TakeBlock, Walk};
 use crate::network::{Architecture, Layout};
-use crate::simd::{self, multiply_add_lanes};
+use crate::simd::{self, LANES, multiply_add_lanes};
 use crate::stop_check::StopCheck;
-
-/// Partial sums of each component, so that a sum over rows is SIMD code.
-const LANES: usize = 8;
 
 /// The gradient `Jᵀr` over records, `r = Φc - y`, with output weights `c` held fixed (theory.md (3.3)).
 pub struct GradientOverRecords<'a> {

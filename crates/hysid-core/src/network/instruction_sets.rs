@@ -1,7 +1,7 @@
 //! Every instruction set of the machine simulates a network to the same bits, and so are its derivatives.
 
 use super::*;
-use crate::random::mix;
+use crate::random::uniform;
 use crate::stop_check::StopCheck;
 
 /// Two records of a network with all parts and three groups of stops, of which one is not full.
@@ -21,7 +21,7 @@ impl Case {
             true,
         )
         .unwrap();
-        let number = |k: u64| 2.0 * (mix(k) >> 11) as f64 / (1_u64 << 53) as f64 - 1.0;
+        let number = |k: u64| 2.0 * uniform(k) - 1.0;
         let numbers = |seed: u64, count: usize| (0..count as u64).map(move |k| number(seed << 32 | k));
         let mut parameters: Vec<f64> =
             numbers(1, architecture.searched_parameters()).map(|p| 2.0 * p).collect();

@@ -1,5 +1,7 @@
 //! `a * b + c` in one rounding where the hardware has no such instruction.
 
+use crate::elementary::error_free::sum;
+
 /// `a * b + c` in one rounding, by sums and products that are not fused.
 ///
 /// The product is split into its rounded value and the error of that (Dekker 1971); the three terms are added with the
@@ -24,9 +26,9 @@ pub(super) fn in_software(a: f64, b: f64, c: f64) -> f64 {
     };
     let ((a_upper, a_lower), (b_upper, b_lower)) = (halves(a), halves(b));
     let error = ((a_upper * b_upper - product) + a_upper * b_lower + a_lower * b_upper) + a_lower * b_lower;
-    let (sum, of_sum) = sum_and_error(c, error);
-    let (total, of_total) = sum_and_error(product, sum);
-    let (rest, of_rest) = sum_and_error(of_sum, of_total);
+    let (added, of_added) = sum(c, error);
+    let (total, of_total) = sum(product, added);
+    let (rest, of_rest) = sum(of_added, of_total);
     // To odd: if it is not exact and its last bit is 0, it is the neighbour on the side of the error. Without branches,
     // which would be taken at random.
     let bits = rest.to_bits();
@@ -34,14 +36,6 @@ pub(super) fn in_software(a: f64, b: f64, c: f64) -> f64 {
     let back = goes & u64::from((of_rest > 0.0) != (rest > 0.0));
     let odd = f64::from_bits(bits.wrapping_add(goes).wrapping_sub(2 * back));
     total + odd
-}
-
-/// A rounded sum and its error (Knuth).
-#[inline(always)]
-fn sum_and_error(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let of_b = sum - a;
-    (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
 /// `a * b + c` in one rounding for numbers of any size, as exported C has it (`fused.c.txt` of hysid-export).

@@ -125,7 +125,7 @@ fn on_rows(x: &[f64], turns: &[usize], width: usize) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use hysid_core::random::mix;
+    use hysid_core::random::uniform;
 
     use super::*;
 
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn noise_is_no_reversal_and_hides_none_that_many_rows_show() {
-        let uniform = |k: u64| mix(k) as f64 / u64::MAX as f64 - 0.5;
+        let uniform = |k: u64| uniform(k) - 0.5;
         let normal = |row: usize| (0..12).map(|k| uniform(12 * row as u64 + k)).sum::<f64>();
         // Cycles of 1/50 of the largest, with noise of 1/5 of theirs.
         let amplitudes = [0.1, 0.1, 1.0, 5.0, 5.0, 0.1];

@@ -6,7 +6,7 @@ use approx::assert_relative_eq;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::elementary::{asin, atan, cos, exp, log10, sin, tanh};
 use hysid_core::operator::{Operator, Play, Stop};
-use hysid_core::random::mix;
+use hysid_core::random::{mix, uniform};
 
 use super::*;
 
@@ -375,7 +375,7 @@ fn blank_outputs_leave_figures_empty_and_say_so() {
 fn noise_makes_no_cycles_and_its_deviation_of_the_energy_is_what_it_is() {
     let x = path(&[0.0, 3.0, -3.0, 3.0, -3.0, 3.0, -3.0, 3.0, -3.0, 0.0], 0.02);
     let exact = Stop::new(1.0).unwrap().run(&x);
-    let uniform = |seed: u64| mix(seed) as f64 / u64::MAX as f64 - 0.5;
+    let uniform = |seed: u64| uniform(seed) - 0.5;
     let normal =
         |row: usize, of: u64| (0..12).map(|k| uniform(12 * row as u64 + k + (of << 40))).sum::<f64>();
     let noisy_x: Vec<f64> = x.iter().enumerate().map(|(row, x)| x + 0.01 * normal(row, 1)).collect();
@@ -657,7 +657,7 @@ fn repeated_rows_hide_no_cycles() {
 /// Viscous forces are 0 at the tips: what noise leaves there is no stiffness, and damps nothing.
 #[test]
 fn noise_at_the_tips_is_no_stiffness() {
-    let noise = |row: usize| 0.04 * (mix(row as u64) as f64 / u64::MAX as f64 - 0.5);
+    let noise = |row: usize| 0.04 * (uniform(row as u64) - 0.5);
     let phase = |row: usize| TAU * row as f64 / 200.0;
     let x: Vec<f64> = (0..=1000).map(|row| sin(phase(row))).collect();
     for size in [0.0, 1.0] {

@@ -3,7 +3,7 @@
 use approx::assert_relative_eq;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::elementary::{cosh, powi, sin, square, tanh};
-use hysid_core::random::mix;
+use hysid_core::random::uniform;
 
 use super::*;
 
@@ -29,7 +29,7 @@ fn curves(noise: f64) -> Dataset {
     let mut seed = 0;
     let mut normal = || {
         seed += 1;
-        (0..12).map(|k| mix(12 * seed + k) as f64 / u64::MAX as f64 - 0.5).sum::<f64>()
+        (0..12).map(|k| uniform(12 * seed + k) - 0.5).sum::<f64>()
     };
     for reversal in 1..=40 {
         let r = END - 0.1 * f64::from(reversal);

@@ -66,13 +66,13 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     let output_noise = survey.output_noise.deviation() / survey.height();
     let input_noise = 2.0 * survey.input_noise.deviation() / survey.width();
     let rate_noise = input_noise / (SQRT_2 * beside as f64);
-    (0..TIMES).any(|k| {
-        let products = products(step * powi(factor, k));
+    let explains = |products: &Products| {
         let (left, weights) = products.fit(COLUMNS);
         let through_input = products.mean_square_slope(&weights).sqrt() * input_noise;
         let noise = hypot(hypot(output_noise, through_input), weights[RATE] * rate_noise);
         left.sqrt() <= (EXPLAINED * without_memory.sqrt()).max(NOISE * noise)
-    })
+    };
+    explains(&first) || (1..TIMES).any(|k| explains(&products(step * powi(factor, k))))
 }
 
 /// Rows before and after one over which its rate is taken: as many as the noise of the input needs.

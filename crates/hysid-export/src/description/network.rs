@@ -196,11 +196,7 @@ fn decay(builder: &mut Builder, phi: Real) -> (Real, Real) {
 
 /// The whole number next to `a * b`, whose magnitude is below 1000; halves go to the even one. Its derivative is 0.
 fn nearest_whole(builder: &mut Builder, a: &Real, b: f64) -> Real {
-    // Adding this constant leaves no digits behind the point.
-    let round = match builder.precision() {
-        Precision::Double => 6_755_399_441_055_744.0 + 1023.0,
-        Precision::Single => 12_582_912.0 + 127.0,
-    };
+    let round = builder.precision().rounding();
     builder.value((fused(a, b, round) - round).detached())
 }
 

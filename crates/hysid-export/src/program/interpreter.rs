@@ -10,12 +10,6 @@ use hysid_core::simd::product_and_sum;
 use crate::program::expression::{Binary, Real, Truth, Unary, Whole};
 use crate::program::{Array, Precision, Program, Statement, Storage};
 
-/// The low bits of the sum of this and a whole number are that number plus the exponent bias 1023.
-const ROUND: f64 = 6_755_399_441_055_744.0 + 1023.0;
-
-/// The same in single precision, with the bias 127.
-const ROUND_SINGLE: f32 = 12_582_912.0 + 127.0;
-
 /// A program with its state.
 #[derive(Debug, Clone)]
 pub struct Machine<'p> {
@@ -197,7 +191,7 @@ fn unary(function: Unary, a: f64) -> f64 {
         Unary::Tanh => tanh(a),
         Unary::InverseSinh => asinh(a),
         Unary::Ceiling => a.ceil(),
-        Unary::PowerOfTwo => f64::from_bits((a + ROUND).to_bits() << 52),
+        Unary::PowerOfTwo => f64::from_bits((a + Precision::Double.rounding()).to_bits() << 52),
     }
 }
 
@@ -216,7 +210,7 @@ fn binary(function: Binary, a: f64, b: f64) -> f64 {
 /// In single precision: the function in double precision, rounded. Operations and roots are then rounded once.
 fn unary_single(function: Unary, a: f32) -> f32 {
     match function {
-        Unary::PowerOfTwo => f32::from_bits((a + ROUND_SINGLE).to_bits() << 23),
+        Unary::PowerOfTwo => f32::from_bits((a + Precision::Single.rounding() as f32).to_bits() << 23),
         _ => unary(function, a.into()) as f32,
     }
 }

@@ -246,8 +246,7 @@ mod tests {
 
     /// Growing oscillations with a loop, and noise that is told by a seed.
     fn record(rows: usize, size: f64, noise: f64, seed: u64) -> Record {
-        let jitter =
-            |k: usize| noise * (crate::random::mix(seed << 32 | k as u64) as f64 / u64::MAX as f64 - 0.5);
+        let jitter = |k: usize| noise * (crate::random::uniform(seed << 32 | k as u64) - 0.5);
         let x: Vec<f64> = (0..rows).map(|k| size * sin(0.1 * k as f64) * (0.3 + k as f64 / 400.0)).collect();
         let y = (0..rows).map(|k| x[k] + 0.3 * size * cos(0.1 * k as f64) + jitter(k)).collect();
         Record::new("r", vec![x], y).unwrap()

@@ -221,11 +221,11 @@ fn is_as_fast(one: f64, other: f64) -> bool {
 mod tests {
     use super::*;
     use crate::elementary::sin;
-    use crate::random::mix;
+    use crate::random::uniform;
 
     /// Growing cycles of a size, so many rows each, with noise in input and output.
     fn record(cycles: usize, rows: usize, size: f64, noise: f64, seed: u64) -> Record {
-        let jitter = |k: usize| noise * (mix(seed << 32 | k as u64) as f64 / u64::MAX as f64 - 0.5);
+        let jitter = |k: usize| noise * (uniform(seed << 32 | k as u64) - 0.5);
         let phase = |k: usize| std::f64::consts::TAU * k as f64 / rows as f64;
         let amplitude = |k: usize| size * (1.0 + (k / rows) as f64);
         let count = cycles * rows;
@@ -292,8 +292,8 @@ mod tests {
     #[test]
     fn random_inputs_agree_row_by_row() {
         let random = |seed: u64, noise: u64| {
-            let value = |k: u64| mix(seed << 32 | k) as f64 / u64::MAX as f64;
-            let jitter = |k: usize| 0.005 * (mix(noise << 40 | k as u64) as f64 / u64::MAX as f64 - 0.5);
+            let value = |k: u64| uniform(seed << 32 | k);
+            let jitter = |k: usize| 0.005 * (uniform(noise << 40 | k as u64) - 0.5);
             let x: Vec<f64> = (0..900usize)
                 .map(|k| {
                     let (from, share) = ((k / 9) as u64, (k % 9) as f64 / 9.0);

@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::data::record::ColumnNames;
     use crate::elementary::sin;
-    use crate::random::mix;
+    use crate::random::uniform;
 
     const STEP: f64 = 0.02;
 
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(data(&[&|t| sine(0.2 * t)]).speeds(), Speeds::One);
         assert_eq!(data(&[&|t| triangle(0.2 * t)]).speeds(), Speeds::One);
         assert_eq!(data(&[&|t| t]).speeds(), Speeds::One);
-        let jitter = |t: f64| 0.01 * (mix((t / STEP).round() as u64) as f64 / u64::MAX as f64 - 0.5);
+        let jitter = |t: f64| 0.01 * (uniform((t / STEP).round() as u64) - 0.5);
         assert_eq!(data(&[&|t| triangle(0.1 * t) + jitter(t)]).speeds(), Speeds::One);
         // Growing cycles at one speed, as in a cyclic test of a column.
         let growing = |t: f64| {

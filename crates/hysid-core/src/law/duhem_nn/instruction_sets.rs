@@ -3,15 +3,14 @@
 use super::cell::{Cell, Input, Shape};
 use super::*;
 use crate::elementary::exp;
-use crate::random::mix;
+use crate::random::uniform;
 use crate::stop_check::StopCheck;
 
 const SHAPE: Shape = Shape { channels: 2, stops: 5, states: 3, neurons: 13, has_time: true };
 
 /// Numbers from -1 to 1.
 fn numbers(seed: u64, count: usize) -> Vec<f64> {
-    let number = |k: u64| 2.0 * (mix(seed << 32 | k) >> 11) as f64 / (1_u64 << 53) as f64 - 1.0;
-    (0..count as u64).map(number).collect()
+    (0..count as u64).map(|k| 2.0 * uniform(seed << 32 | k) - 1.0).collect()
 }
 
 fn cell() -> Cell {

@@ -1,7 +1,6 @@
 //! The elementary functions that a model uses, in C: those of [`hysid_core::elementary`], operation by operation.
 
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 
 use crate::program::Precision;
 use crate::program::expression::{Binary, Unary};
@@ -27,51 +26,71 @@ fn sections() -> Vec<Section> {
         .collect()
 }
 
-/// Name of a section, and of its function behind `hysid_`.
-fn of_unary(function: Unary) -> Option<&'static str> {
+/// A function that programs use.
+pub(super) struct Function {
+    section: &'static str,
+    /// Its names in double and in single precision.
+    names: [&'static str; 2],
+}
+
+impl Function {
+    pub fn name(&self, precision: Precision) -> &'static str {
+        match precision {
+            Precision::Double => self.names[0],
+            Precision::Single => self.names[1],
+        }
+    }
+
+    /// The function in single precision: that in double precision, rounded.
+    fn in_single_precision(&self, arguments: &[&str]) -> String {
+        let [double, single] = self.names;
+        let declared: Vec<String> = arguments.iter().map(|argument| format!("real {argument}")).collect();
+        let given: Vec<String> = arguments.iter().map(|argument| format!("(double){argument}")).collect();
+        format!(
+            "static real {single}({})\n{{\n    return (real){double}({});\n}}\n\n",
+            declared.join(", "),
+            given.join(", ")
+        )
+    }
+}
+
+macro_rules! function {
+    ($section:literal) => {
+        Function {
+            section: $section,
+            names: [concat!("hysid_", $section), concat!("hysid_", $section, "_single")],
+        }
+    };
+}
+
+pub(super) fn of_unary(function: Unary) -> Option<Function> {
     Some(match function {
-        Unary::Exp => "exp",
-        Unary::ExpMinusOne => "exp_m1",
-        Unary::Ln => "ln",
-        Unary::LnOnePlus => "ln_1p",
-        Unary::Tanh => "tanh",
-        Unary::InverseSinh => "asinh",
+        Unary::Exp => function!("exp"),
+        Unary::ExpMinusOne => function!("exp_m1"),
+        Unary::Ln => function!("ln"),
+        Unary::LnOnePlus => function!("ln_1p"),
+        Unary::Tanh => function!("tanh"),
+        Unary::InverseSinh => function!("asinh"),
         _ => return None,
     })
 }
 
-/// The same of functions of two numbers.
-fn of_binary(function: Binary) -> Option<&'static str> {
+pub(super) fn of_binary(function: Binary) -> Option<Function> {
     match function {
-        Binary::Power => Some("powf"),
-        Binary::Hypotenuse => Some("hypot"),
+        Binary::Power => Some(function!("powf")),
+        Binary::Hypotenuse => Some(function!("hypot")),
         _ => None,
     }
 }
 
 /// The functions that programs use, and what those need.
 pub(super) fn functions(uses: &Uses, precision: Precision) -> String {
-    let unary = uses.unary.iter().filter_map(|function| of_unary(*function));
-    let binary = uses.binary.iter().filter_map(|function| of_binary(*function));
-    let (unary, binary): (Vec<_>, Vec<_>) = (unary.collect(), binary.collect());
-    let mut text = text_of(unary.iter().chain(&binary).copied());
+    let unary: Vec<Function> = uses.unary.iter().filter_map(|function| of_unary(*function)).collect();
+    let binary: Vec<Function> = uses.binary.iter().filter_map(|function| of_binary(*function)).collect();
+    let mut text = text_of(unary.iter().chain(&binary).map(|function| function.section));
     if precision == Precision::Single {
-        for name in unary {
-            let _ = writeln!(
-                text,
-                "static real hysid_{name}_single(real a)\n{{\n    return (real)hysid_{name}((double)a);\n}}\n"
-            );
-        }
-        for name in binary {
-            let _ = writeln!(
-                text,
-                "static real hysid_{name}_single(real a, real b)
-{{
-    return (real)hysid_{name}((double)a, (double)b);
-}}
-"
-            );
-        }
+        text.extend(unary.iter().map(|function| function.in_single_precision(&["a"])));
+        text.extend(binary.iter().map(|function| function.in_single_precision(&["a", "b"])));
     }
     text
 }

@@ -313,21 +313,15 @@ impl Language for C {
             Unary::Magnitude => self.of_precision("fabs", "fabsf"),
             Unary::SquareRoot => self.of_precision("sqrt", "sqrtf"),
             Unary::Ceiling => self.of_precision("ceil", "ceilf"),
-            Unary::Exp => self.of_precision("hysid_exp", "hysid_exp_single"),
-            Unary::ExpMinusOne => self.of_precision("hysid_exp_m1", "hysid_exp_m1_single"),
-            Unary::Ln => self.of_precision("hysid_ln", "hysid_ln_single"),
-            Unary::LnOnePlus => self.of_precision("hysid_ln_1p", "hysid_ln_1p_single"),
-            Unary::Tanh => self.of_precision("hysid_tanh", "hysid_tanh_single"),
-            Unary::InverseSinh => self.of_precision("hysid_asinh", "hysid_asinh_single"),
+            _ => elementary::of_unary(function)?.name(self.precision),
         })
     }
 
     fn binary(&self, function: Binary) -> Option<&'static str> {
         match function {
             Binary::Sum | Binary::Difference | Binary::Product | Binary::Quotient => None,
-            Binary::Power => Some(self.of_precision("hysid_powf", "hysid_powf_single")),
             Binary::CopySign => Some(self.of_precision("copysign", "copysignf")),
-            Binary::Hypotenuse => Some(self.of_precision("hysid_hypot", "hysid_hypot_single")),
+            _ => Some(elementary::of_binary(function)?.name(self.precision)),
         }
     }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::process::Command;
 
 use hysid_core::elementary::{asinh, exp, exp_m1, hypot, ln, ln_1p, powf, powi, tanh};
-use hysid_core::random::mix;
+use hysid_core::random::{mix, uniform};
 use hysid_export::all_elementary_functions;
 use tempfile::TempDir;
 
@@ -64,7 +64,7 @@ fn arguments() -> Vec<[f64; 2]> {
     let special: Vec<f64> = SPECIAL.iter().flat_map(|value| [*value, -value]).collect();
     let mut arguments: Vec<[f64; 2]> =
         special.iter().flat_map(|a| special.iter().map(move |b| [*a, *b])).collect();
-    let unit = |seed: u64| (mix(seed) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+    let unit = |seed: u64| 2.0 * uniform(seed) - 1.0;
     for k in 0..ARGUMENTS {
         arguments.push(match k % 4 {
             0 => [f64::from_bits(mix(2 * k)), f64::from_bits(mix(2 * k + 1))],

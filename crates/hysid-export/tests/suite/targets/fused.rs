@@ -42,22 +42,20 @@ fn outputs_do_not_depend_on_the_instruction() {
         fs::write(folder.path().join("driver.c"), driver(case.arguments.len(), OUTPUTS)).unwrap();
         let input = folder.path().join("rows");
         fs::write(&input, case.bytes()).unwrap();
+        let outputs = |compiler: &str, way: &[&str]| -> Vec<u8> {
+            let mut command = Command::new(compiler);
+            command.current_dir(folder.path()).args(STRICT).args(way);
+            succeeds(command.args(["actuator.c", "driver.c", "-lm", "-o", "driver"]));
+            let mut run = Command::new(folder.path().join("driver"));
+            succeeds(run.stdin(fs::File::open(&input).unwrap())).stdout
+        };
         for compiler in compilers() {
             for way in ways() {
-                let mut command = Command::new(&compiler);
-                command.current_dir(folder.path()).args(STRICT).args(way);
-                succeeds(command.args(["actuator.c", "driver.c", "-lm", "-o", "driver"]));
-                let mut run = Command::new(folder.path().join("driver"));
-                let output = succeeds(run.stdin(fs::File::open(&input).unwrap()));
-                case.must_equal(&format!("{name}, {compiler} {way:?}"), &output.stdout);
+                case.must_equal(&format!("{name}, {compiler} {way:?}"), &outputs(&compiler, way));
             }
         }
         println!("{name}: {} ways are equal", compilers().len() * ways().len());
-        let mut command = Command::new("gcc");
-        command.current_dir(folder.path()).args(STRICT).arg("-DHYSID_TWO_ROUNDINGS");
-        succeeds(command.args(["actuator.c", "driver.c", "-lm", "-o", "driver"]));
-        let mut run = Command::new(folder.path().join("driver"));
-        let difference = case.difference(name, &succeeds(run.stdin(fs::File::open(&input).unwrap())).stdout);
+        let difference = case.difference(name, &outputs("gcc", &["-DHYSID_TWO_ROUNDINGS"]));
         println!("{name}: {difference:.1e} with two roundings");
         assert!(difference > 0.0 && difference < 1e-12, "{name}: {difference:e}");
     }

@@ -354,7 +354,7 @@ mod tests {
         let rows = 60_000;
         for noise in [0.0, 2e-4] {
             let x = |k: usize| {
-                let of_noise = noise * (hysid_core::random::mix(k as u64) as f64 / u64::MAX as f64 - 0.5);
+                let of_noise = noise * (hysid_core::random::uniform(k as u64) - 0.5);
                 sin(2e-3 * k as f64) * (1.0 + 0.5 * sin(1e-4 * k as f64)) + of_noise
             };
             let x: Vec<f64> = (0..rows).map(x).collect();
