@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use clap::Args;
 use hysid::data::record::{Dataset, Record};
+use hysid::specimens::{Specimen, with_noise};
 use hysid_lab::generated::{Case, KINDS, generated, one_loop};
 
 use crate::files;
@@ -26,11 +27,20 @@ pub struct Request {
     /// One loop to train on, smaller loops inside it to test
     #[arg(long)]
     one_loop: bool,
+    /// The specimens of the paper's examples, with noise on the output, in percent of its standard deviation
+    #[arg(long, value_name = "NOISE", conflicts_with_all = ["one_loop", "count"])]
+    specimens: Option<f64>,
+    /// With --specimens: runs of the training data, which differ in their noise
+    #[arg(long, default_value_t = 1, requires = "specimens")]
+    runs: u64,
 }
 
 pub fn run(request: &Request) -> Result<()> {
-    let cases = if request.one_loop { one_loop } else { generated };
-    let cases = cases(request.count as usize, request.seed)?;
+    let cases = match request.specimens {
+        Some(noise) => of_specimens(noise, request.runs, request.seed)?,
+        None if request.one_loop => one_loop(request.count as usize, request.seed)?,
+        None => generated(request.count as usize, request.seed)?,
+    };
     println!("| case | law | design | train: scored of rows, records | test: scored of rows, records |");
     println!("|---|---|---|---|---|");
     for case in &cases {
@@ -39,6 +49,39 @@ pub fn run(request: &Request) -> Result<()> {
         println!("| {} | {} | {} | {train} | {test} |", case.name, case.law, case.design);
     }
     Ok(())
+}
+
+/// The specimens with noise; test data have other noise than the runs of the training data.
+fn of_specimens(percent: f64, runs: u64, seed: u64) -> Result<Vec<Case>> {
+    let noise_of = |run: u64| seed.wrapping_mul(1000).wrapping_add(run);
+    let of_specimen = |specimen: &&Specimen| -> Result<Case> {
+        let (train, test) = (specimen.train(), specimen.test());
+        let mut records = Vec::new();
+        for run in 0..runs {
+            let noisy = with_noise(&train, percent, noise_of(run))?;
+            for record in noisy.records() {
+                records.push(if run == 0 { record.clone() } else { renamed(record, run + 1)? });
+            }
+        }
+        Ok(Case {
+            name: specimen.name.into(),
+            law: "that of the specimen",
+            design: "training and test data of `hysid generate`",
+            train: Dataset::new(train.names().clone(), records)?,
+            test: with_noise(&test, percent, noise_of(runs))?,
+        })
+    };
+    Specimen::of_the_paper().iter().map(of_specimen).collect()
+}
+
+fn renamed(record: &Record, run: u64) -> Result<Record> {
+    let inputs = record.inputs().iter().map(|input| input.to_vec()).collect();
+    let name = format!("{} run {run}", record.name());
+    let renamed = Record::new(name, inputs, record.output().to_vec())?;
+    Ok(match record.time() {
+        Some(time) => renamed.with_time(time.to_vec())?,
+        None => renamed,
+    })
 }
 
 fn write_case(folder: &Path, case: &Case) -> Result<()> {

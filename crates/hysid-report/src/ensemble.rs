@@ -101,8 +101,15 @@ fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> Vec<P
     };
     let table = Table::new(["candidate", "kind", "share (%)", "held-out error (% of std)"])
         .with_rows(candidates.iter().map(row));
-    let is_distilled = selection.single.as_ref().is_none_or(|single| single.distilled);
+    let how = selection.single.as_ref();
+    let is_distilled = how.is_none_or(|single| single.distilled);
     let (first, words) = match is_distilled {
+        _ if how.is_some_and(|single| single.is_law) => (
+            "The model is a law of few numbers, in place of an ensemble: its errors, on the data and on the rows held \
+             out, are about the lowest of all candidates. Where the data say nothing, such a law \
+             usually predicts better than networks do.",
+            "The candidates are not part of the model.",
+        ),
         true => (
             "A single model was requested. It was trained on the data, and on the output of an ensemble of \
              these candidates for paths that were not measured:",

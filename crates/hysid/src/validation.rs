@@ -32,6 +32,24 @@ pub struct Fold {
 }
 
 impl Fold {
+    /// True if a record that is held out as a whole lies beyond those of the training data: its amplitude or its speed is
+    /// larger or smaller than any of theirs. The error on it is one of extrapolation.
+    pub(crate) fn is_beyond(&self) -> bool {
+        let trained = self.train.records();
+        let is_whole = |record: &&Record| trained.iter().all(|other| other.name() != record.name());
+        let lies_outside = |record: &Record| {
+            extent(record).into_iter().enumerate().any(|(kind, of_held)| {
+                let of_trained = || trained.iter().filter_map(|other| extent(other)[kind]);
+                let is_outside = |value: f64| {
+                    !of_trained().any(|other| other <= value * (1.0 + SLACK))
+                        || !of_trained().any(|other| other * (1.0 + SLACK) >= value)
+                };
+                of_held.is_some_and(|value| of_trained().next().is_some() && is_outside(value))
+            })
+        };
+        self.held_out.records().iter().filter(is_whole).any(lies_outside)
+    }
+
     /// The predictions of a model for the held-out rows with an output, in free run.
     pub(crate) fn predicted_by(&self, model: &Model) -> Result<Vec<f64>> {
         let mut predicted = Vec::with_capacity(self.held_out.scored());
@@ -41,6 +59,25 @@ impl Fold {
         }
         Ok(predicted)
     }
+}
+
+/// Largest difference of an amplitude or a speed, relative to those of other records, that does not count as outside.
+const SLACK: f64 = 0.05;
+
+/// Amplitude of a record, and its speed in amplitudes per unit of time where it has one.
+fn extent(record: &Record) -> [Option<f64>; 2] {
+    let x = &record.inputs()[0];
+    let amplitude = Some(range(x)).filter(|amplitude| *amplitude > 0.0);
+    let path: f64 = x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+    let time = record.time().and_then(|time| Some(time.last()? - time.first()?));
+    let speed = time.zip(amplitude).map(|(time, amplitude)| path / time / amplitude);
+    [amplitude, speed.filter(|speed| speed.is_finite())]
+}
+
+fn range(x: &[f64]) -> f64 {
+    let (low, high) =
+        x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+    high - low
 }
 
 /// Shares of a single record that are fitted to, from its beginning, and those that follow and are judged.
@@ -111,10 +148,22 @@ pub(crate) fn folds_of_loop(data: &Dataset) -> Vec<Fold> {
     (0..FOLDS_OF_LOOP).map(fold).filter(has_enough).collect()
 }
 
+/// Shares of two records between which blocks are held out, beside each record as a whole. Of records of one or two
+/// periods they are different parts of a period.
+const BLOCKS_OF_TWO: [(f64, f64); 2] = [(0.2, 0.5), (0.55, 0.85)];
+
+/// Ranges of the first input that differ by less than this factor are alike: records then differ in their speed only.
+const ALIKE: f64 = 1.25;
+
 /// The folds by which candidates are chosen: of a single record, forecasts from most of it and the block from its
-/// middle.
+/// middle; of two of one amplitude, each record, which tests extrapolation, and blocks of both.
 pub(crate) fn folds_to_choose_by(data: &Dataset, most: usize) -> Vec<Fold> {
     let mut cuts = cuts(data, most);
+    if let Some(two) = two_of_one_amplitude(data, &cuts) {
+        let runs = rows_to_cut(data, &two);
+        let blocks = BLOCKS_OF_TWO.iter().map(|&(from, to)| block(data, &runs, from, to));
+        cuts.extend(blocks.filter(|cut| has_enough(&cut.fold(data))));
+    }
     let is_telling = |cut: &Cut| match cut {
         Cut::Records(_) => true,
         Cut::Forecast { percent: (from, _), .. } => *from >= MOST_OF_A_RECORD,
@@ -124,6 +173,15 @@ pub(crate) fn folds_to_choose_by(data: &Dataset, most: usize) -> Vec<Fold> {
         cuts.retain(is_telling);
     }
     cuts.iter().map(|cut| cut.fold(data)).collect()
+}
+
+/// The records, if each of two is held out and their amplitudes are alike.
+fn two_of_one_amplitude(data: &Dataset, cuts: &[Cut]) -> Option<[usize; 2]> {
+    let [Cut::Records(first), Cut::Records(second)] = cuts else { return None };
+    let (&[first], &[second]) = (&first[..], &second[..]) else { return None };
+    let amplitude = |record: usize| range(&data.records()[record].inputs()[0]);
+    let (a, b) = (amplitude(first), amplitude(second));
+    (a.max(b) < ALIKE * a.min(b)).then_some([first, second])
 }
 
 /// Where data are cut into a fold: a fold is a copy of the data, and a thousand of them would be too many to keep.
@@ -234,34 +292,45 @@ fn deal(protocols: &[Protocol], most: usize) -> Vec<Vec<usize>> {
 
 /// Some records are all cut in time at the same shares of their rows. The others are in no fold.
 fn in_time(data: &Dataset, runs: &[usize]) -> Vec<Cut> {
-    let is_scored = |row: usize, record: &Record| !record.output()[row].is_nan();
-    let scored = |&run: &usize| -> (usize, Vec<usize>) {
-        let record = &data.records()[run];
-        (run, (0..record.len()).filter(|&row| is_scored(row, record)).collect())
-    };
-    let runs: Vec<(usize, Vec<usize>)> =
-        runs.iter().map(scored).filter(|(_, scored)| scored.len() >= FEWEST_TO_CUT).collect();
+    let runs = rows_to_cut(data, runs);
     if runs.iter().map(|(_, scored)| scored.len()).sum::<usize>() < 4 * FEWEST_ROWS {
         return Vec::new();
     }
-    let judged = |from: f64, to: f64| -> Vec<RowsOf> {
-        let of_run = |(record, scored): &(usize, Vec<usize>)| {
-            let row = |share: f64| {
-                let place = (share * scored.len() as f64).round() as usize;
-                scored.get(place).copied().unwrap_or(data.records()[*record].len())
-            };
-            RowsOf { record: *record, begin: row(from), end: row(to) }
-        };
-        runs.iter().map(of_run).collect()
-    };
-    let percent = |from: f64, to: f64| ((100.0 * from).round(), (100.0 * to).round());
     let forecast = |&(fitted, share): &(f64, f64)| Cut::Forecast {
-        judged: judged(fitted, fitted + share),
+        judged: judged(data, &runs, fitted, fitted + share),
         percent: percent(fitted, fitted + share),
     };
-    let block =
-        |&(from, to): &(f64, f64)| Cut::Block { judged: judged(from, to), percent: percent(from, to) };
-    FORECASTS.iter().map(forecast).chain(BLOCKS.iter().map(block)).collect()
+    let blocks = BLOCKS.iter().map(|&(from, to)| block(data, &runs, from, to));
+    FORECASTS.iter().map(forecast).chain(blocks).collect()
+}
+
+/// Records that are cut in time, with their rows that have an output.
+fn rows_to_cut(data: &Dataset, runs: &[usize]) -> Vec<(usize, Vec<usize>)> {
+    let scored = |&run: &usize| -> (usize, Vec<usize>) {
+        let output = data.records()[run].output();
+        (run, (0..output.len()).filter(|&row| !output[row].is_nan()).collect())
+    };
+    runs.iter().map(scored).filter(|(_, scored)| scored.len() >= FEWEST_TO_CUT).collect()
+}
+
+fn block(data: &Dataset, runs: &[(usize, Vec<usize>)], from: f64, to: f64) -> Cut {
+    Cut::Block { judged: judged(data, runs, from, to), percent: percent(from, to) }
+}
+
+fn percent(from: f64, to: f64) -> (f64, f64) {
+    ((100.0 * from).round(), (100.0 * to).round())
+}
+
+/// The rows of each run between two shares of those with an output.
+fn judged(data: &Dataset, runs: &[(usize, Vec<usize>)], from: f64, to: f64) -> Vec<RowsOf> {
+    let of_run = |(record, scored): &(usize, Vec<usize>)| {
+        let row = |share: f64| {
+            let place = (share * scored.len() as f64).round() as usize;
+            scored.get(place).copied().unwrap_or(data.records()[*record].len())
+        };
+        RowsOf { record: *record, begin: row(from), end: row(to) }
+    };
+    runs.iter().map(of_run).collect()
 }
 
 /// Errors on a fold.

@@ -2,6 +2,7 @@
 
 use super::answer::Case;
 use super::table::{Measure, Reasons, in_words, row, table};
+use crate::statistics::geometric_mean;
 
 /// The tables under their headings.
 const TABLES: [(&str, Measure); 3] = [
@@ -54,7 +55,35 @@ impl Page {
         if !reasons.is_empty() {
             sections[0] += &format!("\nWhy cells are empty:\n\n{reasons}");
         }
-        sections.join("\n") + &self.structures()
+        sections.join("\n") + &self.against_best() + &self.structures()
+    }
+
+    /// Errors of the model that chooses, relative to the best of the others on the test data; empty without both.
+    fn against_best(&self) -> String {
+        let mut ratios = Vec::new();
+        let mut rows = Vec::new();
+        for case in &self.cases {
+            let Some((chosen, name, best)) = chosen_and_best(case) else { continue };
+            ratios.push(chosen / best);
+            let cells =
+                [format!("{chosen:.3}"), format!("{name} {best:.3}"), format!("{:.2}", chosen / best)];
+            rows.push(row(&case.name, &cells));
+        }
+        if ratios.is_empty() {
+            return String::new();
+        }
+        ratios.sort_by(f64::total_cmp);
+        let place = (0.95 * (ratios.len() - 1) as f64).ceil() as usize;
+        let heading = row("case", &[CHOOSES, "best other model, known from the test", "ratio"]);
+        format!(
+            "\n## {CHOOSES} beside the best other model\n\n{}\nGeometric mean of the ratios {:.2}, 95th percentile {:.2}, \
+             largest {:.2}; {} cases.\n",
+            in_words(&[vec![heading], rows].concat()),
+            geometric_mean(&ratios),
+            ratios[place],
+            ratios[ratios.len() - 1],
+            ratios.len()
+        )
     }
 
     /// What was chosen in each case by the model that chooses; empty without it.
@@ -71,6 +100,19 @@ impl Page {
         let heading = row("case", &["chosen"]);
         format!("\n## What {CHOOSES} chose\n\n{}", in_words(&[vec![heading], rows].concat()))
     }
+}
+
+/// Test error of the model that chooses, and the name and error of the best of the others.
+fn chosen_and_best(case: &Case) -> Option<(f64, &str, f64)> {
+    let answers = case.outcome.as_ref().ok()?;
+    let errors = answers.iter().filter_map(|answer| {
+        let error = answer.figures.as_ref().ok()?.test?;
+        Some((answer.model.as_str(), error))
+    });
+    let (chosen, others): (Vec<_>, Vec<_>) = errors.partition(|(model, _)| *model == CHOOSES);
+    let (_, chosen) = chosen.first()?;
+    let (name, best) = others.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some((*chosen, name, best))
 }
 
 #[cfg(test)]
@@ -97,6 +139,27 @@ mod tests {
         assert!(text.contains("\n2 cases, each"), "{text}");
         assert_eq!(text.matches("1. diverged\n").count(), 1, "told once, below the first table: {text}");
         assert_eq!(text.matches(" – (1) |\n").count(), 3, "{text}");
+    }
+
+    #[test]
+    fn the_choice_is_compared_with_the_best_other_model() {
+        let mut page = Page::new(String::new(), 2);
+        let answer = |model: &str, test: f64| {
+            let figures = Figures { test: Some(test), ..Figures::default() };
+            Answer { model: model.into(), figures: Ok(figures) }
+        };
+        let case = |name: &str, answers| Case { name: name.into(), outcome: Ok(answers) };
+        page.cases.push(case("a", vec![answer("pnn", 4.0), answer("auto", 2.0), answer("gpnn", 8.0)]));
+        page.cases.push(case("b", vec![answer("auto", 3.0), answer("pnn", 1.5)]));
+        let text = page.text();
+        assert!(text.contains("| a    | 2.000 | pnn 4.000                             | 0.50  |"), "{text}");
+        assert!(
+            text.contains("Geometric mean of the ratios 1.00, 95th percentile 2.00, largest 2.00; 2 cases."),
+            "{text}"
+        );
+        let mut alone = Page::new(String::new(), 1);
+        alone.cases.push(case("a", vec![answer("auto", 2.0)]));
+        assert!(!alone.text().contains("best other model"), "{}", alone.text());
     }
 
     #[test]

@@ -12,10 +12,15 @@ use crate::significant::Significant;
 pub struct Selection {
     /// Name of the held-out data of each fold.
     pub folds: Vec<String>,
-    /// Held-out error of the ensemble: RMSE over all rows that were held out, in percent of their standard deviation, with
-    /// weights that were found on the other folds. It is the validation error of an ensemble.
+    /// Held-out error of the ensemble: RMSE over the rows that were held out, in percent of their standard deviation, with
+    /// weights that were found on the other folds. It is the validation error of an ensemble. Where folds lie between
+    /// the others in amplitude and speed, only these count.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held_out_percent: Option<f64>,
+    /// The error on records beyond the others, which is no part of the held-out error; `None` where all folds are of one
+    /// kind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beyond: Option<Beyond>,
     /// Error by which candidates are weighted, in percent of the standard deviation, inside and outside the trained range:
     /// geometric mean over the folds of `rmse_f / σ_f`, with the standard deviation `σ_f` of the output on
     /// fold `f` (theory.md (11.5)).
@@ -50,10 +55,11 @@ impl Selection {
     }
 
     fn chosen(&self, kinds: &[&str]) -> String {
-        if let Some(SingleModel { name, distilled, .. }) = &self.single {
-            return match distilled {
-                true => format!("one {name}, distilled from the ensemble"),
-                false => format!("one {name}, fitted to the data alone"),
+        if let Some(SingleModel { name, distilled, is_law, .. }) = &self.single {
+            return match (is_law, distilled) {
+                (true, _) => format!("{name}, a law of few numbers, in place of an ensemble"),
+                (false, true) => format!("one {name}, distilled from the ensemble"),
+                (false, false) => format!("one {name}, fitted to the data alone"),
             };
         }
         let count = |kind: &str| -> usize {
@@ -79,7 +85,7 @@ impl Selection {
             None => "unknown".into(),
         };
         let (errors, reason) = match &self.single {
-            Some(SingleModel { distilled, distilled_percent, plain_percent, .. }) => {
+            Some(SingleModel { distilled, distilled_percent, plain_percent, is_law: false, .. }) => {
                 let of_distilled =
                     distilled_percent.map(|error| format!("distilled model {}", percent(Some(error))));
                 let plain = format!("best single fit {}", percent(*plain_percent));
@@ -97,7 +103,7 @@ impl Selection {
                 };
                 (errors.join(", "), reason)
             }
-            None => {
+            law => {
                 let error = |one: &CandidateResult| one.held_out_percent.unwrap_or(f64::INFINITY);
                 let best_of = |kind: &&str| {
                     let of_kind = self.candidates.iter().filter(|one| one.kind == **kind);
@@ -108,16 +114,20 @@ impl Selection {
                     |one: &&CandidateResult| format!("{} {}", one.name, percent(one.held_out_percent));
                 let lowest = bests.iter().map(|one| error(one)).fold(f64::INFINITY, f64::min);
                 let is_lowest = self.held_out_percent.is_none_or(|ensemble| ensemble <= lowest);
-                let reason = match (is_lowest, self.one_loop) {
-                    (true, _) => "",
-                    (false, true) => "; one loop does not tell how well smaller loops are predicted",
-                    (false, false) => {
+                let reason = match (is_lowest, law, self.one_loop) {
+                    (true, ..) => "",
+                    (false, Some(_), _) => {
+                        "; a law of few numbers is preferred where its errors on the data and on the folds are about the lowest"
+                    }
+                    (false, None, true) => "; one loop does not tell how well smaller loops are predicted",
+                    (false, None, false) => {
                         "; a candidate is preferred only if its error is lower by 10 %, and lower in the mean of the folds"
                     }
                 };
                 let bests: Vec<String> = bests.iter().map(alone).collect();
-                let ensemble = percent(self.held_out_percent);
-                (format!("ensemble {ensemble}; best of each kind alone: {}", bests.join(", ")), reason)
+                let this = law.as_ref().map_or("ensemble", |law| law.name.as_str());
+                let held_out = percent(self.held_out_percent);
+                (format!("{this} {held_out}; best of each kind alone: {}", bests.join(", ")), reason)
             }
         };
         format!("error on the rows held out (RMSE in % of std): {errors}{reason}")
@@ -140,6 +150,17 @@ fn counted(count: usize, kind: &str) -> String {
     }
 }
 
+/// Records that were held out and lie beyond the others: in amplitude or speed, they are larger or smaller than all that
+/// was fitted to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Beyond {
+    /// Name of the held-out data of each such fold.
+    pub folds: Vec<String>,
+    /// RMSE over all rows of these folds, in percent of their standard deviation.
+    pub percent: f64,
+}
+
 /// Cross-validation result of a candidate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -159,7 +180,7 @@ pub struct CandidateResult {
     pub members: usize,
 }
 
-/// How a requested single model was chosen.
+/// How a single model was chosen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SingleModel {
@@ -172,6 +193,10 @@ pub struct SingleModel {
     pub distilled_percent: Option<f64>,
     /// Held-out error of the best candidate fitted to the data alone, in percent, as that of the ensemble.
     pub plain_percent: Option<f64>,
+    /// True for a law of few numbers whose errors are about the lowest of all candidates: it was not requested, but
+    /// takes the place of the ensemble.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_law: bool,
 }
 
 /// Warm-up: first rows of each record that are not scored in training, and their effect.

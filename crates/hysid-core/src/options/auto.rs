@@ -16,6 +16,51 @@ pub enum Automatic {
     Auto,
 }
 
+/// How long the candidates of `auto` are searched.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Effort {
+    /// One start of each candidate, a third of the epochs.
+    Quick,
+    /// Two starts of each candidate.
+    #[default]
+    Normal,
+    /// Eight starts of each candidate, three times the epochs, three times the starts of each search.
+    Thorough,
+}
+
+impl Effort {
+    /// All of them, the least first.
+    pub const ALL: [Self; 3] = [Self::Quick, Self::Normal, Self::Thorough];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quick => "quick",
+            Self::Normal => "normal",
+            Self::Thorough => "thorough",
+        }
+    }
+
+    /// Starts of a randomly initialized candidate.
+    pub fn starts(self) -> usize {
+        match self {
+            Self::Quick => 1,
+            Self::Normal => 2,
+            Self::Thorough => 8,
+        }
+    }
+
+    /// A number of epochs, or of starts of one search, from that of the normal effort.
+    pub fn scaled(self, normal: usize) -> usize {
+        match self {
+            Self::Quick => normal.div_ceil(3),
+            Self::Normal => normal,
+            Self::Thorough => 3 * normal,
+        }
+    }
+}
+
 /// Options of `auto`. Cross-validation chooses what is `None`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -27,6 +72,9 @@ pub struct AutoOptions {
     pub only: Option<Box<FitSpec>>,
     /// Largest number of members; 1 for a single model.
     pub members: usize,
+    /// How long the candidates are searched.
+    #[serde(default)]
+    pub effort: Effort,
     /// Starts of a randomly initialized candidate.
     pub starts: usize,
     /// Method of the rate of the first input; `None` for candidates without rate.
@@ -73,7 +121,8 @@ impl Default for AutoOptions {
             model: Automatic::Auto,
             only: None,
             members: 6,
-            starts: 2,
+            effort: Effort::Normal,
+            starts: Effort::Normal.starts(),
             rate: None,
             always_rate: false,
             deterioration: None,

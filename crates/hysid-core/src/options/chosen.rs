@@ -11,7 +11,7 @@ use crate::data::record::{Dataset, Speeds};
 use crate::error::{Error, OptionError, Result};
 use crate::law::thresholds::MOST_THRESHOLDS;
 use crate::network::{Family, Sizes};
-use crate::options::auto::AutoOptions;
+use crate::options::auto::{AutoOptions, Effort};
 use crate::options::classical::{ClassicalModel, ClassicalOptions, Sign};
 use crate::options::input_options::InputOptions;
 use crate::options::network::{FitOptions, Trainer};
@@ -38,6 +38,7 @@ pub struct NamedOptions {
     pub initial_state: Option<InitialState>,
     #[serde(deserialize_with = "named")]
     pub training: Option<Trainer>,
+    pub effort: Option<Effort>,
     pub starts: Option<usize>,
     pub epochs: Option<usize>,
     pub population: Option<usize>,
@@ -145,10 +146,12 @@ impl NamedOptions {
     ) -> AutoOptions {
         let defaults = AutoOptions::default();
         let members = self.members.unwrap_or(defaults.members);
+        let effort = self.effort.unwrap_or_default();
         AutoOptions {
             members,
+            effort,
             // Of one model, all members are starts.
-            starts: self.starts.unwrap_or(if only.is_some() { members } else { defaults.starts }),
+            starts: self.starts.unwrap_or(if only.is_some() { members } else { effort.starts() }),
             only,
             rate,
             always_rate: always_rate && rate.is_some(),

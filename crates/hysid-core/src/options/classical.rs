@@ -133,7 +133,7 @@ pub struct ClassicalOptions {
     pub starts: Option<usize>,
     /// Iterations of each start; the model's own default if `None`.
     pub epochs: Option<usize>,
-    /// Searched parameters of a similar fit to begin from; empty for random starts. Not stored.
+    /// Searched parameters of a similar fit, which are a start of their own; empty if there is none. Not stored.
     #[serde(skip)]
     pub near: Vec<f64>,
     /// Seed of all random numbers.

@@ -9,7 +9,7 @@ use crate::law::duhem_nn::MOST_STATES;
 use crate::law::hysteretic_dynamics::MOST_PARTS;
 use crate::network::{Family, Sizes};
 use crate::options::ModelName;
-use crate::options::auto::{AutoOptions, MOST_MEMBERS};
+use crate::options::auto::{AutoOptions, Effort, MOST_MEMBERS};
 use crate::options::classical::{ClassicalModel, Sign};
 use crate::options::input_options::SHARES;
 use crate::options::network::{
@@ -92,7 +92,7 @@ const PENALTY: Values = Values::Number(*PENALTIES.start(), *PENALTIES.end());
 const SHARE: Values = Values::ZeroOr(*SHARES.start(), *SHARES.end());
 
 /// Every option, in the order in which it is listed.
-pub const OPTIONS: [FitOption; 31] = [
+pub const OPTIONS: [FitOption; 32] = [
     FitOption {
         name: "model",
         group: Model,
@@ -217,6 +217,15 @@ pub const OPTIONS: [FitOption; 31] = [
         values: Values::Names(trainers),
         default: |_, _| Preset::Name(Trainer::default().name()),
         used_by: of_networks,
+    },
+    FitOption {
+        name: "effort",
+        group: Training,
+        meaning: "How long `auto` searches: `quick` takes about a quarter of the normal time, `thorough` about ten times as \
+                  long",
+        values: Values::Names(efforts),
+        default: |_, _| Preset::Name(Effort::default().name()),
+        used_by: |model, _| matches!(model, ModelName::Auto(_)),
     },
     FitOption {
         name: "starts",
@@ -409,6 +418,10 @@ fn chosen_or_off(model: ModelName, _: Trainer) -> Preset {
 
 fn models() -> Vec<&'static str> {
     std::iter::once(ModelName::AUTO).chain(ModelName::all()).map(ModelName::name).collect()
+}
+
+fn efforts() -> Vec<&'static str> {
+    Effort::ALL.map(Effort::name).into()
 }
 
 fn trainers() -> Vec<&'static str> {

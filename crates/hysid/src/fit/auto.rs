@@ -28,6 +28,7 @@
 mod beginning;
 mod candidates;
 mod combination;
+mod law;
 mod misfits;
 mod prior;
 mod score;
@@ -48,7 +49,7 @@ use crate::error::{Error, Result};
 use crate::fit::HeldOutRows;
 use crate::fit::network::{Fitted, Observer};
 use crate::model::input_transform::InputTransform;
-use crate::model::selection::{FoundStates, Selection, WarmUp};
+use crate::model::selection::{Beyond, FoundStates, Selection, WarmUp};
 use crate::model::{
     Band, Ensemble, Found, Group, HeldOutRow, Model, Node, NodeKind, Predictor, Provenance, Weights,
 };
@@ -189,6 +190,11 @@ impl Chosen<'_, '_, '_> {
     fn fit(mut self, alone: Model) -> Result<Fitted> {
         let Bench { work, .. } = self.bench;
         let fit = |model| Ok(Fitted::of(model, work.done()));
+        if let Some(place) = self.place_of_law()
+            && let Some(fitted) = self.of_law(place)?
+        {
+            return Ok(fitted);
+        }
         let mut assembled = self.assembled()?;
         for step in misfits::STEPS {
             match &assembled {
@@ -205,9 +211,9 @@ impl Chosen<'_, '_, '_> {
             return fit(model.with_provenance(provenance));
         };
         if self.options.members == 1
-            && let Some((model, predicted)) = self.single(&combination, &model, selection)?
+            && let Some(fitted) = self.single(&combination, &model, selection)?
         {
-            return Ok(fit(model)?.with_held_out(self.held_out(&predicted)?));
+            return Ok(fitted);
         }
         let band = self.band(&rows);
         let held_out = self.held_out(&predicted)?;
@@ -226,7 +232,7 @@ impl Chosen<'_, '_, '_> {
         let rows = self.rows_held_out(&combination);
         let predicted = self.predicted(&rows);
         let validation = self.errors_held_out(&predicted);
-        let selection = self.selection(&combination, validation.as_ref());
+        let selection = self.selection(&combination, &predicted);
         let members = |place: usize, start: usize| self.trials[place].members.get(&start).cloned();
         let body = Predictor::Ensemble(combination.ensemble(members, self.data.input_range(0))?);
         let model = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
@@ -277,15 +283,33 @@ impl Chosen<'_, '_, '_> {
         lowest.cloned().unwrap_or(alone)
     }
 
-    fn selection(&self, combination: &Combination, validation: Option<&Errors>) -> Selection {
+    fn selection(&self, combination: &Combination, predicted: &[Vec<f64>]) -> Selection {
         let output = &self.data.names().output;
-        let mut selection = selection(&self.trials, &self.left_out, self.bench.folds, combination, output);
-        selection.held_out_percent = validation.and_then(|errors| errors.nrmse_std_percent);
+        let selection = selection(&self.trials, &self.left_out, self.bench.folds, combination, output);
+        let mut selection = self.judged_by(selection, predicted);
         selection.warm_up = (self.warm_up.rows > 0).then_some(self.warm_up);
         selection.found_states = self.found;
         selection.one_loop = self.evidence.is_one_loop();
         selection.dropped = self.dropped.iter().map(Candidate::name).collect();
         selection
+    }
+
+    /// The same with the errors of what is predicted on the folds.
+    fn judged_by(&self, selection: Selection, predicted: &[Vec<f64>]) -> Selection {
+        let folds = self.bench.folds;
+        let percent = |errors: Option<Errors>| errors.and_then(|errors| errors.nrmse_std_percent);
+        Selection {
+            held_out_percent: percent(self.errors_held_out(predicted)),
+            beyond: percent(errors_beyond(predicted, folds, "")).map(|percent| Beyond {
+                folds: folds
+                    .iter()
+                    .filter(|fold| fold.is_beyond)
+                    .map(|fold| fold.fold.name.clone())
+                    .collect(),
+                percent,
+            }),
+            ..selection
+        }
     }
 
     /// The band that the rows held out ask for, wider where the data cannot tell candidates apart.
@@ -307,31 +331,55 @@ impl Chosen<'_, '_, '_> {
         (0..folds.len()).map(of_fold).collect()
     }
 
-    /// One small model, with what is known of it, and what models made in the same way predict on the folds.
+    /// One small model, with what is known of it.
     fn single(
         &mut self,
         combination: &Combination,
         ensemble: &Model,
         mut selection: Selection,
-    ) -> Result<Option<(Model, Vec<Vec<f64>>)>> {
+    ) -> Result<Option<Fitted>> {
         let Self { options, bench, evidence, .. } = *self;
         let makers = single::Makers { trials: &mut self.trials, bench, combination, evidence, options };
         let Some(found) = makers.single(ensemble)? else { return Ok(None) };
-        let validation = self.errors_held_out(&found.predicted);
-        selection.candidates.iter_mut().for_each(|candidate| candidate.members = 0);
         selection.single = Some(found.how);
-        let provenance = provenance_of(&found.model, Some(selection), validation, bench.work);
-        let band = self.band(&single::rows_held_out(&found.predicted, bench.folds));
+        Ok(Some(self.validated(found.model, selection, &found.predicted)?))
+    }
+
+    /// A single model with what is known of it from what models made in the same way `predicted` on the folds.
+    fn validated(&self, model: Model, selection: Selection, predicted: &[Vec<f64>]) -> Result<Fitted> {
+        let Bench { folds, work, .. } = self.bench;
+        let validation = self.errors_held_out(predicted);
+        let mut selection = self.judged_by(selection, predicted);
+        selection.candidates.iter_mut().for_each(|candidate| candidate.members = 0);
+        let provenance = provenance_of(&model, Some(selection), validation, work);
+        let band = self.band(&single::rows_held_out(predicted, folds));
         // A distilled model was taught more than the data.
         let model =
-            found.model.with_provenance(provenance).trained_on(self.data)?.with_band_over(band, self.data)?;
-        Ok(Some((model, found.predicted)))
+            model.with_provenance(provenance).trained_on(self.data)?.with_band_over(band, self.data)?;
+        Ok(Fitted::of(model, work.done()).with_held_out(self.held_out(predicted)?))
     }
 }
 
+/// Errors over the rows held out: of folds between the others, if there are any, else of all.
 fn errors_held_out(predicted: &[Vec<f64>], folds: &[HeldOut], output: &str) -> Option<Errors> {
+    let some_between = folds.iter().any(|fold| !fold.is_beyond);
+    errors_where(predicted, folds, output, |fold| !(some_between && fold.is_beyond))
+}
+
+/// Errors over the rows of folds beyond the others; `None` where there are only such folds, or none.
+fn errors_beyond(predicted: &[Vec<f64>], folds: &[HeldOut], output: &str) -> Option<Errors> {
+    let some_between = folds.iter().any(|fold| !fold.is_beyond);
+    some_between.then(|| errors_where(predicted, folds, output, |fold| fold.is_beyond))?
+}
+
+fn errors_where(
+    predicted: &[Vec<f64>],
+    folds: &[HeldOut],
+    output: &str,
+    counts: impl Fn(&HeldOut) -> bool,
+) -> Option<Errors> {
     let mut pooled = PooledErrors::default();
-    for (fold, predicted) in folds.iter().zip(predicted) {
+    for (fold, predicted) in folds.iter().zip(predicted).filter(|(fold, _)| counts(fold)) {
         pooled.add(&fold.fold.held_out, predicted);
     }
     pooled.errors(output)

@@ -7,11 +7,12 @@ use std::borrow::Cow;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::diagnosis::resonance::{Compared, Resonance};
+use crate::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
 use crate::fit::initial_state;
 use crate::law::duhem_nn::MOST_NEURONS;
 use crate::law::hysteretic_dynamics::MOST_NEURONS as MOST_NEURONS_OF_ELEMENT;
 use crate::network::{Family, Sizes};
-use crate::options::auto::AutoOptions;
+use crate::options::auto::{AutoOptions, Effort};
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::options::input_options::InputOptions;
 use crate::options::network::ENSEMBLE_PENALTIES;
@@ -88,14 +89,10 @@ const EPOCHS_ON_A_FOLD: usize = 80;
 const LINEAR_RANDOM_STOPS: (usize, usize) = (300, 0);
 const LAYERED_RANDOM_STOPS: (usize, usize) = (100, 100);
 
-/// Starts of a search that is repeated on every fold, and rows with an output that it is fitted to at most.
+/// Starts of a search on a fold beside the parameters found on all data, and rows with an output that a search is
+/// fitted to at most.
 const STARTS_OF_A_SEARCH: usize = 4;
 const ROWS_OF_A_SEARCH: usize = 1500;
-
-/// Starts and epochs of a screening search, and epochs of the searches that begin with its result.
-const STARTS_IN_HASTE: usize = 4;
-const EPOCHS_IN_HASTE: usize = 16;
-const EPOCHS_NEAR: usize = 12;
 
 /// Rows that a network's early iterations use at most.
 const THIN: usize = 1500;
@@ -115,6 +112,17 @@ impl Candidate {
             FitSpec::Auto(_) => {}
         }
         warmed
+    }
+
+    /// True if its force can depend on the largest or the whole path of the input so far.
+    fn can_deteriorate(&self) -> bool {
+        match &self.request {
+            FitSpec::Network(options) => !options.no_deterioration || options.shaping.history,
+            FitSpec::Classical(options) => {
+                options.deterioration == Some(true) || options.degradation || options.shaping.history
+            }
+            FitSpec::Auto(_) => false,
+        }
     }
 
     /// What is asked for.
@@ -143,9 +151,15 @@ impl Candidate {
         }
     }
 
-    /// The same with fewer starts and epochs on a fold, for a model with inertia and hysteresis.
+    /// The same with fewer starts on a fold for a law that was searched on all data, and with fewer starts and epochs
+    /// for a model with inertia and hysteresis.
     pub fn on_a_fold(&self) -> Cow<'_, Self> {
         let FitSpec::Classical(options) = &self.request else { return Cow::Borrowed(self) };
+        if !options.near.is_empty() {
+            let starts = options.starts.unwrap_or(STARTS_OF_A_SEARCH).min(STARTS_OF_A_SEARCH);
+            let few = ClassicalOptions { starts: Some(starts), ..options.clone() };
+            return Cow::Owned(Self { request: FitSpec::Classical(few), ..self.clone() });
+        }
         if !self.is_dynamic() || self.has_no_hysteresis() {
             return Cow::Borrowed(self);
         }
@@ -198,34 +212,13 @@ impl Candidate {
             && matches!(&self.request, FitSpec::Classical(options) if options.model.is_searched())
     }
 
-    /// The same searched from few starts in few epochs.
-    pub fn in_haste(&self) -> Self {
-        let mut hasty = self.clone();
-        if let FitSpec::Classical(options) = &mut hasty.request {
-            (options.starts, options.epochs) = (Some(STARTS_IN_HASTE), Some(EPOCHS_IN_HASTE));
-        }
-        hasty
-    }
-
-    /// The same searched from parameters that were found in haste, if any.
+    /// The same that on a fold is searched from few starts: parameters found on all data, if any, and random ones.
     pub fn near(&self, searched: Vec<f64>) -> Self {
         let mut near = self.clone();
-        if let FitSpec::Classical(options) = &mut near.request
-            && !searched.is_empty()
-        {
-            options.epochs = options.epochs.or(Some(EPOCHS_NEAR));
+        if let FitSpec::Classical(options) = &mut near.request {
             options.near = searched;
         }
         near
-    }
-
-    /// The same searched from as many starts and in as many epochs as by itself.
-    pub fn thorough(&self) -> Self {
-        let mut thorough = self.clone();
-        if let FitSpec::Classical(options) = &mut thorough.request {
-            (options.starts, options.epochs) = (None, None);
-        }
-        thorough
     }
 
     /// The rows that it is fitted to: all, or some of many. The memory runs through all.
@@ -277,7 +270,20 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
     requests.extend(searched_laws(options).into_iter().map(FitSpec::Classical));
     let mut all: Vec<Candidate> = requests.iter().map(Candidate::alone).collect();
     all.retain(|candidate| is_allowed(candidate, data, options));
+    // What has begun to lose strength loses more beyond the data, where models that cannot lose any fail.
+    if options.deterioration.is_none() && all.iter().any(Candidate::can_deteriorate) && loses_strength(data) {
+        all.retain(Candidate::can_deteriorate);
+    }
     all
+}
+
+/// True if the diagnosis finds that loops lose energy or strength by repetition or with amplitude.
+fn loses_strength(data: &Dataset) -> bool {
+    let lost = [Property::Deterioration, Property::StrengthLoss];
+    Diagnosis::of(data, &DiagnosisOptions::default()).is_ok_and(|diagnosis| {
+        let mut findings = diagnosis.properties.iter().filter(|finding| lost.contains(&finding.property));
+        findings.any(|finding| finding.verdict == Verdict::Yes)
+    })
 }
 
 fn companded(share: f64) -> InputOptions {
@@ -395,25 +401,26 @@ fn candidates_with_inertia(data: &Dataset, options: &AutoOptions, compared: Comp
 }
 
 fn recurrent(data: &Dataset, options: &AutoOptions) -> Vec<ClassicalOptions> {
-    if options.rate.is_none() || !data.has_time() {
-        return Vec::new();
-    }
+    let rate = options.rate.filter(|_| data.has_time());
     let as_it_is = InputOptions::default();
     let rate_tenth = InputOptions { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
     let (with_stops, plain) = ((3, 6, 8), (5, 0, 10));
     let of = |(shaping, (states, stops, hidden))| ClassicalOptions {
-        rate: options.rate,
+        rate,
         shaping,
         states: Some(states),
         operators: Some(stops),
         hidden: Some(options.hidden.unwrap_or(hidden).min(MOST_NEURONS)),
         starts: Some(1),
-        epochs: Some(options.epochs.unwrap_or(EPOCHS_OF_RECURRENT)),
+        epochs: Some(options.epochs.unwrap_or_else(|| options.effort.scaled(EPOCHS_OF_RECURRENT))),
         seed: options.seed,
         ..ClassicalOptions::of(ClassicalModel::DuhemNn)
     };
-    let all = [(as_it_is, with_stops), (as_it_is, plain), (rate_tenth, with_stops), (rate_tenth, plain)];
-    all.map(of).into()
+    let mut all = vec![(as_it_is, with_stops), (as_it_is, plain)];
+    if rate.is_some() {
+        all.extend([(rate_tenth, with_stops), (rate_tenth, plain)]);
+    }
+    all.into_iter().map(of).collect()
 }
 
 /// A law with what the user has decided of laws.
@@ -446,11 +453,18 @@ fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
     let searched = ClassicalModel::ALL.iter().copied().filter(is_searched);
     let with_rate = |model: ClassicalModel| ClassicalOptions {
         rate: options.rate.filter(|_| model.uses_rate()),
-        starts: Some(STARTS_OF_A_SEARCH),
         ..of_law(options, model)
     };
     let wanted = searched.filter(|model| !model.needs_rate() || options.rate.is_some());
-    let all = wanted.flat_map(|model| variants(&with_rate(model)));
+    let searched = |law: ClassicalOptions| match options.effort {
+        Effort::Normal => law,
+        effort => ClassicalOptions {
+            starts: Some(effort.scaled(law.starts())),
+            epochs: law.epochs.or_else(|| Some(effort.scaled(law.epochs()))),
+            ..law
+        },
+    };
+    let all = wanted.flat_map(|model| variants(&with_rate(model))).map(searched);
     all.filter(|law| law.rate.is_some() || options.rate.is_none() || !law.model.uses_rate()).collect()
 }
 
@@ -474,7 +488,7 @@ fn of_network(
         rate,
         shaping,
         starts: 1,
-        epochs: options.epochs.unwrap_or(EPOCHS),
+        epochs: options.epochs.unwrap_or_else(|| options.effort.scaled(EPOCHS)),
         seed: options.seed,
         ridge: Some(options.ridge.unwrap_or(ENSEMBLE_PENALTIES.ridge)),
         decay: Some(options.decay.unwrap_or(ENSEMBLE_PENALTIES.decay)),

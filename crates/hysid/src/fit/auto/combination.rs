@@ -48,11 +48,8 @@ impl Combination {
         counted: impl Fn(usize) -> bool + Copy,
     ) -> Option<Self> {
         let places: Vec<usize> = (0..trials.len()).filter(|&place| trials[place].is_complete()).collect();
-        let score = |&place: &usize| {
-            Score::of(&trials[place].predicted, folds, counted)
-                .with_unseen(trials[place].unseen_error(evidence))
-        };
-        let scores: Vec<Score> = places.iter().map(score).collect();
+        let scores: Vec<Score> =
+            places.iter().map(|&place| trials[place].score(folds, evidence, counted)).collect();
         let power = match evidence {
             Evidence::SeveralLoops => POWER,
             Evidence::OneLoop(_) => prior::POWER,

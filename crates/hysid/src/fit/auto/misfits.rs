@@ -75,12 +75,12 @@ impl Chosen<'_, '_, '_> {
     fn fitness(&self, trial: &Trial) -> Option<Fitness> {
         let folds = self.bench.folds;
         let errors = trial.is_complete().then(|| errors_held_out(&trial.predicted, folds, ""))??;
-        let of_members =
-            trial.members.values().filter_map(|m| m.provenance().trained_error().nrmse_std_percent);
         Some(Fitness {
-            training: of_members.min_by(f64::total_cmp)?,
+            training: 100.0 * trial.training_error(),
             held_out: errors.nrmse_std_percent?,
-            score: Score::of(&trial.predicted, folds, |_| true).mean_percent(),
+            score: Score::of(&trial.predicted, folds, |_| true)
+                .at_least(trial.training_error())
+                .mean_percent(),
         })
     }
 

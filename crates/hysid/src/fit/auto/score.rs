@@ -1,7 +1,7 @@
 //! Scores of candidates on held-out data, and the weights that follow.
 //!
 //! ```text
-//! S = mean over the folds f of ln(rmse_f / σ_f)                            theory.md (11.5)
+//! S = weighted mean over the folds f of ln(rmse_f / σ_f)                   theory.md (11.5)
 //! w = (e^S / e^{S_best})^{-p}                                              theory.md (11.6)
 //! ```
 
@@ -22,7 +22,10 @@ const OWN_CLASS: f64 = 0.75;
 /// Errors that scores tell apart, as shares of the standard deviation.
 const ERRORS: (f64, f64) = (1e-12, 1e150);
 
-/// Mean over the folds of `ln(rmse_f / σ_f)`, for rows inside and outside the trained range (theory.md (11.5)).
+/// Weight of a fold that holds out records beyond the others; that of any other fold is 1. Designed.
+const WEIGHT_BEYOND: f64 = 0.25;
+
+/// Weighted mean over the folds of `ln(rmse_f / σ_f)`, for rows inside and outside the trained range (theory.md (11.5)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Score {
     pub inside: f64,
@@ -32,27 +35,29 @@ pub(super) struct Score {
 impl Score {
     /// Of what is predicted on each fold; of the folds that are `counted`, by their place.
     pub fn of(predicted: &[Vec<f64>], folds: &[HeldOut], counted: impl Fn(usize) -> bool) -> Self {
-        let counted: Vec<(&Vec<f64>, &Rows)> = predicted
+        let counted: Vec<(&Vec<f64>, &HeldOut)> = predicted
             .iter()
-            .zip(folds.iter().map(|fold| &fold.rows))
+            .zip(folds)
             .enumerate()
             .filter(|(fold, _)| counted(*fold))
             .map(|(_, fold)| fold)
             .collect();
         let class = |is_outside: bool| {
-            mean(counted.iter().filter_map(|(predicted, fold)| {
+            weighted_mean(counted.iter().filter_map(|(predicted, HeldOut { rows: fold, is_beyond, .. })| {
                 let rows =
                     || squares(predicted, fold).filter(move |(_, outside)| (*outside > 0.5) == is_outside);
                 let share = rows().count() as f64 / fold.measured.len() as f64;
                 let is_enough = rows().count() >= FEWEST_ROWS && share >= LEAST_SHARE;
-                is_enough.then(|| logarithm(rows().map(|(square, _)| square), fold.deviation))
+                let error = || logarithm(rows().map(|(square, _)| square), fold.deviation);
+                is_enough.then(|| (error(), weight(*is_beyond)))
             }))
         };
         let all = || {
-            let of_fold = |(predicted, fold): &(&Vec<f64>, &Rows)| {
-                logarithm(squares(predicted, fold).map(|(square, _)| square), fold.deviation)
+            let of_fold = |(predicted, HeldOut { rows, is_beyond, .. }): &(&Vec<f64>, &HeldOut)| {
+                let squares = squares(predicted, rows).map(|(square, _)| square);
+                (logarithm(squares, rows.deviation), weight(*is_beyond))
             };
-            mean(counted.iter().map(of_fold)).unwrap_or_default()
+            weighted_mean(counted.iter().map(of_fold)).unwrap_or_default()
         };
         let (inside, outside) = match (class(false), class(true)) {
             (Some(inside), Some(outside)) => (
@@ -73,6 +78,13 @@ impl Score {
         }
         let with = |score: f64| ln(hypot(exp(score), error));
         Self { inside: with(self.inside), outside: with(self.outside) }
+    }
+
+    /// At least this error, as a share of the standard deviation: a model that misses the data it was fitted to is no
+    /// better on others, even if the rows held out happen to be easy.
+    pub fn at_least(self, error: f64) -> Self {
+        let least = logarithm(std::iter::once(error * error), 1.0);
+        Self { inside: self.inside.max(least), outside: self.outside.max(least) }
     }
 
     /// Both classes alike.
@@ -105,9 +117,15 @@ fn logarithm(squares: impl Iterator<Item = f64>, deviation: f64) -> f64 {
     ln(error.clamp(ERRORS.0, ERRORS.1))
 }
 
-fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (count, sum) = values.fold((0, 0.0), |(count, sum), value| (count + 1, sum + value));
-    (count > 0).then(|| sum / f64::from(count))
+fn weight(is_beyond: bool) -> f64 {
+    if is_beyond { WEIGHT_BEYOND } else { 1.0 }
+}
+
+/// Mean of values, each with its weight; `None` of no values.
+fn weighted_mean(values: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let (weights, sum) =
+        values.fold((0.0, 0.0), |(weights, sum), (value, weight)| (weights + weight, sum + weight * value));
+    (weights > 0.0).then(|| sum / weights)
 }
 
 /// Weights `(score / best)^-power` (theory.md (11.6)); 0 after the best `most` in either class.

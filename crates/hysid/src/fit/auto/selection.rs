@@ -40,6 +40,7 @@ pub(super) fn selection(
     Selection {
         folds: folds.iter().map(|fold| fold.fold.name.clone()).collect(),
         held_out_percent: None,
+        beyond: None,
         error_percent: combination.score(trials, folds).percent(),
         candidates,
         single: None,

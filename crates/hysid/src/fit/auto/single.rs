@@ -157,6 +157,7 @@ impl Makers<'_, '_, '_> {
             distilled: true,
             distilled_percent: distilled.as_ref().and_then(|(_, predicted)| self.held_out_percent(predicted)),
             plain_percent: self.held_out_percent(&best.predicted),
+            is_law: false,
         };
         if let (Some((model, predicted)), Some(of_distilled)) = (distilled, of_distilled)
             && error(of_distilled.with_unseen(best.unseen), &model)? <= best.error

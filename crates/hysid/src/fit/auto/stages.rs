@@ -11,7 +11,6 @@ use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::{Bench, Trial};
 use crate::fit::auto::tried::{Standing, Tried};
-use crate::fit::network::Progress;
 use crate::model::Model;
 use crate::optimise::parallel;
 use crate::options::auto::AutoOptions;
@@ -29,14 +28,11 @@ const ABOUT_AS_GOOD: f64 = 1.2;
 /// With so many folds at most, all are first folds.
 const FEW_FOLDS: usize = 3;
 
-/// A law passes screening if its quick-fit error is at most this many times the best held-out error.
+/// A law passes screening if its training error is at most this many times the best held-out error.
 const WORTH_A_TRIAL: f64 = 2.0;
 
 /// For noise-free data, a law passes screening up to this error, as a share of the standard deviation.
 const NEARLY_EXACT: f64 = 0.03;
-
-/// Largest errors of a screening search up to an epoch, relative to what passes in the end.
-const PROMISING: [(usize, f64); 3] = [(3, f64::INFINITY), (6, 3.0), (10, 1.7)];
 
 /// The held-out error with the rate that makes up for not knowing it at other speeds, relative to that without. Designed.
 const EARNED: f64 = 0.8;
@@ -45,9 +41,6 @@ const REFINED: usize = 2;
 
 /// Error of the best network, as a share of the standard deviation, below which there is hardly any noise.
 const WITHOUT_NOISE: f64 = 0.01;
-
-/// Rows with an output that a law is fitted to in haste, at most.
-const ROWS_IN_HASTE: usize = 600;
 
 pub(super) struct Stages<'w, 'o, 'a> {
     pub bench: Bench<'w, 'o, 'a>,
@@ -58,26 +51,24 @@ pub(super) struct Stages<'w, 'o, 'a> {
     pub dropped: Vec<Candidate>,
 }
 
-struct Hasty {
-    law: Candidate,
-    model: Option<Model>,
-    is_worth: bool,
-}
-
 impl Stages<'_, '_, '_> {
     /// Tries the candidates. `first` is a fit of the first of them to everything.
     pub fn run(&mut self, candidates: Vec<Candidate>, first: Option<Model>) {
         let (laws, others): (Vec<Candidate>, Vec<Candidate>) =
             candidates.into_iter().partition(Candidate::is_searched);
         self.expect(others.len(), laws.len());
-        self.first_starts(others, first);
+        let mut others: Vec<Trial> = others.into_iter().map(Trial::of).collect();
+        if let Some((model, trial)) = first.zip(others.first_mut()) {
+            trial.members.insert(0, model);
+        }
+        self.first_starts(others);
         let refined = self.refined();
         self.expect(refined.len(), laws.len());
-        self.first_starts(refined, None);
+        self.first_starts(refined.into_iter().map(Trial::of).collect());
         self.expect(0, laws.len());
         let promising = self.screened(laws);
         self.expect(promising.len(), 0);
-        self.first_starts(promising, None);
+        self.first_starts(promising);
         self.further_starts();
     }
 
@@ -98,13 +89,12 @@ impl Stages<'_, '_, '_> {
 
     /// One start of each on the first folds, of the best of each kind on all. The very first few are tried on all at
     /// once.
-    fn first_starts(&mut self, candidates: Vec<Candidate>, first: Option<Model>) {
+    fn first_starts(&mut self, trials: Vec<Trial>) {
         let begun = self.trials.len();
-        self.trials.extend(candidates.into_iter().map(Trial::of));
-        if let Some((model, trial)) = first.zip(self.trials.get_mut(begun)) {
-            trial.members.insert(0, model);
-            self.tell(&[begun], Standing::Trying);
-        }
+        self.trials.extend(trials);
+        let fitted: Vec<usize> =
+            (begun..self.trials.len()).filter(|&place| !self.trials[place].members.is_empty()).collect();
+        self.tell(&fitted, Standing::Trying);
         let (first_folds, other_folds) = self.first_folds();
         let all: Vec<usize> = (begun..self.trials.len()).collect();
         let urgent = if begun == 0 { self.urgent().min(all.len()) } else { 0 };
@@ -176,7 +166,8 @@ impl Stages<'_, '_, '_> {
         let score = |&place: &usize| {
             let trial = &self.trials[place];
             let predicted = trial.predicted_so_far(folds)?;
-            Some((place, self.score(trial, &predicted, folds)))
+            let score = Score::of(&predicted, self.bench.folds, |fold| folds.contains(&fold));
+            Some((place, score.with_unseen(trial.unseen_error(self.evidence))))
         };
         let mut scored: Vec<(usize, Score)> = places.iter().filter_map(score).collect();
         let Some(best) = lowest(scored.iter().map(|(_, score)| *score)) else { return Vec::new() };
@@ -216,12 +207,6 @@ impl Stages<'_, '_, '_> {
         (0..=last).partition(|&fold| fold == 0 || fold == last || last < FEW_FOLDS)
     }
 
-    /// Of what a candidate predicts on some folds, with what is known of it beforehand.
-    fn score(&self, trial: &Trial, predicted: &[Vec<f64>], folds: &[usize]) -> Score {
-        let score = Score::of(predicted, self.bench.folds, |fold| folds.contains(&fold));
-        score.with_unseen(trial.unseen_error(self.evidence))
-    }
-
     /// The best networks so far with other penalties, unless the user decided or one loop cannot tell.
     fn refined(&self) -> Vec<Candidate> {
         let Self { options, .. } = self;
@@ -241,52 +226,50 @@ impl Stages<'_, '_, '_> {
         networks.iter().take(REFINED).flat_map(refined).collect()
     }
 
-    /// The laws that, fitted in haste, come near the best candidate so far.
-    fn screened(&mut self, laws: Vec<Candidate>) -> Vec<Candidate> {
+    /// The laws whose search on all data comes near the best candidate so far, with the fits found.
+    fn screened(&mut self, laws: Vec<Candidate>) -> Vec<Trial> {
         let all: Vec<usize> = (0..self.bench.folds.len()).collect();
-        let Some(best) = self.best(&all) else { return laws };
-        let few = self.bench.data.thinned(ROWS_IN_HASTE);
-        let is_without_noise = best.inside < ln(WITHOUT_NOISE);
-        let least = if is_without_noise { NEARLY_EXACT } else { 0.0 };
+        let Some(best) = self.best(&all) else { return laws.into_iter().map(Trial::of).collect() };
+        let (Bench { data, work, .. }, evidence) = (self.bench, self.evidence);
+        let least = if best.inside < ln(WITHOUT_NOISE) { NEARLY_EXACT } else { 0.0 };
         let most_percent = |law: &Candidate| {
-            let (most, unseen) = (WORTH_A_TRIAL * exp(best.inside), self.evidence.unseen_error(law.asked()));
+            let (most, unseen) = (WORTH_A_TRIAL * exp(best.inside), evidence.unseen_error(law.asked()));
             let worth = (most * most - unseen * unseen).max(0.0).sqrt();
             100.0 * worth.max(least)
         };
         let fit = |law: Candidate| {
-            let most = most_percent(&law);
-            let is_promising = |progress: &Progress| {
-                let allowed = PROMISING.iter().find(|(epoch, _)| progress.epoch <= *epoch);
-                let allowed = allowed.map_or(1.0, |(_, times)| *times);
-                is_without_noise
-                    || progress.train_nrmse_percent.is_nan()
-                    || progress.train_nrmse_percent <= allowed * most
-            };
-            let fitted = self.bench.work.fit_while(&law.in_haste(), &few, 0, is_promising).ok().flatten();
-            let error = fitted
-                .as_ref()
-                .and_then(|fitted| fitted.model.provenance().trained_error().nrmse_std_percent);
-            let is_worth = error.is_some_and(|error| error <= most);
+            let fitted = work.fit(&law, data, 0).ok().flatten();
             let (model, searched) =
                 fitted.map_or((None, Vec::new()), |fitted| (Some(fitted.model), fitted.searched));
-            let next = if is_without_noise { law.thorough() } else { law.near(searched) };
-            Hasty { law: next, model, is_worth }
+            (law.near(searched), model)
         };
-        let tried: Vec<Hasty> = parallel::each_taken(laws, fit);
-        let (worth, not): (Vec<Hasty>, Vec<Hasty>) = tried.into_iter().partition(|hasty| hasty.is_worth);
-        for Hasty { law, model, .. } in not {
-            let tried = Tried {
-                name: law.name(),
-                error_percent: None,
-                folds: 0,
-                of: self.bench.folds.len(),
-                standing: Standing::Dropped,
-                model: model.as_ref(),
-            };
-            self.bench.work.tell(&law, tried);
-            self.dropped.push(law);
+        let mut worth = Vec::new();
+        for (law, model) in parallel::each_taken(laws, fit) {
+            let error = model.as_ref().and_then(|m| m.provenance().trained_error().nrmse_std_percent);
+            match model {
+                Some(model) if error.is_some_and(|error| error <= most_percent(&law)) => {
+                    let mut trial = Trial::of(law);
+                    trial.members.insert(0, model);
+                    worth.push(trial);
+                }
+                model => self.drop_unjudged(law, model.as_ref()),
+            }
         }
-        worth.into_iter().map(|hasty| hasty.law).collect()
+        worth
+    }
+
+    /// Drops a law that was judged on no fold.
+    fn drop_unjudged(&mut self, law: Candidate, model: Option<&Model>) {
+        let tried = Tried {
+            name: law.name(),
+            error_percent: None,
+            folds: 0,
+            of: self.bench.folds.len(),
+            standing: Standing::Dropped,
+            model,
+        };
+        self.bench.work.tell(&law, tried);
+        self.dropped.push(law);
     }
 
     fn further_starts(&mut self) {
@@ -325,7 +308,9 @@ impl Stages<'_, '_, '_> {
     /// The lowest scores of any candidate so far, on some folds.
     fn best(&self, folds: &[usize]) -> Option<Score> {
         let complete = self.trials.iter().filter(|trial| trial.is_complete());
-        lowest(complete.map(|trial| self.score(trial, &trial.predicted, folds)))
+        lowest(
+            complete.map(|trial| trial.score(self.bench.folds, self.evidence, |fold| folds.contains(&fold))),
+        )
     }
 }
 

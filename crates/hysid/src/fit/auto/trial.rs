@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::data::record::Dataset;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::prior::Evidence;
+use crate::fit::auto::score::Score;
 use crate::fit::auto::work::Work;
 use crate::fit::law::search::spread;
 use crate::model::{Excursion, Model, Predictions};
@@ -15,11 +16,13 @@ use crate::validation::Fold;
 pub(super) struct HeldOut {
     pub fold: Fold,
     pub rows: Rows,
+    /// True if what is held out lies beyond the training data.
+    pub is_beyond: bool,
 }
 
 impl HeldOut {
     pub fn of(fold: Fold) -> Self {
-        Self { rows: Rows::of(&fold), fold }
+        Self { rows: Rows::of(&fold), is_beyond: fold.is_beyond(), fold }
     }
 }
 
@@ -101,6 +104,19 @@ impl Trial {
     /// The error of the candidate to be expected on loops that the data do not show.
     pub fn unseen_error(&self, evidence: Evidence) -> f64 {
         evidence.unseen_error(self.candidate.asked())
+    }
+
+    /// Lowest error of its fits to everything, as a share of the standard deviation; 0 before there is one.
+    pub fn training_error(&self) -> f64 {
+        let percent = |model: &Model| model.provenance().trained_error().nrmse_std_percent;
+        let errors = self.members.values().filter_map(percent);
+        0.01 * errors.min_by(f64::total_cmp).unwrap_or(0.0)
+    }
+
+    /// Its score on the folds that are `counted`, with what is known of it beside.
+    pub fn score(&self, folds: &[HeldOut], evidence: Evidence, counted: impl Fn(usize) -> bool) -> Score {
+        let on_folds = Score::of(&self.predicted, folds, counted);
+        on_folds.at_least(self.training_error()).with_unseen(self.unseen_error(evidence))
     }
 
     /// Predictions of the start under way, fold by fold, empty where not fitted; `None` if it failed on a `wanted`

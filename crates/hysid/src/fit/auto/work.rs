@@ -64,25 +64,11 @@ impl<'o, 'a> Work<'o, 'a> {
 
     /// A fit of a candidate from one of its starts; `None` if there was no time for it.
     pub fn fit(&self, candidate: &Candidate, data: &Dataset, start: usize) -> Result<Option<Fitted>> {
-        self.fit_while(candidate, data, start, |_| true)
-    }
-
-    /// As [`Work::fit`], ended early once its progress is not `promising`.
-    pub fn fit_while(
-        &self,
-        candidate: &Candidate,
-        data: &Dataset,
-        start: usize,
-        promising: impl Fn(&Progress) -> bool + Sync,
-    ) -> Result<Option<Fitted>> {
         if self.is_stopped() {
             return Ok(None);
         }
         let request = candidate.request(start);
-        let mut observe = |progress: &Progress| match promising(progress) {
-            true => self.observe(progress),
-            false => ControlFlow::Break(()),
-        };
+        let mut observe = |progress: &Progress| self.observe(progress);
         let fitted = identify(candidate.rows_of(data).as_ref(), &request, &mut observe)?;
         self.fits().done += 1;
         // What was stopped on its way is worse than what it is compared with.

@@ -258,7 +258,7 @@ fn search_parameters(
     if begun.first().is_none_or(|best| best.value().square_residual == UNFINISHED) {
         return Err(Error::Stopped);
     }
-    let drawn = if options.near.is_empty() { options.starts() * DRAWS_PER_START } else { 1 };
+    let drawn = options.starts() * DRAWS_PER_START;
     let rounds = options.epochs();
     let plan = Plan { rounds, spared: 0, to_prove_itself: ROUNDS_TO_PROVE_ITSELF, finalists: FINALISTS };
     let mut descents = MultiStart::new(begun);
@@ -285,17 +285,14 @@ fn search_parameters(
     })
 }
 
-/// The requested point, or the best of many that lie apart: suggested and random ones.
+/// The best of many points that lie apart: those of a similar fit, suggested and random ones.
 fn beginnings(objective: &Objective<'_>, options: &ClassicalOptions) -> Vec<Descent> {
     let variables = &objective.family.unknowns().variables;
     let starts = options.starts();
+    let mut suggested = objective.family.suggestions();
     if options.near.len() == variables.len() {
-        let places = variables.iter().zip(&options.near).map(|(variable, &value)| variable.place(value));
-        let u: Vec<f64> = places.collect();
-        let value = objective.value(&u);
-        return vec![Descent::new(u, value)];
+        suggested.insert(0, options.near.clone());
     }
-    let suggested = objective.family.suggestions();
     let draw = |index: usize| -> Vec<f64> {
         if let Some(values) = suggested.get(index) {
             return variables.iter().zip(values).map(|(variable, &value)| variable.place(value)).collect();
