@@ -468,6 +468,37 @@ mod tests {
     }
 
     #[test]
+    fn a_record_larger_or_faster_than_all_others_lies_beyond_them() {
+        let timed = |name: &str, size: f64, step: f64| {
+            let record = record(name, 60, size);
+            let time = (0..60).map(|row| step * f64::from(row)).collect();
+            record.with_time(time).unwrap()
+        };
+        let beyond = |records: Vec<Record>| -> Vec<bool> {
+            let names = ColumnNames { time: Some("t".into()), ..ColumnNames::plain(1) };
+            let all = Dataset::new(names, records).unwrap();
+            folds(&all, 5).iter().map(Fold::is_beyond).collect()
+        };
+        let sizes = [2.0, 1.0, 3.0].map(|size| timed(&format!("{size}"), size, 1.0));
+        assert_eq!(beyond(sizes.into()), [false, true, true]);
+        // Equal outputs would be copies.
+        let speeds = [(1.0, 0.1), (1.01, 0.3), (0.99, 0.2), (1.02, 0.15)]
+            .map(|(size, step)| timed(&format!("{step}"), size, step));
+        assert_eq!(beyond(speeds.into()), [true, true, false, false]);
+        assert_eq!(beyond(vec![timed("one", 1.0, 1.0)]), [false; 5]);
+    }
+
+    #[test]
+    fn two_records_of_one_amplitude_are_also_cut_into_blocks() {
+        let names = |sizes: [f64; 2]| -> Vec<String> {
+            let two = data(vec![record("a", 200, sizes[0]), record("b", 160, sizes[1])]);
+            folds_to_choose_by(&two, 5).into_iter().map(|fold| fold.name).collect()
+        };
+        assert_eq!(names([1.0, 1.4]), ["a", "b", "20 to 50 %, from the rest", "55 to 85 %, from the rest"]);
+        assert_eq!(names([1.0, 3.0]), ["a", "b"]);
+    }
+
+    #[test]
     fn every_cycle_is_held_out_once() {
         let all = data(vec![record("r", 400, 1.0)]);
         let folds = folds_of_cycles(&all, 5);

@@ -20,12 +20,12 @@ pub enum Automatic {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Effort {
-    /// One start of each candidate, a third of the epochs.
+    /// The first three candidates of each kind, one start of each, a third of the epochs.
     Quick,
     /// Two starts of each candidate.
     #[default]
     Normal,
-    /// Eight starts of each candidate, three times the epochs, three times the starts of each search.
+    /// Sixteen starts of each candidate, five times the epochs, five times the starts of each search.
     Thorough,
 }
 
@@ -42,12 +42,20 @@ impl Effort {
         }
     }
 
+    /// Candidates of each kind at most, apart from laws that are searched.
+    pub fn candidates_of_a_kind(self) -> usize {
+        match self {
+            Self::Quick => 3,
+            Self::Normal | Self::Thorough => usize::MAX,
+        }
+    }
+
     /// Starts of a randomly initialized candidate.
     pub fn starts(self) -> usize {
         match self {
             Self::Quick => 1,
             Self::Normal => 2,
-            Self::Thorough => 8,
+            Self::Thorough => 16,
         }
     }
 
@@ -56,7 +64,7 @@ impl Effort {
         match self {
             Self::Quick => normal.div_ceil(3),
             Self::Normal => normal,
-            Self::Thorough => 3 * normal,
+            Self::Thorough => 5 * normal,
         }
     }
 }

@@ -41,6 +41,7 @@ def fit(
     warm_up: int | None = None,
     initial_state: str | None = None,
     training: str | None = None,
+    effort: str | None = None,
     starts: int | None = None,
     epochs: int | None = None,
     population: int | None = None,
@@ -129,6 +130,9 @@ def fit(
         Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic
         algorithm, or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default:
         subgradient.
+    effort : str, optional
+        How long `auto` searches: `quick` takes about a quarter of the normal time, `thorough` about ten times
+        as long. Default: normal.
     starts : int, optional
         Number of random starts: networks, populations or parameter sets from which the training begins.
         Default: 2 for subgradient and auto; 8 for levenberg-marquardt, bouc-wen, jiles-atherton and lugre; 1

@@ -46,7 +46,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         As of `hysid.fit`; the default ``"auto"`` is accurate and slow. In a search or a cross-validation, name a
         model, which takes seconds.
     members, stops, hidden, relaxation, no_deterioration, companding, rate_companding, history : optional
-    warm_up, initial_state, training, starts, epochs, population, stall, validation, ridge, decay : optional
+    warm_up, initial_state, training, effort, starts, epochs, population, stall, validation, ridge, decay : optional
     operators, states, modes, thresholds, sign, dead_zones, free_weights : optional
     logarithmic_thresholds, degradation, asymmetric, differential_form, time_limit, threads : optional
         As of `hysid.fit`.
@@ -94,6 +94,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         warm_up: int | None = None,
         initial_state: str | None = None,
         training: str | None = None,
+        effort: str | None = None,
         starts: int | None = None,
         epochs: int | None = None,
         population: int | None = None,
@@ -132,6 +133,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.warm_up = warm_up
         self.initial_state = initial_state
         self.training = training
+        self.effort = effort
         self.starts = starts
         self.epochs = epochs
         self.population = population

@@ -8,14 +8,19 @@ use hysid::fit::network::Observer;
 use hysid::model::{Ensemble, Group, Node, NodeKind, Predictor, Weights};
 use hysid::validation::folds;
 
-use crate::noisy_record::noisy;
+use crate::noisy_record::{noisy, waved};
 
 fn names() -> ColumnNames {
     ColumnNames { time: Some("t_s".into()), inputs: vec!["x_mm".into()], rate: None, output: "f_kN".into() }
 }
 
-fn data() -> Dataset {
+/// Records of a law: a stop and a line, with noise.
+fn of_a_law() -> Dataset {
     Dataset::new(names(), vec![noisy(150, "a"), noisy(110, "b"), noisy(130, "c")]).unwrap()
+}
+
+fn data() -> Dataset {
+    Dataset::new(names(), vec![waved(150, "a"), waved(110, "b"), waved(130, "c")]).unwrap()
 }
 
 fn shared() -> &'static Model {
@@ -136,6 +141,25 @@ fn one_member_is_a_single_model_with_band_and_selection() {
 }
 
 #[test]
+fn a_law_of_few_numbers_takes_the_place_of_an_ensemble() {
+    let data = of_a_law();
+    let model = fitted(&data, options(None));
+    assert!(matches!(model.name(), ModelName::Classical(_)), "{:?}", model.name());
+    assert!(model.parameters() <= 40);
+    let provenance = model.provenance();
+    let selection = provenance.selection.as_ref().expect("there was a choice");
+    let single = selection.single.as_ref().expect("one model was chosen");
+    assert!(single.is_law && !single.distilled);
+    assert_eq!(provenance.validation.as_ref().unwrap().nrmse_std_percent, selection.held_out_percent);
+    assert!(selection.candidates.len() > 1 && selection.summary()[0].contains("a law of few numbers"));
+    // The noise has a root mean square of 0.07.
+    let trained = provenance.trained_error().rmse;
+    assert!((0.05..0.09).contains(&trained), "{trained}");
+    assert!(model.band().is_some());
+    assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
+}
+
+#[test]
 fn decisions_are_obeyed() {
     let data = data();
     let rate = Some(RateMethod::Central);
@@ -163,13 +187,18 @@ fn decisions_are_obeyed() {
     assert!(with.iter().all(wears));
     let unrated = shared().ensemble().unwrap().members();
     assert!(unrated.iter().all(|member| member.rate().is_none() && !member.needs_time()));
-    let sized = members(AutoOptions { stops: Some(4), hidden: Some(3), ..options(None) });
-    let trained = sized.iter().filter(|member| matches!(member.name(), ModelName::Network(_)));
-    assert!(trained.count() > 0);
-    for member in sized.iter().filter(|member| matches!(member.name(), ModelName::Network(_))) {
-        let a = member.network().unwrap().architecture();
-        assert_eq!((a.stops, a.hidden), (4, 3));
-    }
+    // Networks that are tried have these sizes, whether they become members or not.
+    let sized = FitSpec::Auto(AutoOptions { stops: Some(4), hidden: Some(3), ..options(None) });
+    let mut sizes = Vec::new();
+    let mut observer = |progress: &Progress| {
+        let tried = progress.tried.as_ref().and_then(|tried| tried.model);
+        let is_network = |model: &&Model| matches!(model.name(), ModelName::Network(_));
+        let network = tried.filter(is_network).and_then(Model::network);
+        sizes.extend(network.map(|network| (network.architecture().stops, network.architecture().hidden)));
+        ControlFlow::Continue(())
+    };
+    identify(&data, &sized, &mut observer).unwrap();
+    assert!(!sizes.is_empty() && sizes.iter().all(|&size| size == (4, 3)), "{sizes:?}");
 }
 
 #[test]

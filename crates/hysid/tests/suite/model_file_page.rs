@@ -1,6 +1,7 @@
 //! `docs/model-file.md` is complete and true: its tables have every field that model files have, and no other, and its
 //! examples are model files that compute what the page says.
 
+use crate::noisy_record::waved;
 use crate::scaffold::*;
 use crate::small_models;
 use std::collections::{BTreeMap, BTreeSet};
@@ -67,7 +68,7 @@ fn collect(value: &Value, path: &str, fields: &mut Fields) {
 
 fn data(offset: f64) -> Dataset {
     let shifted = |name| {
-        let record = small_models::record(120, name);
+        let record = waved(120, name);
         let x = record.inputs()[0].iter().map(|x| x + offset).collect();
         Record::new(name, vec![x], record.output().to_vec())
             .and_then(|shifted| shifted.with_time(record.time().unwrap().to_vec()))
@@ -141,8 +142,8 @@ fn with_rare_parts(model: &Model) -> Model {
     selection["dropped"] = json!(["lugre"]);
     selection["found_states"] = json!({"found_percent": 1.0, "virgin_percent": 2.0});
     selection["warm_up"] = json!({"rows": 4, "without_percent": 1.0, "with_percent": 2.0});
-    selection["single"] =
-        json!({"name": "lugre", "distilled": false, "distilled_percent": null, "plain_percent": 1.0});
+    selection["single"] = json!({"name": "lugre", "distilled": false, "distilled_percent": null, "plain_percent": 1.0, "is_law": true});
+    selection["beyond"] = json!({"folds": ["100 Hz"], "percent": 9.0});
     file.as_object_mut().unwrap().remove("lead_in");
     file["periodic"] = json!(true);
     let text = file.to_string();

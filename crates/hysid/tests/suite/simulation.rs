@@ -4,7 +4,7 @@ use crate::scaffold::*;
 use hysid::elementary::cos;
 use hysid::model::{Prediction, Simulation};
 
-use crate::noisy_record::noisy;
+use crate::noisy_record::waved;
 
 const METHODS: [RateMethod; 4] =
     [RateMethod::Given, RateMethod::Central, RateMethod::Backward, RateMethod::SavitzkyGolay];
@@ -120,7 +120,7 @@ const OPTIONS: &str = r#"{"stops": 3, "hidden": 2, "relaxation": 1, "starts": 1,
 #[test]
 fn an_ensemble_and_its_band_are_the_same_in_blocks() {
     for method in [None, Some(RateMethod::Central), Some(RateMethod::SavitzkyGolay)] {
-        let train = vec![noisy(150, "a"), noisy(110, "b"), noisy(130, "c")];
+        let train = vec![waved(150, "a"), waved(110, "b"), waved(130, "c")];
         let model = fitted(train, &small(ModelName::AUTO, method));
         assert!(model.ensemble().unwrap().members().len() > 1);
         let unseen = [record(1500, "long"), record(2, "short")];

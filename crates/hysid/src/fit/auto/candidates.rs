@@ -254,10 +254,11 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
             return all;
         }
     }
-    let mut networks = networks(options).into_iter().map(FitSpec::Network);
-    let mut random = random_stops(options).into_iter().map(FitSpec::Classical);
-    let mut linear = linear_laws(options).into_iter().map(FitSpec::Classical);
-    let mut recurrent = recurrent(data, options).into_iter().map(FitSpec::Classical);
+    let most = options.effort.candidates_of_a_kind();
+    let mut networks = networks(options).into_iter().take(most).map(FitSpec::Network);
+    let mut random = random_stops(options).into_iter().take(most).map(FitSpec::Classical);
+    let mut linear = linear_laws(options).into_iter().take(most).map(FitSpec::Classical);
+    let mut recurrent = recurrent(data, options).into_iter().take(most).map(FitSpec::Classical);
     let mut requests = Vec::new();
     // A network and a quick one at a time.
     loop {

@@ -16,6 +16,18 @@ const FEW_NUMBERS: usize = 40;
 /// Designed.
 const ABOUT_THE_LOWEST: f64 = 1.4;
 
+/// Scores of laws, relative to the lowest, that tell nothing apart: the law with the fewest numbers is taken. Designed.
+const ALIKE: f64 = 1.05;
+
+/// A candidate with its errors on the data and on the folds.
+struct Judged {
+    place: usize,
+    is_law: bool,
+    numbers: usize,
+    training: f64,
+    score: f64,
+}
+
 impl Chosen<'_, '_, '_> {
     /// The place of the best such law; `None` if there is none, if the user decided, or for one loop, on which laws that
     /// differ elsewhere are alike.
@@ -23,24 +35,28 @@ impl Chosen<'_, '_, '_> {
         if self.options.only.is_some() || self.evidence.is_one_loop() {
             return None;
         }
-        let complete = |(_, trial): &(usize, &Trial)| trial.is_complete();
-        let score = |trial: &Trial| trial.score(self.bench.folds, self.evidence, |_| true).mean_percent();
-        let judged: Vec<(usize, &Trial, f64)> = (self.trials.iter().enumerate().filter(complete))
-            .map(|(place, trial)| (place, trial, score(trial)))
+        let judged: Vec<Judged> = (self.trials.iter().enumerate())
+            .filter(|(_, trial)| trial.is_complete())
+            .map(|(place, trial)| self.judged(place, trial))
             .collect();
-        let lowest = |error: &dyn Fn(&(usize, &Trial, f64)) -> f64| {
-            judged.iter().map(error).fold(f64::INFINITY, f64::min)
-        };
-        let training = lowest(&|(_, trial, _)| trial.training_error());
-        let held_out = lowest(&|(_, _, score)| *score);
-        let is_such_a_law = |(_, trial, score): &&(usize, &Trial, f64)| {
-            let numbers = trial.members.values().map(|model| model.parameters()).max();
-            trial.candidate.kind == Kind::Classical
-                && numbers.is_some_and(|numbers| numbers <= FEW_NUMBERS)
-                && trial.training_error() * score <= ABOUT_THE_LOWEST * training * held_out
-        };
-        let best = judged.iter().filter(is_such_a_law).min_by(|a, b| a.2.total_cmp(&b.2));
-        best.map(|(place, ..)| *place)
+        let lowest = |error: fn(&Judged) -> f64| judged.iter().map(error).fold(f64::INFINITY, f64::min);
+        let most = ABOUT_THE_LOWEST * lowest(|one| one.training) * lowest(|one| one.score);
+        let is_such_a_law =
+            |one: &&Judged| one.is_law && one.numbers <= FEW_NUMBERS && one.training * one.score <= most;
+        let laws: Vec<&Judged> = judged.iter().filter(is_such_a_law).collect();
+        let best = laws.iter().map(|law| law.score).fold(f64::INFINITY, f64::min);
+        let alike = laws.into_iter().filter(|law| law.score <= ALIKE * best);
+        alike.min_by(|a, b| a.numbers.cmp(&b.numbers).then(a.score.total_cmp(&b.score))).map(|law| law.place)
+    }
+
+    fn judged(&self, place: usize, trial: &Trial) -> Judged {
+        Judged {
+            place,
+            is_law: trial.candidate.kind == Kind::Classical,
+            numbers: trial.members.values().map(|model| model.parameters()).max().unwrap_or(usize::MAX),
+            training: trial.training_error(),
+            score: trial.score(self.bench.folds, self.evidence, |_| true).mean_percent(),
+        }
     }
 
     /// The law at a place as the model; `None` if there was no time to validate it.

@@ -159,6 +159,24 @@ mod tests {
     }
 
     #[test]
+    fn a_fold_beyond_the_others_counts_a_quarter() {
+        let mean = weighted_mean([(1.0, weight(false)), (6.0, weight(true))].into_iter()).unwrap();
+        assert!((mean - 2.0).abs() < 1e-15);
+        // Where all are beyond the others, they count alike.
+        let alike = weighted_mean([(1.0, weight(true)), (6.0, weight(true))].into_iter()).unwrap();
+        assert!((alike - 3.5).abs() < 1e-15);
+        assert!(weighted_mean(std::iter::empty()).is_none());
+    }
+
+    #[test]
+    fn a_model_that_misses_its_own_data_is_no_better_elsewhere() {
+        let easy = Score { inside: ln(0.01), outside: ln(0.2) };
+        let floored = easy.at_least(0.1);
+        assert!((floored.inside - ln(0.1)).abs() < 1e-12 && floored.outside == easy.outside);
+        assert_eq!(easy.at_least(0.0), easy);
+    }
+
+    #[test]
     fn no_error_that_is_none_looks_small() {
         assert_eq!(logarithm([f64::NAN].into_iter(), 1.0), ln(ERRORS.1));
         assert_eq!(logarithm([f64::INFINITY].into_iter(), 1.0), ln(ERRORS.1));

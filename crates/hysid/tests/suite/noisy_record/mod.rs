@@ -12,3 +12,11 @@ pub fn noisy(rows: usize, name: &str) -> Record {
     let output = exact.output().iter().enumerate().map(|(row, y)| y + error(row)).collect();
     exact.with_output(output).unwrap()
 }
+
+/// The same with a wave over the input, which no law of few numbers has.
+pub fn waved(rows: usize, name: &str) -> Record {
+    let noisy = noisy(rows, name);
+    let rows = noisy.inputs()[0].iter().zip(noisy.output());
+    let output = rows.map(|(x, y)| y + sin(9.0 * x)).collect();
+    noisy.clone().with_output(output).unwrap()
+}
