@@ -8,8 +8,8 @@
 //!
 //! The symbols are those of the [module of networks](crate::network).
 //!
-//! Rows depend on those before, neurons do not depend on each other: eight stops advance together as the
-//! lanes of a vector. Their outputs are then transposed from time-major to neuron-major for the readout,
+//! Rows depend on those before, neurons do not depend on each other: eight stops, or the last four, advance
+//! together as the lanes of a vector. Their outputs are then transposed from time-major to neuron-major for the readout,
 //! whose lanes are rows.
 
 use std::ops::{Deref, DerefMut};
@@ -52,6 +52,13 @@ impl<'a> IntoIterator for &'a Row {
     }
 }
 
+impl AsRef<[f64; BLOCK]> for Row {
+    #[inline(always)]
+    fn as_ref(&self) -> &[f64; BLOCK] {
+        &self.0
+    }
+}
+
 impl AsRef<[f64]> for Row {
     #[inline(always)]
     fn as_ref(&self) -> &[f64] {
@@ -72,8 +79,11 @@ pub(crate) const LANES: usize = 8;
 /// One number for each neuron of a group.
 pub(crate) type Lanes = [f64; LANES];
 
+/// Neurons of a group that is at most half full: the rest of its lanes is left out.
+const HALF: usize = LANES / 2;
+
 /// Values of a group over a block, time-major.
-type Tile = [[Lanes; 1]; BLOCK];
+type Tile = [Lanes; BLOCK];
 
 /// Largest magnitude of a scaled input. Beyond it, far outside anything trained on, the input is
 /// taken as this, so that no sum of products overflows whatever the parameters.
@@ -217,24 +227,13 @@ impl MemoryLayer {
         let (linear, rest) = z[..self.neurons()].split_at_mut(usize::from(self.linear.is_some()));
         let (stops, stress) = rest.split_at_mut(self.stops);
         self.begin::<S>(state, |c| u[c][0]);
-        let mut done = 0;
-        while done + 2 <= self.groups.len() {
-            let groups = &self.groups[done..done + 2];
-            let (play, slip) = (&mut state.play[done..done + 2], &mut state.slip[done..done + 2]);
-            if self.deteriorating {
-                advance::<S, 2, true>(simd, groups, play, slip, u, rows, &mut stops[done * LANES..]);
-            } else {
-                advance::<S, 2, false>(simd, groups, play, slip, u, rows, &mut stops[done * LANES..]);
-            }
-            done += 2;
-        }
-        if done < self.groups.len() {
-            let groups = &self.groups[done..];
-            let (play, slip) = (&mut state.play[done..], &mut state.slip[done..]);
-            if self.deteriorating {
-                advance::<S, 1, true>(simd, groups, play, slip, u, rows, &mut stops[done * LANES..]);
-            } else {
-                advance::<S, 1, false>(simd, groups, play, slip, u, rows, &mut stops[done * LANES..]);
+        let memory = state.play.iter_mut().zip(&mut state.slip);
+        for ((group, memory), z) in self.groups.iter().zip(memory).zip(stops.chunks_mut(LANES)) {
+            match (z.len() <= HALF, self.deteriorating) {
+                (false, true) => advance::<S, LANES, true>(simd, group, memory, u, rows, z),
+                (false, false) => advance::<S, LANES, false>(simd, group, memory, u, rows, z),
+                (true, true) => advance::<S, HALF, true>(simd, group, memory, u, rows, z),
+                (true, false) => advance::<S, HALF, false>(simd, group, memory, u, rows, z),
             }
         }
         self.run_linear::<S>(u, rows, linear);
@@ -253,9 +252,9 @@ impl MemoryLayer {
             let v = drive::<S>(group, |c| u[c]);
             let (mut plays, mut slips) = (*play, *slip);
             let outputs = if self.deteriorating {
-                follow::<S, true>(v, &mut plays, &mut slips, &group.inverse_beta)
+                follow::<S, LANES, true>(v, &mut plays, &mut slips, &group.inverse_beta)
             } else {
-                follow::<S, false>(v, &mut plays, &mut slips, &group.inverse_beta)
+                follow::<S, LANES, false>(v, &mut plays, &mut slips, &group.inverse_beta)
             };
             (*play, *slip) = (plays, slips);
             z.copy_from_slice(&outputs[..z.len()]);
@@ -368,6 +367,9 @@ impl MemoryLayer {
         z: &mut [Row],
         ln_tau: &mut [Row],
     ) {
+        if self.relaxation.is_empty() {
+            return;
+        }
         let mut factors = [Row([0.0; BLOCK]); 3];
         let [left, gain, by_ln_tau] = &mut factors;
         let reached = whole_lanes(rows);
@@ -427,17 +429,17 @@ fn remaining_strength<S: Simd>(slip: f64, inverse_beta: f64) -> f64 {
     if strength > 0.0 { strength } else { 0.0 }
 }
 
-/// Moves the stops of a group to the inputs `v`, and returns their outputs.
+/// Moves the first `L` stops of a group to the inputs `v`, and returns their outputs.
 #[inline(always)]
-fn follow<S: Simd, const DETERIORATING: bool>(
-    v: Lanes,
-    play: &mut Lanes,
-    slip: &mut Lanes,
-    inverse_beta: &Lanes,
-) -> Lanes {
-    let mut outputs = [0.0; LANES];
+fn follow<S: Simd, const L: usize, const DETERIORATING: bool>(
+    v: [f64; L],
+    play: &mut [f64; L],
+    slip: &mut [f64; L],
+    inverse_beta: &[f64; L],
+) -> [f64; L] {
+    let mut outputs = [0.0; L];
     // A plain loop, which becomes vectors; a closure for each lane does not.
-    for l in 0..LANES {
+    for l in 0..L {
         let before = play[l];
         let after = play::follow(before, v[l], 1.0);
         play[l] = after;
@@ -451,47 +453,56 @@ fn follow<S: Simd, const DETERIORATING: bool>(
     outputs
 }
 
-/// Advances `G` groups of stops through a block.
+/// Advances the first `L` stops of a group through a block, eight rows at a time.
 #[inline(always)]
-fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
+fn advance<S: Simd, const L: usize, const DETERIORATING: bool>(
     simd: S,
-    groups: &[Group],
-    play: &mut [Lanes],
-    slip: &mut [Lanes],
+    group: &Group,
+    (play, slip): (&mut Lanes, &mut Lanes),
     u: &[Row],
     rows: usize,
     z: &mut [Row],
 ) {
-    let mut tile = [[[0.0; LANES]; G]; BLOCK];
-    let tile = &mut tile[..whole_lanes(rows)];
     // Nearly all networks have one or two channels: their weights stay in registers.
-    let no_weights = [0.0; LANES];
-    let no_input = Row([0.0; BLOCK]);
-    let (x, second) = (&u[0], u.get(1).unwrap_or(&no_input));
-    let of_x: [Lanes; G] = std::array::from_fn(|g| groups[g].weights[0]);
-    let of_second: [Lanes; G] = std::array::from_fn(|g| *groups[g].weights.get(1).unwrap_or(&no_weights));
+    const NO_INPUT: &Row = &Row([0.0; BLOCK]);
+    let (x, second) = (&u[0], u.get(1).unwrap_or(NO_INPUT));
+    let of_x: [f64; L] = first_lanes(&group.weights[0]);
+    let of_second: [f64; L] = first_lanes(group.weights.get(1).unwrap_or(&[0.0; LANES]));
     let further = u.get(2..).unwrap_or(&[]);
-    let inverse_beta: [Lanes; G] = std::array::from_fn(|g| groups[g].inverse_beta);
-    let mut plays: [Lanes; G] = std::array::from_fn(|g| play[g]);
-    let mut slips: [Lanes; G] = std::array::from_fn(|g| slip[g]);
-    for (t, ((tile, &x), &second)) in tile[..rows].iter_mut().zip(x).zip(second).enumerate() {
-        for g in 0..G {
-            let mut v: Lanes =
-                std::array::from_fn(|l| multiply_add::<S>(of_second[g][l], second, of_x[g][l] * x));
+    let inverse_beta: [f64; L] = first_lanes(&group.inverse_beta);
+    let (mut plays, mut slips): ([f64; L], [f64; L]) = (first_lanes(play), first_lanes(slip));
+    let mut tile = [[0.0; L]; LANES];
+    for chunk in 0..rows.div_ceil(LANES) {
+        // Rows beyond the last repeat it: a stop that sees an input again rests.
+        let row = |u: &Row, t: usize| u.as_chunks::<LANES>().0[chunk][t.min(rows - chunk * LANES - 1)];
+        for (t, outputs) in tile.iter_mut().enumerate() {
+            let (x, second) = (row(x, t), row(second, t));
+            let mut v = of_x;
+            for l in 0..L {
+                v[l] = multiply_add::<S>(of_second[l], second, of_x[l] * x);
+            }
             for (u, c) in further.iter().zip(2..) {
-                for (v, &weight) in v.iter_mut().zip(&groups[g].weights[c]) {
-                    *v = multiply_add::<S>(weight, u[t], *v);
+                for (v, &weight) in v.iter_mut().zip(&group.weights[c]) {
+                    *v = multiply_add::<S>(weight, row(u, t), *v);
                 }
             }
-            tile[g] = follow::<S, DETERIORATING>(v, &mut plays[g], &mut slips[g], &inverse_beta[g]);
+            *outputs = follow::<S, L, DETERIORATING>(v, &mut plays, &mut slips, &inverse_beta);
         }
+        turn(simd, &tile, chunk, z);
     }
-    play.copy_from_slice(&plays);
-    slip.copy_from_slice(&slips);
-    for g in 0..G {
-        let live = z.len().saturating_sub(g * LANES).min(LANES);
-        turn(simd, tile, g, &mut z[g * LANES..g * LANES + live]);
-    }
+    play[..L].copy_from_slice(&plays);
+    slip[..L].copy_from_slice(&slips);
+}
+
+#[inline(always)]
+fn first_lanes<const L: usize>(lanes: &Lanes) -> [f64; L] {
+    *lanes.first_chunk().expect("no more lanes than a group has")
+}
+
+/// Turns eight rows of a block, the chunk with this number, from time-major to neuron-major.
+#[inline(always)]
+fn turn<S: Simd, const L: usize>(simd: S, tile: &[[f64; L]; LANES], chunk: usize, rows: &mut [Row]) {
+    transpose(simd, tile, rows.iter_mut().map(|row| &mut row.as_chunks_mut::<LANES>().0[chunk]));
 }
 
 /// Rows of whole vectors that hold `rows` rows. Loops run so far and no further: a loop over a whole
@@ -502,12 +513,11 @@ pub(crate) fn whole_lanes(rows: usize) -> usize {
     rows.next_multiple_of(LANES).min(BLOCK)
 }
 
-/// Turns a group's tile from time-major to neuron-major.
+/// Turns a group's values over a block from time-major to neuron-major.
 #[inline(always)]
-fn turn<S: Simd, const G: usize>(simd: S, tile: &[[Lanes; G]], g: usize, rows: &mut [Row]) {
-    for (chunk, tile) in tile.as_chunks::<LANES>().0.iter().enumerate() {
-        let group = std::array::from_fn(|t| tile[t][g]);
-        transpose(simd, &group, rows.iter_mut().map(|row| &mut row.as_chunks_mut::<LANES>().0[chunk]));
+fn turn_block<S: Simd>(simd: S, values: &[Lanes], rows: &mut [Row]) {
+    for (chunk, tile) in values.as_chunks::<LANES>().0.iter().enumerate() {
+        turn(simd, tile, chunk, rows);
     }
 }
 
@@ -540,11 +550,11 @@ fn advance_with_slopes<S: Simd>(
     let StopSlopes { z, weights, ln_beta } = outputs;
     let live = z.len().min(LANES);
     let reached = whole_lanes(rows);
-    let mut output: Tile = [[[0.0; LANES]]; BLOCK];
-    let mut by_ln_beta: Tile = [[[0.0; LANES]]; BLOCK];
-    let mut strength: Tile = [[[0.0; LANES]]; BLOCK];
-    let mut wear: Tile = [[[0.0; LANES]]; BLOCK];
-    let mut moved: Tile = [[[0.0; LANES]]; BLOCK];
+    let mut output: Tile = [[0.0; LANES]; BLOCK];
+    let mut by_ln_beta: Tile = [[0.0; LANES]; BLOCK];
+    let mut strength: Tile = [[0.0; LANES]; BLOCK];
+    let mut wear: Tile = [[0.0; LANES]; BLOCK];
+    let mut moved: Tile = [[0.0; LANES]; BLOCK];
     for t in 0..rows {
         let v = drive::<S>(group, |c| u[c][t]);
         for l in 0..LANES {
@@ -557,32 +567,32 @@ fn advance_with_slopes<S: Simd>(
             let left = remaining_strength::<S>(slip, group.inverse_beta[l]);
             let elongation = stop::elongation(v, after);
             let wears = if left > 0.0 { elongation * group.inverse_beta[l] } else { 0.0 };
-            output[t][0][l] = elongation * left;
-            strength[t][0][l] = left;
-            wear[t][0][l] = wears;
-            by_ln_beta[t][0][l] = wears * slip;
-            moved[t][0][l] = after - before;
+            output[t][l] = elongation * left;
+            strength[t][l] = left;
+            wear[t][l] = wears;
+            by_ln_beta[t][l] = wears * slip;
+            moved[t][l] = after - before;
         }
     }
-    turn(simd, &output[..reached], 0, &mut z[..live]);
+    turn_block(simd, &output[..reached], &mut z[..live]);
     if !ln_beta.is_empty() {
-        turn(simd, &by_ln_beta[..reached], 0, &mut ln_beta[..live]);
+        turn_block(simd, &by_ln_beta[..reached], &mut ln_beta[..live]);
     }
-    let mut slope: Tile = [[[0.0; LANES]]; BLOCK];
+    let mut slope: Tile = [[0.0; LANES]; BLOCK];
     for (c, u) in u.iter().enumerate() {
         let mut play_slope = memory.play_slope[c];
         let mut slip_slope = memory.slip_slope[c];
         for (t, &u) in u[..rows].iter().enumerate() {
             for l in 0..LANES {
                 let before = play_slope[l];
-                let after = if moved[t][0][l] != 0.0 { u } else { before };
+                let after = if moved[t][l] != 0.0 { u } else { before };
                 play_slope[l] = after;
-                slip_slope[l] += if moved[t][0][l] > 0.0 { after - before } else { before - after };
-                slope[t][0][l] = strength[t][0][l] * (u - after) - wear[t][0][l] * slip_slope[l];
+                slip_slope[l] += if moved[t][l] > 0.0 { after - before } else { before - after };
+                slope[t][l] = strength[t][l] * (u - after) - wear[t][l] * slip_slope[l];
             }
         }
         memory.play_slope[c] = play_slope;
         memory.slip_slope[c] = slip_slope;
-        turn(simd, &slope[..reached], 0, &mut weights[c * live..(c + 1) * live]);
+        turn_block(simd, &slope[..reached], &mut weights[c * live..(c + 1) * live]);
     }
 }

@@ -10,25 +10,28 @@ use pulp::Simd;
 /// Left to itself, the compiler writes the generic form with gathers and scatters under AVX-512, and a
 /// simulation takes half as long again.
 #[inline(always)]
-pub(crate) fn transpose<'a, S: Simd>(
+pub(crate) fn transpose<'a, S: Simd, const L: usize>(
     simd: S,
-    rows: &[[f64; 8]; 8],
+    rows: &[[f64; L]; 8],
     columns: impl ExactSizeIterator<Item = &'a mut [f64; 8]>,
 ) {
     #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = (&simd as &dyn std::any::Any).downcast_ref::<pulp::x86::V4>() {
-        // Two columns need about half of the shuffles.
-        if columns.len() <= 2 {
-            store(by_shuffles(*simd, rows), columns.take(2));
-        } else {
-            store(by_shuffles(*simd, rows), columns);
+    {
+        let simd = &simd as &dyn std::any::Any;
+        let v4 = simd.downcast_ref::<pulp::x86::V4>();
+        if let Some(simd) = v4.filter(|_| L == 8) {
+            // Two columns need about half of the shuffles.
+            if columns.len() <= 2 {
+                store(by_shuffles(*simd, rows), columns.take(2));
+            } else {
+                store(by_shuffles(*simd, rows), columns);
+            }
+            return;
         }
-        return;
-    }
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = (&simd as &dyn std::any::Any).downcast_ref::<pulp::x86::V3>() {
-        store_tiles(*simd, rows, columns);
-        return;
+        if let Some(simd) = simd.downcast_ref::<pulp::x86::V3>().or(v4.map(|simd| &**simd)) {
+            store_tiles(*simd, rows, columns);
+            return;
+        }
     }
     let _ = simd;
     for (index, column) in columns.enumerate() {
@@ -52,9 +55,9 @@ const EDGE: usize = 4;
 /// Turns tiles of four by four numbers, of the columns that there are.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn store_tiles<'a>(
+fn store_tiles<'a, const L: usize>(
     simd: pulp::x86::V3,
-    rows: &[[f64; 8]; 8],
+    rows: &[[f64; L]; 8],
     mut columns: impl ExactSizeIterator<Item = &'a mut [f64; 8]>,
 ) {
     let mut first = 0;
@@ -74,9 +77,9 @@ fn store_tiles<'a>(
 /// The columns of the tile of four by four numbers that begins at a row and a column.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn tile_by_shuffles(
+fn tile_by_shuffles<const L: usize>(
     simd: pulp::x86::V3,
-    rows: &[[f64; 8]; 8],
+    rows: &[[f64; L]; 8],
     row: usize,
     column: usize,
 ) -> [std::arch::x86_64::__m256d; EDGE] {
@@ -99,12 +102,12 @@ fn tile_by_shuffles(
 
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn by_shuffles(simd: pulp::x86::V4, rows: &[[f64; 8]; 8]) -> [std::arch::x86_64::__m512d; 8] {
+fn by_shuffles<const L: usize>(simd: pulp::x86::V4, rows: &[[f64; L]; 8]) -> [std::arch::x86_64::__m512d; 8] {
     use std::arch::x86_64::__m512d;
     const EVEN: i32 = 0b10_00_10_00;
     const ODD: i32 = 0b11_01_11_01;
     let avx = simd.avx512f;
-    let r: [__m512d; 8] = from_fn(|k| pulp::cast(rows[k]));
+    let r: [__m512d; 8] = from_fn(|k| pulp::cast(pulp::x86::V4::as_simd_f64s(&rows[k]).0[0]));
     // Pairs of rows: four columns of two rows in each, even columns apart from odd ones.
     let mut turned = [r[0]; 8];
     for parity in 0..2 {
