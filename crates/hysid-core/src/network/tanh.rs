@@ -27,19 +27,39 @@ const CUBIC_AND_UP: [f64; 6] = [
 /// tanh, for finite `x`.
 #[inline(always)]
 pub(crate) fn tanh<S: Simd>(x: f64) -> f64 {
-    let magnitude = x.abs();
-    // tanh 20 rounds to 1.
-    let a = if magnitude < 20.0 { magnitude } else { 20.0 };
-    let (k, power) = nearest_power::<S>(a, 2.0 * std::f64::consts::LOG2_E);
-    let s = multiply_add::<S>(-k, 0.5 * std::f64::consts::LN_2, a);
-    let square = s * s;
-    let mut cubic = CUBIC_AND_UP[0];
-    for &coefficient in &CUBIC_AND_UP[1..] {
-        cubic = multiply_add::<S>(cubic, square, coefficient);
+    let [y] = tanh_of_each::<S, 1>([x]);
+    y
+}
+
+/// tanh of some finite numbers, step by step for all of them, so that less waits for the operation before.
+///
+/// Loops and no closures: one that is called twice need not be inlined, and is then not compiled for the instruction set.
+#[inline(always)]
+pub(crate) fn tanh_of_each<S: Simd, const N: usize>(x: [f64; N]) -> [f64; N] {
+    let (mut power, mut s, mut square, mut t, mut y) = (x, x, x, x, x);
+    for n in 0..N {
+        let magnitude = x[n].abs();
+        // tanh 20 rounds to 1.
+        let a = if magnitude < 20.0 { magnitude } else { 20.0 };
+        let (k, power_of_k) = nearest_power::<S>(a, 2.0 * std::f64::consts::LOG2_E);
+        power[n] = power_of_k;
+        s[n] = multiply_add::<S>(-k, 0.5 * std::f64::consts::LN_2, a);
+        square[n] = s[n] * s[n];
     }
-    let t = multiply_add::<S>(square * s, cubic, s);
-    let (less, more) = (power - 1.0, power + 1.0);
-    (multiply_add::<S>(more, t, less) / multiply_add::<S>(less, t, more)).copysign(x)
+    let mut cubic = [CUBIC_AND_UP[0]; N];
+    for &coefficient in &CUBIC_AND_UP[1..] {
+        for n in 0..N {
+            cubic[n] = multiply_add::<S>(cubic[n], square[n], coefficient);
+        }
+    }
+    for n in 0..N {
+        t[n] = multiply_add::<S>(square[n] * s[n], cubic[n], s[n]);
+    }
+    for n in 0..N {
+        let (less, more) = (power[n] - 1.0, power[n] + 1.0);
+        y[n] = (multiply_add::<S>(more, t[n], less) / multiply_add::<S>(less, t[n], more)).copysign(x[n]);
+    }
+    y
 }
 
 #[cfg(test)]
