@@ -3,8 +3,11 @@
 
 mod blocked_cholesky;
 pub mod dilated_space;
+mod few_columns;
 
 use pulp::{Simd, WithSimd};
+
+pub use few_columns::FewColumns;
 
 use crate::simd::{self, LANES, multiply_add_lanes, sum_of_lanes};
 use crate::stop_check::{Pace, StopCheck};
@@ -103,9 +106,9 @@ impl Gram {
         simd.vectorize(AddBatch { gram: self, batch, pace });
     }
 
-    /// Scalar products of four columns with `N` others, all sums in registers.
+    /// Scalar products of four columns with `N` others; of the four with themselves those of the lower triangle.
     #[inline(always)]
-    fn add_tile<S: Simd, const N: usize>(
+    fn add_tile<S: Simd, const N: usize, const SAME: bool>(
         &mut self,
         simd: S,
         first: usize,
@@ -113,7 +116,11 @@ impl Gram {
         second: usize,
         right: [&[S::f64s]; N],
     ) {
-        let sums = products_of_columns(simd, left, right);
+        self.add_sums(first, second, products_of_columns::<S, TILE, N, SAME>(simd, left, right));
+    }
+
+    #[inline(always)]
+    fn add_sums<const N: usize>(&mut self, first: usize, second: usize, sums: [[f64; N]; TILE]) {
         for (i, sums) in sums.into_iter().enumerate() {
             for (j, sum) in sums.into_iter().enumerate() {
                 self.data[(first + i) * self.stride + second + j] += sum;
@@ -122,38 +129,60 @@ impl Gram {
     }
 }
 
-/// Scalar products of `M` columns with `N` others, in whole groups of [`LANES`] rows, all sums in registers.
+/// Scalar products of `M` columns with `N` others, in whole groups of [`LANES`] rows; if they are the `SAME`, those of the
+/// lower triangle, and zeros.
 ///
 /// Vectors that are shorter than a group take its parts in turns, so that the partial sums are the same.
 #[inline(always)]
-fn products_of_columns<S: Simd, const M: usize, const N: usize>(
+fn products_of_columns<S: Simd, const M: usize, const N: usize, const SAME: bool>(
     simd: S,
     left: [&[S::f64s]; M],
     right: [&[S::f64s]; N],
 ) -> [[f64; N]; M] {
-    let length = left[0].len();
-    let left = left.map(|column| &column[..length]);
-    let right = right.map(|column| &column[..length]);
     let parts = LANES / S::F64_LANES;
     let mut lanes = [[[0.0; LANES]; N]; M];
+    let mut total = [[0.0; N]; M];
     for part in 0..parts {
-        let mut sums = [[simd.splat_f64s(0.0); N]; M];
-        for k in (part..length).step_by(parts) {
-            let b: [S::f64s; N] = std::array::from_fn(|j| right[j][k]);
-            for (sums, left) in sums.iter_mut().zip(left) {
-                for j in 0..N {
-                    sums[j] = multiply_add_lanes(simd, left[k], b[j], sums[j]);
+        let zeros = [[simd.splat_f64s(0.0); N]; M];
+        let sums = add_products::<S, M, N, SAME>(simd, part, left, right, zeros);
+        for i in 0..M {
+            for j in 0..N {
+                S::as_mut_simd_f64s(&mut lanes[i][j]).0[part] = sums[i][j];
+                total[i][j] = sum_of_lanes(simd, &lanes[i][j]);
+            }
+        }
+    }
+    total
+}
+
+/// Adds products of `M` columns with `N` others to one part of their partial sums, all in registers.
+#[inline(always)]
+fn add_products<S: Simd, const M: usize, const N: usize, const SAME: bool>(
+    simd: S,
+    part: usize,
+    left: [&[S::f64s]; M],
+    right: [&[S::f64s]; N],
+    mut sums: [[S::f64s; N]; M],
+) -> [[S::f64s; N]; M] {
+    // No closures: one that is called twice need not be inlined, and is then not compiled for the instruction set.
+    let length = left[0].len();
+    let (mut a, mut b) = (left, right);
+    for i in 0..M {
+        a[i] = &left[i][..length];
+    }
+    for j in 0..N {
+        b[j] = &right[j][..length];
+    }
+    for k in (part..length).step_by(LANES / S::F64_LANES) {
+        for i in 0..M {
+            for j in 0..N {
+                if !SAME || j <= i {
+                    sums[i][j] = multiply_add_lanes(simd, a[i][k], b[j][k], sums[i][j]);
                 }
             }
         }
-        if parts == 1 {
-            return sums.map(|sums| sums.map(|sum| simd.reduce_sum_f64s(sum)));
-        }
-        for (lanes, sums) in lanes.iter_mut().flatten().zip(sums.into_iter().flatten()) {
-            S::as_mut_simd_f64s(lanes).0[part] = sums;
-        }
     }
-    lanes.map(|lanes| lanes.map(sum_of_lanes))
+    sums
 }
 
 struct AddBatch<'a, 's> {
@@ -184,16 +213,17 @@ impl WithSimd for AddBatch<'_, '_> {
                 break;
             }
             let left = columns(first);
-            for second in (0..=first).step_by(TILE) {
+            for second in (0..first).step_by(TILE) {
                 let right = columns(second);
                 if S::REGISTER_COUNT >= 32 {
-                    gram.add_tile::<S, TILE>(simd, first, left, second, right);
+                    gram.add_tile::<S, TILE, false>(simd, first, left, second, right);
                 } else {
                     let halves = [[right[0], right[1]], [right[2], right[3]]];
-                    gram.add_tile::<S, 2>(simd, first, left, second, halves[0]);
-                    gram.add_tile::<S, 2>(simd, first, left, second + 2, halves[1]);
+                    gram.add_tile::<S, 2, false>(simd, first, left, second, halves[0]);
+                    gram.add_tile::<S, 2, false>(simd, first, left, second + 2, halves[1]);
                 }
             }
+            gram.add_tile::<S, TILE, true>(simd, first, left, first, left);
         }
         batch.clear();
     }

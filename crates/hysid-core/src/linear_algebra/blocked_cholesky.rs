@@ -72,7 +72,7 @@ fn divide_tile<S: Simd>(simd: S, tile: &mut [f64], n: usize, column: usize, othe
     {
         let whole = column / LANES * LANES;
         let left: [&[f64]; TILE] = std::array::from_fn(|k| &tile[k * n..k * n + column]);
-        let lanes = products_of_columns(
+        let lanes = products_of_columns::<S, _, _, false>(
             simd,
             left.map(|row| S::as_simd_f64s(&row[..whole]).0),
             others.map(|row| S::as_simd_f64s(&row[..whole]).0),

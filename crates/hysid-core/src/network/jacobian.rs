@@ -24,7 +24,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use crate::linear_algebra::{Batch, Gram};
+use crate::linear_algebra::{Batch, FewColumns, Gram};
 use crate::network::memory::{BLOCK, Row};
 use crate::network::readout::{Backward, Readout};
 use crate::network::sweep::{Block, Drive, TakeBlock, Walk};
@@ -125,12 +125,17 @@ impl WithSimd for GramOverRecords<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Gram {
         let n = self.columns.count();
-        let gathered = Gathered { gram: Gram::new(n), batch: Batch::new(n), pace: Pace::new(self.stop) };
+        let many = || Gathered::Many { gram: Gram::new(n), batch: Batch::new(n), pace: Pace::new(self.stop) };
+        let gathered = FewColumns::new(n).map_or_else(many, Gathered::Few);
         let mut taken = ColumnsOfBlock::new(self.columns, gathered);
         self.columns.walk(self.stop).over(simd, self.drives, self.targets, &mut taken);
-        let Gathered { mut gram, mut batch, mut pace } = taken.to;
-        gram.add(simd, &mut batch, &mut pace);
-        gram
+        match taken.to {
+            Gathered::Few(few) => few.gram(simd),
+            Gathered::Many { mut gram, mut batch, mut pace } => {
+                gram.add(simd, &mut batch, &mut pace);
+                gram
+            }
+        }
     }
 }
 
@@ -139,19 +144,24 @@ trait TakeRows {
     fn take<'r, S: Simd>(&mut self, simd: S, rows: usize, columns: impl Iterator<Item = &'r Row>);
 }
 
-struct Gathered<'a> {
-    gram: Gram,
-    batch: Batch,
-    pace: Pace<'a>,
+/// The Gram matrix of the rows so far.
+enum Gathered<'a> {
+    Few(FewColumns),
+    Many { gram: Gram, batch: Batch, pace: Pace<'a> },
 }
 
 impl TakeRows for Gathered<'_> {
     #[inline(always)]
     fn take<'r, S: Simd>(&mut self, simd: S, rows: usize, columns: impl Iterator<Item = &'r Row>) {
-        if self.batch.free() < rows {
-            self.gram.add(simd, &mut self.batch, &mut self.pace);
+        match self {
+            Self::Few(few) => few.add(simd, columns, rows),
+            Self::Many { gram, batch, pace } => {
+                if batch.free() < rows {
+                    gram.add(simd, batch, pace);
+                }
+                batch.append(columns, rows);
+            }
         }
-        self.batch.append(columns, rows);
     }
 }
 
@@ -209,7 +219,8 @@ impl WithSimd for RowsOverRecords<'_> {
 struct ColumnsOfBlock<'a, T> {
     spec: Columns<'a>,
     layout: Layout,
-    backward: Backward,
+    /// If a Jacobian is wanted.
+    backward: Option<Backward>,
     constant: Row,
     jacobian: Vec<Row>,
     to: T,
@@ -220,7 +231,7 @@ impl<'a, T> ColumnsOfBlock<'a, T> {
         Self {
             spec,
             layout: Layout::new(*spec.architecture),
-            backward: Backward::new(spec.architecture),
+            backward: spec.output.map(|_| Backward::new(spec.architecture)),
             constant: Row([1.0; BLOCK]),
             jacobian: vec![Row([0.0; BLOCK]); if spec.output.is_some() { spec.parameters.len() } else { 0 }],
             to,
@@ -229,18 +240,19 @@ impl<'a, T> ColumnsOfBlock<'a, T> {
 
     /// Columns of the Jacobian: the derivatives of the module page, by theory.md (2.11).
     #[inline(always)]
-    fn jacobian<S: Simd>(&mut self, output: &[f64], block: &Block, readout: &Readout) {
+    fn jacobian<S: Simd>(&mut self, block: &Block, readout: &Readout) {
+        let (Some(output), Some(backward)) = (self.spec.output, &mut self.backward) else { return };
         let jacobian = &mut self.jacobian;
         let Block { u, z, slopes, .. } = block;
-        self.backward.run::<S>(readout, output, &Row([1.0; BLOCK]), block);
+        backward.run::<S>(readout, output, &Row([1.0; BLOCK]), block);
         let by_neuron = &mut jacobian[self.layout.hidden.clone()];
-        for (columns, slope) in by_neuron.chunks_exact_mut(1 + z.len()).zip(&self.backward.by_sum) {
+        for (columns, slope) in by_neuron.chunks_exact_mut(1 + z.len()).zip(&backward.by_sum) {
             columns[0] = *slope;
             for (column, z) in columns[1..].iter_mut().zip(z) {
                 product(slope, z, column);
             }
         }
-        let (linear, rest) = self.backward.by_memory.split_at(usize::from(!self.layout.linear.is_empty()));
+        let (linear, rest) = backward.by_memory.split_at(usize::from(!self.layout.linear.is_empty()));
         let (stops, relaxation) = rest.split_at(self.spec.architecture.stops);
         let channels = u.len();
         for (k, column) in jacobian[self.layout.stop_weights.clone()].iter_mut().enumerate() {
@@ -262,9 +274,7 @@ impl<'a, T> ColumnsOfBlock<'a, T> {
 impl<T: TakeRows> TakeBlock for ColumnsOfBlock<'_, T> {
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, rows: usize, block: &Block, readout: &Readout) {
-        if let Some(output) = self.spec.output {
-            self.jacobian::<S>(output, block, readout);
-        }
+        self.jacobian::<S>(block, readout);
         let features = readout.features(&self.constant, &block.z, &block.h);
         let columns = features.chain(std::iter::once(&block.target)).chain(&self.jacobian);
         self.to.take(simd, rows, columns);
