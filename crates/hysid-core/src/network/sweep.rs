@@ -154,7 +154,7 @@ impl<'a> Workspace<'a> {
     #[inline(always)]
     fn record<S: Simd>(&mut self, simd: S, drive: &Drive, target: &[f64], to: &mut impl TakeBlock) {
         let mut state = self.memory.virgin();
-        let mut sensitivity = self.memory.virgin_sensitivity();
+        let mut sensitivity = self.with_slopes.then(|| self.memory.virgin_sensitivity());
         let mut steps = Row([0.0; BLOCK]);
         for start in (0..drive.len()).step_by(BLOCK) {
             if self.pace.is_over(self.operations) {
@@ -169,20 +169,21 @@ impl<'a> Workspace<'a> {
             if !drive.steps.is_empty() {
                 steps[..rows].copy_from_slice(&drive.steps[start..start + rows]);
             }
-            self.block.target[..rows].copy_from_slice(&target[start..start + rows]);
-            simd.vectorize(Advance {
-                memory: &self.memory,
-                state: &mut state,
-                sensitivity: self.with_slopes.then_some(&mut sensitivity),
-                block: &mut self.block,
-                steps: &steps,
-                rows,
-            });
-            let wanted = self.block.target[..rows].iter().filter(|y| !y.is_nan()).count();
+            let mut wanted = 0;
+            for (to, &y) in self.block.target.iter_mut().zip(&target[start..start + rows]) {
+                *to = y;
+                wanted += usize::from(!y.is_nan());
+            }
+            let (memory, state, steps) = (&self.memory, &mut state, &steps);
+            let block = &mut self.block;
+            match &mut sensitivity {
+                Some(sensitivity) => {
+                    simd.vectorize(AdvanceWithSlopes { memory, state, sensitivity, block, steps, rows });
+                }
+                None => simd.vectorize(Advance { memory, state, block, steps, rows }),
+            }
             if wanted == BLOCK && self.filled == 0 {
-                std::mem::swap(&mut self.block, &mut self.pending);
-                self.filled = BLOCK;
-                self.flush(simd, to);
+                simd.vectorize(HandOn { readout: &self.readout, block: &mut self.block, rows, to });
                 continue;
             }
             if wanted == 0 {
@@ -214,8 +215,6 @@ impl<'a> Workspace<'a> {
 struct Advance<'w> {
     memory: &'w MemoryLayer,
     state: &'w mut MemoryState,
-    /// If slopes are wanted.
-    sensitivity: Option<&'w mut Sensitivity>,
     block: &'w mut Block,
     steps: &'w Row,
     rows: usize,
@@ -226,14 +225,29 @@ impl WithSimd for Advance<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        let Block { u, z, .. } = self.block;
+        self.memory.forward(simd, self.state, u, self.steps, self.rows, z);
+    }
+}
+
+/// The same with all derivatives. An operation of its own: its tiles would make the stack of the other one large.
+struct AdvanceWithSlopes<'w> {
+    memory: &'w MemoryLayer,
+    state: &'w mut MemoryState,
+    sensitivity: &'w mut Sensitivity,
+    block: &'w mut Block,
+    steps: &'w Row,
+    rows: usize,
+}
+
+impl WithSimd for AdvanceWithSlopes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { memory, state, sensitivity, block, steps, rows } = self;
         let Block { u, z, slopes, .. } = block;
-        match sensitivity {
-            Some(sensitivity) => {
-                memory.forward_with_slopes(simd, state, sensitivity, u, steps, rows, z, slopes);
-            }
-            None => memory.forward(simd, state, u, steps, rows, z),
-        }
+        memory.forward_with_slopes(simd, state, sensitivity, u, steps, rows, z, slopes);
     }
 }
 
