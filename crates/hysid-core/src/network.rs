@@ -72,7 +72,7 @@ use pulp::{Simd, WithSimd};
 
 use crate::error::{Error, Result};
 use crate::simd;
-use memory::{BLOCK, LARGEST_SCALED, MemoryLayer, Row};
+use memory::{BLOCK, MemoryLayer, Row, limited};
 use readout::{Readout, SampleReadout};
 
 /// Largest magnitude of an output weight, which keeps a free run finite.
@@ -210,12 +210,6 @@ impl Simulator {
     }
 }
 
-#[inline(always)]
-fn limited(u: f64) -> f64 {
-    let low = if u > -LARGEST_SCALED { u } else { -LARGEST_SCALED };
-    if low < LARGEST_SCALED { low } else { LARGEST_SCALED }
-}
-
 struct Run<'a> {
     simulator: &'a mut Simulator,
     u: &'a [&'a [f64]],
@@ -233,9 +227,7 @@ impl WithSimd for Run<'_> {
         for (index, y) in self.y.chunks_mut(BLOCK).enumerate() {
             let (start, rows) = (index * BLOCK, y.len());
             for (block, u) in self.simulator.u.iter_mut().zip(self.u) {
-                for (block, &u) in block.iter_mut().zip(&u[start..start + rows]) {
-                    *block = limited(u);
-                }
+                block.take_channel(&u[start..start + rows]);
             }
             if !self.steps.is_empty() {
                 steps[..rows].copy_from_slice(&self.steps[start..start + rows]);

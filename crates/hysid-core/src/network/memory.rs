@@ -52,6 +52,28 @@ impl<'a> IntoIterator for &'a Row {
     }
 }
 
+impl Row {
+    /// Takes some numbers of a channel. Rows beyond the last repeat it, up to whole vectors: a stop that sees an input
+    /// again rests.
+    #[inline(always)]
+    pub fn take_channel(&mut self, u: &[f64]) {
+        for (to, &u) in self.0.iter_mut().zip(u) {
+            *to = limited(u);
+        }
+        let rows = u.len();
+        if rows < whole_lanes(rows) {
+            let last = self.0[rows - 1];
+            self.0[rows..whole_lanes(rows)].fill(last);
+        }
+    }
+}
+
+#[inline(always)]
+pub(crate) fn limited(u: f64) -> f64 {
+    let low = if u > -LARGEST_SCALED { u } else { -LARGEST_SCALED };
+    if low < LARGEST_SCALED { low } else { LARGEST_SCALED }
+}
+
 impl AsRef<[f64; BLOCK]> for Row {
     #[inline(always)]
     fn as_ref(&self) -> &[f64; BLOCK] {
@@ -87,7 +109,7 @@ type Tile = [Lanes; BLOCK];
 
 /// Largest magnitude of a scaled input. Beyond it, far outside anything trained on, the input is
 /// taken as this, so that no sum of products overflows whatever the parameters.
-pub(crate) const LARGEST_SCALED: f64 = 1e50;
+const LARGEST_SCALED: f64 = 1e50;
 
 #[derive(Debug, Clone)]
 pub(crate) struct MemoryLayer {
@@ -209,8 +231,8 @@ impl MemoryLayer {
         usize::from(self.linear.is_some()) + self.stops + self.relaxation.len()
     }
 
-    /// Advances by `rows` rows of scaled inputs `u` (by channel), and writes every neuron's output
-    /// into `z`.
+    /// Advances by `rows` rows of scaled inputs `u` (by channel, as [`Row::take_channel`] takes them), and writes
+    /// every neuron's output into `z`.
     ///
     /// `steps` are the time steps before each row, 0 at the start of a record; empty without
     /// relaxation neurons.
@@ -229,16 +251,34 @@ impl MemoryLayer {
         self.begin::<S>(state, |c| u[c][0]);
         let memory = state.play.iter_mut().zip(&mut state.slip);
         for ((group, memory), z) in self.groups.iter().zip(memory).zip(stops.chunks_mut(LANES)) {
-            match (z.len() <= HALF, self.deteriorating) {
-                (false, true) => advance::<S, LANES, true>(simd, group, memory, u, rows, z),
-                (false, false) => advance::<S, LANES, false>(simd, group, memory, u, rows, z),
-                (true, true) => advance::<S, HALF, true>(simd, group, memory, u, rows, z),
-                (true, false) => advance::<S, HALF, false>(simd, group, memory, u, rows, z),
+            if z.len() > HALF {
+                self.advance::<S, LANES>(simd, group, memory, u, rows, z);
+            } else {
+                self.advance::<S, HALF>(simd, group, memory, u, rows, z);
             }
         }
         self.run_linear::<S>(u, rows, linear);
         self.relax::<S>(state, None, u, steps, rows, stress, &mut []);
         self.remember(state, u, rows);
+    }
+
+    /// Advances the first `L` stops of a group through a block.
+    #[inline(always)]
+    fn advance<S: Simd, const L: usize>(
+        &self,
+        simd: S,
+        group: &Group,
+        memory: (&mut Lanes, &mut Lanes),
+        u: &[Row],
+        rows: usize,
+        z: &mut [Row],
+    ) {
+        match (self.deteriorating, self.channels > 2) {
+            (true, true) => advance::<S, L, true, true>(simd, group, memory, u, rows, z),
+            (true, false) => advance::<S, L, true, false>(simd, group, memory, u, rows, z),
+            (false, true) => advance::<S, L, false, true>(simd, group, memory, u, rows, z),
+            (false, false) => advance::<S, L, false, false>(simd, group, memory, u, rows, z),
+        }
     }
 
     /// [`MemoryLayer::forward`] for one row, to the last bit: one value for each channel and each neuron.
@@ -453,9 +493,9 @@ fn follow<S: Simd, const L: usize, const DETERIORATING: bool>(
     outputs
 }
 
-/// Advances the first `L` stops of a group through a block, eight rows at a time.
+/// Advances the first `L` stops of a group through a block, eight rows at a time; `MANY` channels are more than two.
 #[inline(always)]
-fn advance<S: Simd, const L: usize, const DETERIORATING: bool>(
+fn advance<S: Simd, const L: usize, const DETERIORATING: bool, const MANY: bool>(
     simd: S,
     group: &Group,
     (play, slip): (&mut Lanes, &mut Lanes),
@@ -472,21 +512,21 @@ fn advance<S: Simd, const L: usize, const DETERIORATING: bool>(
     let inverse_beta: [f64; L] = first_lanes(&group.inverse_beta);
     let (mut plays, mut slips): ([f64; L], [f64; L]) = (first_lanes(play), first_lanes(slip));
     let mut tile = [[0.0; L]; LANES];
-    for chunk in 0..rows.div_ceil(LANES) {
-        // Rows beyond the last repeat it: a stop that sees an input again rests.
-        let row = |u: &Row, t: usize| u.as_chunks::<LANES>().0[chunk][t.min(rows - chunk * LANES - 1)];
-        for (t, outputs) in tile.iter_mut().enumerate() {
-            let (x, second) = (row(x, t), row(second, t));
+    let inputs = x.as_chunks::<LANES>().0.iter().zip(second.as_chunks::<LANES>().0);
+    for (chunk, (x, second)) in inputs.enumerate().take(rows.div_ceil(LANES)) {
+        for t in 0..LANES {
             let mut v = of_x;
             for l in 0..L {
-                v[l] = multiply_add::<S>(of_second[l], second, of_x[l] * x);
+                v[l] = multiply_add::<S>(of_second[l], second[t], of_x[l] * x[t]);
             }
-            for (u, c) in further.iter().zip(2..) {
-                for (v, &weight) in v.iter_mut().zip(&group.weights[c]) {
-                    *v = multiply_add::<S>(weight, row(u, t), *v);
+            if MANY {
+                for (u, c) in further.iter().zip(2..) {
+                    for (v, &weight) in v.iter_mut().zip(&group.weights[c]) {
+                        *v = multiply_add::<S>(weight, u.as_chunks::<LANES>().0[chunk][t], *v);
+                    }
                 }
             }
-            *outputs = follow::<S, L, DETERIORATING>(v, &mut plays, &mut slips, &inverse_beta);
+            tile[t] = follow::<S, L, DETERIORATING>(v, &mut plays, &mut slips, &inverse_beta);
         }
         turn(simd, &tile, chunk, z);
     }

@@ -10,9 +10,9 @@
 use pulp::{Simd, WithSimd};
 
 use crate::data::polyline::steps_between;
+use crate::network::Architecture;
 use crate::network::memory::{BLOCK, MemoryLayer, MemorySlopes, MemoryState, Row, Sensitivity};
 use crate::network::readout::Readout;
-use crate::network::{Architecture, limited};
 use crate::stop_check::{Pace, StopCheck};
 
 /// Scaled inputs of a network over a record, with time steps.
@@ -162,9 +162,7 @@ impl<'a> Workspace<'a> {
             }
             let rows = BLOCK.min(drive.len() - start);
             for (block, channel) in self.block.u.iter_mut().zip(&drive.channels) {
-                for (block, &u) in block.iter_mut().zip(&channel[start..start + rows]) {
-                    *block = limited(u);
-                }
+                block.take_channel(&channel[start..start + rows]);
             }
             if !drive.steps.is_empty() {
                 steps[..rows].copy_from_slice(&drive.steps[start..start + rows]);
