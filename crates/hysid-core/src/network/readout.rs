@@ -12,7 +12,7 @@ use pulp::Simd;
 
 use crate::network::memory::{BLOCK, LANES, Lanes, Row};
 use crate::network::sweep::Block;
-use crate::network::tanh::{tanh, tanh_of_each};
+use crate::network::tanh::{tanh, tanh_of_row};
 use crate::network::{Architecture, Layout};
 use crate::simd::{multiply_add, multiply_add_lanes};
 
@@ -62,17 +62,18 @@ impl Readout {
         let vectors = rows.div_ceil(S::F64_LANES);
         let reached = vectors * S::F64_LANES;
         let mut i = 0;
+        let (mut rest, mut power) = (Row([0.0; BLOCK]), Row([0.0; BLOCK]));
         let (pairs, last) = h[..self.hidden].as_chunks_mut::<2>();
-        for pair in pairs {
-            let [first, second] = &mut *pair;
+        for [first, second] in pairs {
             weighted_sums(simd, z, [self.neuron(i), self.neuron(i + 1)], vectors, [first, second]);
-            // The divisions of these neurons run beside the sums of the next ones.
-            apply_tanh::<S, 2>(pair, reached);
+            for neuron in [first, second] {
+                tanh_of_row::<S>(&mut neuron[..reached], &mut rest[..reached], &mut power[..reached]);
+            }
             i += 2;
         }
         if let [last] = last {
             weighted_sums(simd, z, [self.neuron(i)], vectors, [&mut *last]);
-            apply_tanh::<S, 1>(std::array::from_mut(last), reached);
+            tanh_of_row::<S>(&mut last[..reached], &mut rest[..reached], &mut power[..reached]);
         }
     }
 
@@ -150,22 +151,6 @@ impl Backward {
 fn accumulate<S: Simd>(factor: f64, x: &[f64], y: &mut [f64]) {
     for (y, &x) in y.iter_mut().zip(x) {
         *y = multiply_add::<S>(factor, x, *y);
-    }
-}
-
-/// Applies tanh to the first `reached` rows of some neurons, which advance together.
-#[inline(always)]
-#[allow(clippy::needless_range_loop, reason = "a row of several neurons")]
-fn apply_tanh<S: Simd, const K: usize>(neurons: &mut [Row; K], reached: usize) {
-    for t in 0..reached.min(BLOCK) {
-        let mut y = [0.0; K];
-        for k in 0..K {
-            y[k] = neurons[k][t];
-        }
-        y = tanh_of_each::<S, K>(y);
-        for k in 0..K {
-            neurons[k][t] = y[k];
-        }
     }
 }
 

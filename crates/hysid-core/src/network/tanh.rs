@@ -27,39 +27,50 @@ const CUBIC_AND_UP: [f64; 6] = [
 /// tanh, for finite `x`.
 #[inline(always)]
 pub(crate) fn tanh<S: Simd>(x: f64) -> f64 {
-    let [y] = tanh_of_each::<S, 1>([x]);
-    y
+    let (rest, power) = reduced::<S>(x);
+    combined::<S>(tanh_of_rest::<S>(rest), power, x)
 }
 
-/// tanh of some finite numbers, step by step for all of them, so that less waits for the operation before.
+/// Replaces the numbers of a row, which must be finite, by their tanh; `rest` and `power` are room for intermediate results.
 ///
-/// Loops and no closures: one that is called twice need not be inlined, and is then not compiled for the instruction set.
+/// Three short loops, whose vectors wait less for each other's operations than those of a long one.
 #[inline(always)]
-pub(crate) fn tanh_of_each<S: Simd, const N: usize>(x: [f64; N]) -> [f64; N] {
-    let (mut power, mut s, mut square, mut t, mut y) = (x, x, x, x, x);
-    for n in 0..N {
-        let magnitude = x[n].abs();
-        // tanh 20 rounds to 1.
-        let a = if magnitude < 20.0 { magnitude } else { 20.0 };
-        let (k, power_of_k) = nearest_power::<S>(a, 2.0 * std::f64::consts::LOG2_E);
-        power[n] = power_of_k;
-        s[n] = multiply_add::<S>(-k, 0.5 * std::f64::consts::LN_2, a);
-        square[n] = s[n] * s[n];
+pub(crate) fn tanh_of_row<S: Simd>(x: &mut [f64], rest: &mut [f64], power: &mut [f64]) {
+    for ((&x, rest), power) in x.iter().zip(&mut *rest).zip(&mut *power) {
+        let (s, power_of_k) = reduced::<S>(x);
+        (*rest, *power) = (tanh_of_rest::<S>(s), power_of_k);
     }
-    let mut cubic = [CUBIC_AND_UP[0]; N];
+    for ((x, &t), &power) in x.iter_mut().zip(&*rest).zip(&*power) {
+        *x = combined::<S>(t, power, *x);
+    }
+}
+
+/// `s` and `P`.
+#[inline(always)]
+fn reduced<S: Simd>(x: f64) -> (f64, f64) {
+    let magnitude = x.abs();
+    // tanh 20 rounds to 1.
+    let a = if magnitude < 20.0 { magnitude } else { 20.0 };
+    let (k, power) = nearest_power::<S>(a, 2.0 * std::f64::consts::LOG2_E);
+    (multiply_add::<S>(-k, 0.5 * std::f64::consts::LN_2, a), power)
+}
+
+/// `t`.
+#[inline(always)]
+fn tanh_of_rest<S: Simd>(s: f64) -> f64 {
+    let square = s * s;
+    let mut cubic = CUBIC_AND_UP[0];
     for &coefficient in &CUBIC_AND_UP[1..] {
-        for n in 0..N {
-            cubic[n] = multiply_add::<S>(cubic[n], square[n], coefficient);
-        }
+        cubic = multiply_add::<S>(cubic, square, coefficient);
     }
-    for n in 0..N {
-        t[n] = multiply_add::<S>(square[n] * s[n], cubic[n], s[n]);
-    }
-    for n in 0..N {
-        let (less, more) = (power[n] - 1.0, power[n] + 1.0);
-        y[n] = (multiply_add::<S>(more, t[n], less) / multiply_add::<S>(less, t[n], more)).copysign(x[n]);
-    }
-    y
+    multiply_add::<S>(square * s, cubic, s)
+}
+
+/// The quotient, with the sign of `x`.
+#[inline(always)]
+fn combined<S: Simd>(t: f64, power: f64, x: f64) -> f64 {
+    let (less, more) = (power - 1.0, power + 1.0);
+    (multiply_add::<S>(more, t, less) / multiply_add::<S>(less, t, more)).copysign(x)
 }
 
 #[cfg(test)]
