@@ -221,7 +221,7 @@ pub const OPTIONS: [FitOption; 32] = [
     FitOption {
         name: "effort",
         group: Training,
-        meaning: "How long `auto` searches: `quick` takes about a quarter of the normal time, `thorough` about ten times as \
+        meaning: "How long `auto` searches: `quick` takes about half the normal time, `thorough` about five times as \
                   long",
         values: Values::Names(efforts),
         default: |_, _| Preset::Name(Effort::default().name()),

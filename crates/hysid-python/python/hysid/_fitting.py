@@ -131,7 +131,7 @@ def fit(
         algorithm, or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default:
         subgradient.
     effort : str, optional
-        How long `auto` searches: `quick` takes about a quarter of the normal time, `thorough` about ten times
+        How long `auto` searches: `quick` takes about half the normal time, `thorough` about five times
         as long. Default: normal.
     starts : int, optional
         Number of random starts: networks, populations or parameter sets from which the training begins.
