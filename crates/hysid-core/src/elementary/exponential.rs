@@ -57,7 +57,7 @@ fn parts_of_exp(x: f64, rest: f64) -> (i64, f64, f64) {
     let shifted = x * STEPS + ROUND;
     let steps = shifted - ROUND;
     let index = shifted.to_bits() as i64 - ROUND.to_bits() as i64;
-    let s = ((x - steps * STEP[0]) - steps * STEP[1]) + rest;
+    let s = (x - steps * STEP[0]) + (rest - steps * STEP[1]);
     let [head, tail] = POWERS_OF_TWO[(index & 63) as usize];
     (index >> 6, head, tail + (s + s * s * polynomial(s, SQUARE_AND_UP)))
 }

@@ -40,6 +40,8 @@ pub(super) struct Reduced {
     pub ln_c: [f64; 2],
     /// `u_1` and `u_2`
     pub u: (f64, f64),
+    /// `u_1 + u_2` up to rounding, which is known before `u_2`
+    pub quotient: f64,
     /// `1/c`
     inverse: f64,
 }
@@ -68,9 +70,10 @@ pub(super) fn reduced(exponent: i64, z: f64) -> Reduced {
     let c = shifted - ROUND;
     let [inverse, ln_c, rest] = LOGARITHMS[((shifted.to_bits() & 127) - 46) as usize];
     let difference = z - c;
-    let (u, _) = halves(difference * inverse);
+    let quotient = difference * inverse;
+    let (u, _) = halves(quotient);
     let rest_of_u = (difference - u * c) * inverse;
-    Reduced { exponent: exponent as f64, ln_c: [ln_c, rest], u: (u, rest_of_u), inverse }
+    Reduced { exponent: exponent as f64, ln_c: [ln_c, rest], u: (u, rest_of_u), quotient, inverse }
 }
 
 impl Reduced {

@@ -2,7 +2,7 @@
 //!
 //! `x^y = e^(y ln x)`, with `ln x` as a sum of two numbers, whose relative error is about 2^-67.
 
-use super::error_free::{ordered_sum, polynomial, product};
+use super::error_free::{halves, ordered_sum};
 use super::exponential::{power_of_two, scaled_exp};
 use super::logarithm::{LN_2, Reduced, exponent_and_fraction, is_normal, reduced};
 
@@ -87,25 +87,34 @@ fn special(x: f64, y: f64) -> f64 {
 /// `(2^exponent z)^y`
 #[inline(always)]
 fn of_positive((exponent, z): (i64, f64), y: f64) -> f64 {
-    let (ln_x, rest) = accurate_ln(&reduced(exponent, z));
-    let exponent = y * ln_x;
-    // Also where the product overflows.
-    if exponent.abs() > 750.0 {
-        return if exponent > 0.0 { f64::INFINITY } else { 0.0 };
-    }
-    let (exponent, error) = product(y, ln_x);
-    scaled_exp(exponent, error + y * rest, 0)
+    let (ln_x, rest_of_ln_x) = accurate_ln(&reduced(exponent, z));
+    let (leading_y, rest_of_y) = halves(y);
+    // The first product is exact, because both factors have so few bits; or so large that no more is asked.
+    scaled_exp(leading_y * ln_x, rest_of_y * ln_x + y * rest_of_ln_x, 0)
 }
 
-/// The logarithm as a sum.
+/// The logarithm as a sum: its leading 26 bits, and the rest.
 #[inline(always)]
 fn accurate_ln(reduced: &Reduced) -> (f64, f64) {
     let (u_1, u_2) = reduced.u;
-    let u = u_1 + u_2;
     let (head, error) = ordered_sum(reduced.exponent * LN_2[0] + reduced.ln_c[0], u_1);
     // u_1 has so few bits that its square is exact.
     let (head, error_of_square) = ordered_sum(head, -0.5 * (u_1 * u_1));
-    let rest = (reduced.exponent * LN_2[1] + reduced.ln_c[1]) + (error + error_of_square);
-    let rest = (rest + u_2) - u_2 * (u_1 + 0.5 * u_2);
-    ordered_sum(head, rest + u * u * u * polynomial(u, CUBE_AND_UP))
+    let of_table = reduced.exponent * LN_2[1] + reduced.ln_c[1];
+    // Short chains: what is known first is summed first, and a last bit of u changes no term of this size.
+    let u = reduced.quotient;
+    let rest = (of_table + u_2) + (cubic_and_up(u) - u_2 * (0.5 * (u_1 + u)));
+    let rest = rest + (error + error_of_square);
+    let (leading, _) = halves(head + rest);
+    (leading, (head - leading) + rest)
+}
+
+/// `u³ g(u)`
+#[inline(always)]
+fn cubic_and_up(u: f64) -> f64 {
+    let [g_6, g_5, g_4, g_3, g_2, g_1, g_0] = CUBE_AND_UP;
+    let square = u * u;
+    let low = (g_0 + g_1 * u) + square * (g_2 + g_3 * u);
+    let high = (g_4 + g_5 * u) + square * g_6;
+    (square * u) * (low + (square * square) * high)
 }
