@@ -107,9 +107,13 @@ fn validation_note(selection: &Selection) -> String {
     let all = selection.folds.len();
     match &selection.beyond {
         None => format!("(validation: errors on the rows held out in {all} folds)\n"),
+        Some(Beyond { folds, .. }) if folds.len() == all => format!(
+            "(validation: each of {all} folds holds out records beyond the rest in amplitude\n or speed; the error \
+             between them is usually smaller)\n"
+        ),
         Some(Beyond { folds, percent }) => format!(
             "(validation: errors on the rows held out in {} of {all} folds; the others hold out\n records beyond the rest \
-             in amplitude or speed: {} % of std)\n",
+             in amplitude or speed: {:.3} % of std)\n",
             all - folds.len(),
             Significant(*percent)
         ),

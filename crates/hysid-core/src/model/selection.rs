@@ -17,8 +17,8 @@ pub struct Selection {
     /// the others in amplitude and speed, only these count.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held_out_percent: Option<f64>,
-    /// The error on records beyond the others, which is no part of the held-out error; `None` where all folds are of one
-    /// kind.
+    /// The error on records beyond the others, which is no part of the held-out error unless all folds are of this kind;
+    /// `None` without such a fold.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beyond: Option<Beyond>,
     /// Error by which candidates are weighted, in percent of the standard deviation, inside and outside the trained range:

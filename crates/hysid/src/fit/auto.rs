@@ -366,10 +366,9 @@ fn errors_held_out(predicted: &[Vec<f64>], folds: &[HeldOut], output: &str) -> O
     errors_where(predicted, folds, output, |fold| !(some_between && fold.is_beyond))
 }
 
-/// Errors over the rows of folds beyond the others; `None` where there are only such folds, or none.
+/// Errors over the rows of folds beyond the others; `None` without such a fold.
 fn errors_beyond(predicted: &[Vec<f64>], folds: &[HeldOut], output: &str) -> Option<Errors> {
-    let some_between = folds.iter().any(|fold| !fold.is_beyond);
-    some_between.then(|| errors_where(predicted, folds, output, |fold| fold.is_beyond))?
+    errors_where(predicted, folds, output, |fold| fold.is_beyond)
 }
 
 fn errors_where(
