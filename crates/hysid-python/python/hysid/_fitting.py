@@ -67,8 +67,9 @@ def fit(
 ) -> Model:
     """Identify a model from measured data.
 
-    Without `model`, Hysid cross-validates networks and classical models and combines the best in an ensemble. This is
-    the most accurate choice and takes ten seconds to a minute. A single named model takes seconds.
+    Without `model`, Hysid cross-validates networks and classical models and combines the best in an ensemble, or takes
+    one law of few numbers that fits about as well as any. This is the most accurate choice and takes ten seconds to a
+    minute. A single named model takes seconds.
 
     Options have the same names as on the command line of the program `hysid`; ``None`` is the default. A model warns
     of options that it ignores. The same data, options and seed give the same model file, byte by byte. Ctrl-C ends the
