@@ -7,7 +7,7 @@ use hysid::options::table::{FitOption, OPTIONS, Values};
 use serde_json::{Map, Value};
 
 /// Options of the short help of a command.
-const IN_SHORT_HELP: [&str; 3] = ["model", "members", "effort"];
+const IN_SHORT_HELP: [&str; 2] = ["model", "members"];
 
 /// What was asked for of the model and its training.
 #[derive(Debug, Clone, PartialEq)]
