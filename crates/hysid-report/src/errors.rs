@@ -1,6 +1,7 @@
 //! The verdict and the table of errors.
 
 use hysid::data::metrics::Errors;
+use hysid::model::selection::Selection;
 use hysid_document::{Cell, Part, Table, number, unit};
 
 use crate::Report;
@@ -104,19 +105,41 @@ fn explanation(report: &Report) -> Part {
          output; fit is 100 % minus the NRMSE in % of std. ",
     );
     let provenance = report.model.provenance();
-    text += match (&provenance.validation, &provenance.selection) {
-        (Some(_), Some(_)) => {
-            "“Validation” is the error on held-out data: each fold was simulated by models trained without \
-             it. The weights of the ensemble were chosen on the same folds, so this error is slightly too \
-             low."
+    match (&provenance.validation, &provenance.selection) {
+        (Some(_), Some(selection)) => {
+            text += "“Validation” is the error on held-out data: each fold was simulated by models trained without \
+                     it. ";
+            text += match report.model.ensemble() {
+                Some(_) => "The weights of the ensemble were chosen on the same folds",
+                None => "The model was chosen among candidates on the same folds",
+            };
+            text += ", so this error is slightly too low.";
+            text += &beyond(selection);
         }
         (Some(_), None) => {
-            "“Validation” is the error on held-out data, of networks that were trained in the same way \
-             without these data."
+            text += "“Validation” is the error on held-out data, of networks that were trained in the same way \
+                     without these data.";
         }
-        (None, _) => "No data were held out, so there is no validation.",
-    };
+        (None, _) => text += "No data were held out, so there is no validation.",
+    }
     Part::note(text)
+}
+
+/// A sentence on records beyond the rest; empty without such records.
+fn beyond(selection: &Selection) -> String {
+    match &selection.beyond {
+        None => String::new(),
+        Some(beyond) if beyond.folds.len() == selection.folds.len() => {
+            " Each fold holds out records beyond the rest in amplitude or speed; the error between them is usually \
+             smaller."
+                .into()
+        }
+        Some(beyond) => format!(
+            " Records beyond the rest in amplitude or speed ({}) are no part of it; the error on them is {} % of std.",
+            beyond.folds.join("; "),
+            number(beyond.percent, 3)
+        ),
+    }
 }
 
 fn row(name: &str, errors: &Errors) -> Vec<Cell> {
