@@ -9,9 +9,7 @@ use hysid::data::record::Dataset;
 use hysid::fit::memory_need;
 use hysid::fit::network::{Checkpoint, Progress, resume};
 use hysid::model::Provenance;
-use hysid::model::selection::{Beyond, Selection};
 use hysid::options::FitSpec;
-use hysid::significant::Significant;
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_files::Destination;
 use hysid_records::Data;
@@ -102,24 +100,6 @@ pub fn write_report(
         .context("the model was written, but not its report")
 }
 
-/// What the validation errors are errors of.
-fn validation_note(selection: &Selection) -> String {
-    let all = selection.folds.len();
-    match &selection.beyond {
-        None => format!("(validation: errors on the rows held out in {all} folds)\n"),
-        Some(Beyond { folds, .. }) if folds.len() == all => format!(
-            "(validation: each of {all} folds holds out records beyond the rest in amplitude\n or speed; the error \
-             between them is usually smaller)\n"
-        ),
-        Some(Beyond { folds, percent }) => format!(
-            "(validation: errors on the rows held out in {} of {all} folds; the others hold out\n records beyond the rest \
-             in amplitude or speed: {:.3} % of std)\n",
-            all - folds.len(),
-            Significant(*percent)
-        ),
-    }
-}
-
 /// Errors, size, time and files, for stdout.
 pub fn printed(identified: &Identified, unseen: Option<&Errors>, written: &[(&str, &Path)]) -> String {
     let Identified { model, seconds, .. } = identified;
@@ -133,7 +113,10 @@ pub fn printed(identified: &Identified, unseen: Option<&Errors>, written: &[(&st
                 "(validation: on parts of the one measured loop; the error on smaller loops is unknown)\n"
                     .into()
             }
-            false => validation_note(selection),
+            false => {
+                let words = format!("(validation: {})", selection.held_out_rows());
+                wrapped(&words, WIDTH).join("\n") + "\n"
+            }
         };
         text.push('\n');
         for (label, line) in ["chosen", "why"].into_iter().zip(selection.summary()) {

@@ -141,15 +141,19 @@ fn products_of_columns<S: Simd, const M: usize, const N: usize, const SAME: bool
 ) -> [[f64; N]; M] {
     let parts = LANES / S::F64_LANES;
     let mut lanes = [[[0.0; LANES]; N]; M];
-    let mut total = [[0.0; N]; M];
     for part in 0..parts {
         let zeros = [[simd.splat_f64s(0.0); N]; M];
         let sums = add_products::<S, M, N, SAME>(simd, part, left, right, zeros);
         for i in 0..M {
             for j in 0..N {
                 S::as_mut_simd_f64s(&mut lanes[i][j]).0[part] = sums[i][j];
-                total[i][j] = sum_of_lanes(simd, &lanes[i][j]);
             }
+        }
+    }
+    let mut total = [[0.0; N]; M];
+    for i in 0..M {
+        for j in 0..N {
+            total[i][j] = sum_of_lanes(simd, &lanes[i][j]);
         }
     }
     total

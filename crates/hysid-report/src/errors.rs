@@ -1,7 +1,6 @@
 //! The verdict and the table of errors.
 
 use hysid::data::metrics::Errors;
-use hysid::model::selection::Selection;
 use hysid_document::{Cell, Part, Table, number, unit};
 
 use crate::Report;
@@ -114,7 +113,9 @@ fn explanation(report: &Report) -> Part {
                 None => "The model was chosen among candidates on the same folds",
             };
             text += ", so this error is slightly too low.";
-            text += &beyond(selection);
+            if selection.beyond.is_some() {
+                text += &format!(" Counted are the {}.", selection.held_out_rows());
+            }
         }
         (Some(_), None) => {
             text += "“Validation” is the error on held-out data, of networks that were trained in the same way \
@@ -123,23 +124,6 @@ fn explanation(report: &Report) -> Part {
         (None, _) => text += "No data were held out, so there is no validation.",
     }
     Part::note(text)
-}
-
-/// A sentence on records beyond the rest; empty without such records.
-fn beyond(selection: &Selection) -> String {
-    match &selection.beyond {
-        None => String::new(),
-        Some(beyond) if beyond.folds.len() == selection.folds.len() => {
-            " Each fold holds out records beyond the rest in amplitude or speed; the error between them is usually \
-             smaller."
-                .into()
-        }
-        Some(beyond) => format!(
-            " Records beyond the rest in amplitude or speed ({}) are no part of it; the error on them is {} % of std.",
-            beyond.folds.join("; "),
-            number(beyond.percent, 3)
-        ),
-    }
 }
 
 fn row(name: &str, errors: &Errors) -> Vec<Cell> {

@@ -37,16 +37,17 @@ impl Fold {
     pub(crate) fn is_beyond(&self) -> bool {
         let trained = self.train.records();
         let is_whole = |record: &&Record| trained.iter().all(|other| other.name() != record.name());
-        let lies_outside = |record: &Record| {
-            extent(record).into_iter().enumerate().any(|(kind, of_held)| {
-                let of_trained = || trained.iter().filter_map(|other| extent(other)[kind]);
-                let is_outside = |value: f64| {
-                    !of_trained().any(|other| other <= value * (1.0 + SLACK))
-                        || !of_trained().any(|other| other * (1.0 + SLACK) >= value)
-                };
-                of_held.is_some_and(|value| of_trained().next().is_some() && is_outside(value))
-            })
+        let mut spans = [(f64::INFINITY, f64::NEG_INFINITY); 2];
+        for extent in trained.iter().map(extent) {
+            for (span, value) in spans.iter_mut().zip(extent) {
+                *span = value.map_or(*span, |value| (span.0.min(value), span.1.max(value)));
+            }
+        }
+        let is_outside = |((least, most), value): ((f64, f64), Option<f64>)| {
+            let is_outside = |value: f64| least > value * (1.0 + SLACK) || most * (1.0 + SLACK) < value;
+            least <= most && value.is_some_and(is_outside)
         };
+        let lies_outside = |record: &Record| spans.into_iter().zip(extent(record)).any(is_outside);
         self.held_out.records().iter().filter(is_whole).any(lies_outside)
     }
 
@@ -66,17 +67,13 @@ const SLACK: f64 = 0.05;
 
 /// Amplitude of a record, and its speed in amplitudes per unit of time where it has one.
 fn extent(record: &Record) -> [Option<f64>; 2] {
-    let x = &record.inputs()[0];
-    let amplitude = Some(range(x)).filter(|amplitude| *amplitude > 0.0);
-    let path: f64 = x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-    let time = record.time().and_then(|time| Some(time.last()? - time.first()?));
-    let speed = time.zip(amplitude).map(|(time, amplitude)| path / time / amplitude);
-    [amplitude, speed.filter(|speed| speed.is_finite())]
+    let amplitude = Some(amplitude(record)).filter(|amplitude| *amplitude > 0.0);
+    let speed = record.mean_speed().zip(amplitude).map(|(speed, amplitude)| speed / amplitude);
+    [amplitude, speed]
 }
 
-fn range(x: &[f64]) -> f64 {
-    let (low, high) =
-        x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+fn amplitude(record: &Record) -> f64 {
+    let (low, high) = record.input_range(0);
     high - low
 }
 
@@ -179,8 +176,7 @@ pub(crate) fn folds_to_choose_by(data: &Dataset, most: usize) -> Vec<Fold> {
 fn two_of_one_amplitude(data: &Dataset, cuts: &[Cut]) -> Option<[usize; 2]> {
     let [Cut::Records(first), Cut::Records(second)] = cuts else { return None };
     let (&[first], &[second]) = (&first[..], &second[..]) else { return None };
-    let amplitude = |record: usize| range(&data.records()[record].inputs()[0]);
-    let (a, b) = (amplitude(first), amplitude(second));
+    let [a, b] = [first, second].map(|record| amplitude(&data.records()[record]));
     (a.max(b) < ALIKE * a.min(b)).then_some([first, second])
 }
 

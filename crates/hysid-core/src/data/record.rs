@@ -130,6 +130,11 @@ impl Record {
         &self.inputs
     }
 
+    /// Smallest and largest value of an input, in the user's unit.
+    pub fn input_range(&self, input: usize) -> (f64, f64) {
+        range(self.inputs[input].iter())
+    }
+
     /// Time stamps, if there are any.
     pub fn time(&self) -> Option<&[f64]> {
         self.time.as_deref()

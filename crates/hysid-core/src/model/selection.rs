@@ -54,6 +54,24 @@ impl Selection {
         [self.chosen(&kinds), self.why(&kinds)]
     }
 
+    /// What the validation errors are errors of.
+    pub fn held_out_rows(&self) -> String {
+        let all = self.folds.len();
+        match &self.beyond {
+            None => format!("errors on the rows held out in {all} folds"),
+            Some(Beyond { folds, .. }) if folds.len() == all => format!(
+                "errors on records beyond the rest in amplitude or speed, held out in {all} folds; the error between the \
+                 records is usually smaller"
+            ),
+            Some(Beyond { folds, percent }) => format!(
+                "errors on the rows held out in {} of {all} folds; the others hold out records beyond the rest in \
+                 amplitude or speed, with an error of {:.3} % of std",
+                all - folds.len(),
+                Significant(*percent)
+            ),
+        }
+    }
+
     fn chosen(&self, kinds: &[&str]) -> String {
         if let Some(SingleModel { name, distilled, is_law, .. }) = &self.single {
             return match (is_law, distilled) {

@@ -81,7 +81,6 @@ pub struct AutoOptions {
     /// Largest number of members; 1 for a single model.
     pub members: usize,
     /// How long the candidates are searched.
-    #[serde(default)]
     pub effort: Effort,
     /// Starts of a randomly initialized candidate.
     pub starts: usize,

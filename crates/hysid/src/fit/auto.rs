@@ -59,7 +59,7 @@ use crate::options::table::check;
 use crate::termination::Termination;
 use crate::validation::{PooledErrors, folds_of_loop, folds_to_choose_by};
 use beginning::{Beginning, as_chosen};
-use candidates::{Candidate, candidates, quick};
+use candidates::{Candidate, candidates, quick, suited};
 use combination::{Combination, Leaf};
 use prior::Evidence;
 use selection::selection;
@@ -96,7 +96,7 @@ fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
 pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     data.check_identifiable(FEWEST_ROWS)?;
     check([("members", json!(options.members))])?;
-    let candidates = wanted(data, options);
+    let candidates = suited(wanted(data, options), data, options);
     let Some(first) = candidates.first() else {
         return Err(Error::NoCandidate);
     };
@@ -232,7 +232,7 @@ impl Chosen<'_, '_, '_> {
         let rows = self.rows_held_out(&combination);
         let predicted = self.predicted(&rows);
         let validation = self.errors_held_out(&predicted);
-        let selection = self.selection(&combination, &predicted);
+        let selection = self.judged_by(self.selection(&combination), validation.as_ref(), &predicted);
         let members = |place: usize, start: usize| self.trials[place].members.get(&start).cloned();
         let body = Predictor::Ensemble(combination.ensemble(members, self.data.input_range(0))?);
         let model = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
@@ -283,10 +283,9 @@ impl Chosen<'_, '_, '_> {
         lowest.cloned().unwrap_or(alone)
     }
 
-    fn selection(&self, combination: &Combination, predicted: &[Vec<f64>]) -> Selection {
+    fn selection(&self, combination: &Combination) -> Selection {
         let output = &self.data.names().output;
-        let selection = selection(&self.trials, &self.left_out, self.bench.folds, combination, output);
-        let mut selection = self.judged_by(selection, predicted);
+        let mut selection = selection(&self.trials, &self.left_out, self.bench.folds, combination, output);
         selection.warm_up = (self.warm_up.rows > 0).then_some(self.warm_up);
         selection.found_states = self.found;
         selection.one_loop = self.evidence.is_one_loop();
@@ -295,19 +294,19 @@ impl Chosen<'_, '_, '_> {
     }
 
     /// The same with the errors of what is predicted on the folds.
-    fn judged_by(&self, selection: Selection, predicted: &[Vec<f64>]) -> Selection {
+    fn judged_by(
+        &self,
+        selection: Selection,
+        validation: Option<&Errors>,
+        predicted: &[Vec<f64>],
+    ) -> Selection {
         let folds = self.bench.folds;
-        let percent = |errors: Option<Errors>| errors.and_then(|errors| errors.nrmse_std_percent);
+        let percent = |errors: &Errors| errors.nrmse_std_percent;
+        let beyond = errors_beyond(predicted, folds, "").as_ref().and_then(percent);
+        let names = || folds.iter().filter(|fold| fold.is_beyond).map(|fold| fold.fold.name.clone());
         Selection {
-            held_out_percent: percent(self.errors_held_out(predicted)),
-            beyond: percent(errors_beyond(predicted, folds, "")).map(|percent| Beyond {
-                folds: folds
-                    .iter()
-                    .filter(|fold| fold.is_beyond)
-                    .map(|fold| fold.fold.name.clone())
-                    .collect(),
-                percent,
-            }),
+            held_out_percent: validation.and_then(percent),
+            beyond: beyond.map(|percent| Beyond { folds: names().collect(), percent }),
             ..selection
         }
     }
@@ -342,14 +341,20 @@ impl Chosen<'_, '_, '_> {
         let makers = single::Makers { trials: &mut self.trials, bench, combination, evidence, options };
         let Some(found) = makers.single(ensemble)? else { return Ok(None) };
         selection.single = Some(found.how);
-        Ok(Some(self.validated(found.model, selection, &found.predicted)?))
+        let validation = self.errors_held_out(&found.predicted);
+        Ok(Some(self.validated(found.model, selection, validation, &found.predicted)?))
     }
 
     /// A single model with what is known of it from what models made in the same way `predicted` on the folds.
-    fn validated(&self, model: Model, selection: Selection, predicted: &[Vec<f64>]) -> Result<Fitted> {
+    fn validated(
+        &self,
+        model: Model,
+        selection: Selection,
+        validation: Option<Errors>,
+        predicted: &[Vec<f64>],
+    ) -> Result<Fitted> {
         let Bench { folds, work, .. } = self.bench;
-        let validation = self.errors_held_out(predicted);
-        let mut selection = self.judged_by(selection, predicted);
+        let mut selection = self.judged_by(selection, validation.as_ref(), predicted);
         selection.candidates.iter_mut().for_each(|candidate| candidate.members = 0);
         let provenance = provenance_of(&model, Some(selection), validation, work);
         let band = self.band(&single::rows_held_out(predicted, folds));

@@ -30,6 +30,17 @@ pub enum Speeds {
     Several,
 }
 
+impl Record {
+    /// Mean speed of the first input: its path over the time that it takes; `None` without time stamps and for an input at
+    /// rest.
+    pub fn mean_speed(&self) -> Option<f64> {
+        let time = self.time()?;
+        let path: f64 = self.inputs[0].windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+        let speed = path / (time.last()? - time.first()?);
+        (speed > 0.0 && speed.is_finite()).then_some(speed)
+    }
+}
+
 impl Dataset {
     /// What the speeds of the first input can tell of a dependence on the rate.
     pub fn speeds(&self) -> Speeds {

@@ -271,8 +271,15 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
     requests.extend(searched_laws(options).into_iter().map(FitSpec::Classical));
     let mut all: Vec<Candidate> = requests.iter().map(Candidate::alone).collect();
     all.retain(|candidate| is_allowed(candidate, data, options));
-    // What has begun to lose strength loses more beyond the data, where models that cannot lose any fail.
-    if options.deterioration.is_none() && all.iter().any(Candidate::can_deteriorate) && loses_strength(data) {
+    all
+}
+
+/// Those that suit what the diagnosis finds: what has begun to lose strength loses more beyond the data, where models that
+/// cannot lose any fail.
+pub(super) fn suited(mut all: Vec<Candidate>, data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
+    let is_open = options.only.is_none() && options.deterioration.is_none();
+    let is_some_dynamic = all.iter().any(Candidate::is_dynamic);
+    if is_open && !is_some_dynamic && all.iter().any(Candidate::can_deteriorate) && loses_strength(data) {
         all.retain(Candidate::can_deteriorate);
     }
     all

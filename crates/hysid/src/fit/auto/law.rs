@@ -68,14 +68,15 @@ impl Chosen<'_, '_, '_> {
         let Some(law) = self.trials.first() else { return Ok(None) };
         let (name, predicted) = (law.candidate.name(), law.predicted.clone());
         let Some(model) = law.members.values().next().cloned() else { return Ok(None) };
-        let mut selection = self.selection(&combination, &predicted);
+        let validation = self.errors_held_out(&predicted);
+        let mut selection = self.selection(&combination);
         selection.single = Some(SingleModel {
             name,
             distilled: false,
             distilled_percent: None,
-            plain_percent: selection.held_out_percent,
+            plain_percent: validation.as_ref().and_then(|errors| errors.nrmse_std_percent),
             is_law: true,
         });
-        Ok(Some(self.validated(model, selection, &predicted)?))
+        Ok(Some(self.validated(model, selection, validation, &predicted)?))
     }
 }

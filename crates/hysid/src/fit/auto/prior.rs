@@ -157,18 +157,10 @@ fn shape_of(slopes: &[f64]) -> Shape {
 }
 
 fn differ_in_speed(data: &Dataset) -> bool {
-    let speeds = data.records().iter().filter_map(speed);
+    let speeds = data.records().iter().filter_map(Record::mean_speed);
     let (slowest, fastest) =
         speeds.fold((f64::INFINITY, 0.0), |(low, high), speed| (speed.min(low), speed.max(high)));
     fastest > OTHER_SPEED * slowest
-}
-
-/// Path of the first input over the time that it takes; `None` without time stamps and for an input at rest.
-fn speed(record: &Record) -> Option<f64> {
-    let time = record.time()?;
-    let path: f64 = record.inputs()[0].windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-    let speed = path / (time.last()? - time.first()?);
-    (speed > 0.0 && speed.is_finite()).then_some(speed)
 }
 
 fn errors_inside(candidate: &FitSpec) -> ErrorsInside {
