@@ -7,6 +7,7 @@
 //! | [`ModifiedPrandtlIshlinskii`](modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii) | `y = S(c + w_0 x + Σ_i w_i p_{r_i}[x])`, `S` a rising polygon | plays |
 //! | [`GeneralizedPrandtlIshlinskii`](generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii) | plays between two curved envelopes | plays |
 //! | [`RateDependentPrandtlIshlinskii`](rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii) | plays whose thresholds grow with the rate | plays |
+//! | [`DynamicPrandtlIshlinskii`](dynamic_prandtl_ishlinskii::DynamicPrandtlIshlinskii) | plays between a lag, relaxation and a resonance | plays, stresses, motion |
 //! | [`Preisach`](preisach::Preisach) | `y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]`, relays `R` | turning points |
 //! | [`NeuroMadelung`](neuro_madelung::NeuroMadelung) | `y = y_t + (x - x_t) N(x, x_t, y_t, x')`, `N` a small network | turning points |
 //! | [`BoucWen`](bouc_wen::BoucWen) | a spring in parallel with an element that yields, with degradation and pinching | `z`, energy |
@@ -24,6 +25,7 @@
 
 pub mod bouc_wen;
 pub mod duhem_nn;
+pub mod dynamic_prandtl_ishlinskii;
 pub mod facts;
 pub mod generalized_prandtl_ishlinskii;
 mod gram_of_rows;
@@ -119,6 +121,11 @@ pub trait Law: Sized {
 
     /// True if the output depends on the time between samples, other than through the rate.
     fn needs_steps(&self) -> bool {
+        false
+    }
+
+    /// True if it has a mass: its output answers later than by the next sample.
+    fn has_inertia(&self) -> bool {
         false
     }
 
@@ -326,6 +333,13 @@ macro_rules! any_of {
                 }
             }
 
+            /// As [`Law::has_inertia`].
+            pub fn has_inertia(&self) -> bool {
+                match self {
+                    $(Self::$law(law) => law.has_inertia(),)*
+                }
+            }
+
             /// As [`Law::memory_properties`].
             pub fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)> {
                 match self {
@@ -370,6 +384,7 @@ macro_rules! for_each_law {
             modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii,
             generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii,
             rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii,
+            dynamic_prandtl_ishlinskii::DynamicPrandtlIshlinskii,
             preisach::Preisach,
             neuro_madelung::NeuroMadelung,
             bouc_wen::BoucWen,

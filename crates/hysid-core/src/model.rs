@@ -103,7 +103,7 @@ impl Predictor {
     fn has_inertia(&self) -> bool {
         match self {
             Self::Network { .. } => false,
-            Self::Law(law) => law.facts().needs_time,
+            Self::Law(law) => law.has_inertia(),
             Self::Ensemble(ensemble) => ensemble.members().iter().any(Model::has_inertia),
         }
     }

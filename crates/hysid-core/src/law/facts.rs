@@ -54,6 +54,8 @@ pub struct Defaults {
     pub modes: usize,
     /// Dead zones on each side.
     pub dead_zones: usize,
+    /// Relaxation elements.
+    pub relaxation: usize,
     /// Starts of the search.
     pub starts: usize,
     /// Iterations of each start.
@@ -62,8 +64,16 @@ pub struct Defaults {
 
 impl Defaults {
     /// Defaults of a law that linear least squares finds.
-    pub const LINEAR: Self =
-        Self { operators: 0, hidden: 0, states: 0, modes: 0, dead_zones: 0, starts: 0, epochs: 0 };
+    pub const LINEAR: Self = Self {
+        operators: 0,
+        hidden: 0,
+        states: 0,
+        modes: 0,
+        dead_zones: 0,
+        relaxation: 0,
+        starts: 0,
+        epochs: 0,
+    };
 
     /// Defaults of a law that a search finds.
     pub const SEARCHED: Self = Self { starts: 8, epochs: 40, ..Self::LINEAR };
@@ -76,6 +86,7 @@ impl Defaults {
             "states" => Some(self.states),
             "modes" => Some(self.modes),
             "dead_zones" => Some(self.dead_zones),
+            "relaxation" => Some(self.relaxation),
             "starts" => Some(self.starts),
             "epochs" => Some(self.epochs),
             _ => None,

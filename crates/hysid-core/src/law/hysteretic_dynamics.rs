@@ -41,6 +41,7 @@ use crate::simd;
 pub use element::Element;
 pub use hold::Hold;
 pub use parameters::{Form, Layout};
+pub use propagation::Propagation;
 pub use sensitivities::{Drive, Run};
 pub use trial::Motion;
 
@@ -342,6 +343,10 @@ macro_rules! law_of_dynamics {
             }
 
             fn needs_steps(&self) -> bool {
+                true
+            }
+
+            fn has_inertia(&self) -> bool {
                 true
             }
 

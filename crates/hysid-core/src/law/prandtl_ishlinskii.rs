@@ -77,6 +77,11 @@ impl PrandtlIshlinskii {
         Ok(Self { constant, linear, thresholds, weights })
     }
 
+    /// As [`PrandtlIshlinskii::new`], without checks, for parameters that a fit still changes.
+    pub fn unchecked(constant: f64, linear: f64, thresholds: Vec<f64>, weights: Vec<f64>) -> Self {
+        Self { constant, linear, thresholds, weights }
+    }
+
     /// The constant `c`, in the unit of the output.
     pub fn constant(&self) -> f64 {
         self.constant

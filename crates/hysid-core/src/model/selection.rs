@@ -75,7 +75,7 @@ impl Selection {
     fn chosen(&self, kinds: &[&str]) -> String {
         if let Some(SingleModel { name, distilled, is_law, .. }) = &self.single {
             return match (is_law, distilled) {
-                (true, _) => format!("{name}, a law of few numbers, in place of an ensemble"),
+                (true, _) => format!("{name}, a law, in place of an ensemble"),
                 (false, true) => format!("one {name}, distilled from the ensemble"),
                 (false, false) => format!("one {name}, fitted to the data alone"),
             };
@@ -135,7 +135,7 @@ impl Selection {
                 let reason = match (is_lowest, law, self.one_loop) {
                     (true, ..) => "",
                     (false, Some(_), _) => {
-                        "; a law of few numbers is preferred where its errors on the data and on the folds are about the lowest"
+                        "; a law of few numbers, or a Preisach model, is preferred where its errors on the data and on the folds are about the lowest"
                     }
                     (false, None, true) => "; one loop does not tell how well smaller loops are predicted",
                     (false, None, false) => {
@@ -211,7 +211,7 @@ pub struct SingleModel {
     pub distilled_percent: Option<f64>,
     /// Held-out error of the best candidate fitted to the data alone, in percent, as that of the ensemble.
     pub plain_percent: Option<f64>,
-    /// True for a law of few numbers whose errors are about the lowest of all candidates: it was not requested, but
+    /// True for a law of few numbers, or a Preisach model, whose errors are about the lowest of all candidates: it was not requested, but
     /// takes the place of the ensemble.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_law: bool,

@@ -58,6 +58,8 @@ pub struct NamedOptions {
     pub degradation: Option<bool>,
     pub asymmetric: Option<bool>,
     pub differential_form: Option<bool>,
+    pub resonance: Option<bool>,
+    pub lagged_input: Option<bool>,
 }
 
 impl NamedOptions {
@@ -87,7 +89,10 @@ impl NamedOptions {
                 "hidden" => self.hidden,
                 "operators" => self.operators,
                 "states" => self.states,
-                _ => unreachable!("a law limits the number of its neurons, operators or states"),
+                "relaxation" => self.relaxation,
+                _ => unreachable!(
+                    "a law limits the number of its neurons, operators, states or relaxation elements"
+                ),
             };
             let Some(asked) = asked else { continue };
             let needed = match asked {
@@ -214,6 +219,9 @@ impl NamedOptions {
             hidden: self.hidden,
             states: self.states,
             modes: self.modes,
+            relaxation: self.relaxation,
+            resonance: self.resonance.unwrap_or(defaults.resonance),
+            lagged_input: self.lagged_input.unwrap_or(defaults.lagged_input),
             deterioration: self.no_deterioration.map(|none| !none),
             rate,
             shaping: self.shaping(),

@@ -74,12 +74,14 @@ impl ClassicalModel {
         self == Self::RandomStops
     }
 
+    /// True if it is a mass on springs: a model of a resonance.
+    pub fn has_inertia(self) -> bool {
+        matches!(self, Self::HystereticOscillator | Self::HystereticStateSpace)
+    }
+
     /// True if another seed gives another model of much the same error: medians of several are then better.
     pub fn is_random(self) -> bool {
-        matches!(
-            self,
-            Self::RandomStops | Self::DuhemNn | Self::HystereticOscillator | Self::HystereticStateSpace
-        )
+        matches!(self, Self::RandomStops | Self::DuhemNn) || self.has_inertia()
     }
 
     /// True if its parameters are found by a search from several starts; otherwise by linear least squares.
@@ -121,6 +123,15 @@ pub struct ClassicalOptions {
     /// Modes of vibration of a hysteretic oscillator or state space model; its own default if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<usize>,
+    /// Relaxation elements of a dynamic Prandtl-Ishlinskii model; its own default if `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relaxation: Option<usize>,
+    /// True for a dynamic Prandtl-Ishlinskii model with a resonance behind its plays.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub resonance: bool,
+    /// True for a dynamic Prandtl-Ishlinskii model with a lag before its plays.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub lagged_input: bool,
     /// Whether random stops deteriorate; chosen by cross-validation if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deterioration: Option<bool>,
@@ -164,6 +175,11 @@ counts! {
 }
 
 impl ClassicalOptions {
+    /// Relaxation elements: the requested number, or that of the model; none beside a resonance.
+    pub fn relaxation(&self) -> usize {
+        self.relaxation.unwrap_or(if self.resonance { 0 } else { self.defaults().relaxation })
+    }
+
     /// The defaults of the model in its variant.
     pub fn defaults(&self) -> &'static Defaults {
         let facts = self.model.facts();
@@ -177,6 +193,8 @@ impl ClassicalOptions {
             "asymmetric" => Some(&mut self.asymmetric),
             "differential_form" => Some(&mut self.differential_form),
             "logarithmic_thresholds" => Some(&mut self.logarithmic_thresholds),
+            "resonance" => Some(&mut self.resonance),
+            "lagged_input" => Some(&mut self.lagged_input),
             _ => None,
         }
     }
@@ -189,7 +207,7 @@ impl ClassicalOptions {
 
     /// True for a model with inertia whose elements have neither memory states nor stops.
     pub fn has_no_memory(&self) -> bool {
-        self.model.needs_time() && self.states == Some(0) && self.operators() == 0
+        self.model.has_inertia() && self.states == Some(0) && self.operators() == 0
     }
 
     /// The defaults of a model.
@@ -208,6 +226,9 @@ impl ClassicalOptions {
             hidden: None,
             states: None,
             modes: None,
+            relaxation: None,
+            resonance: false,
+            lagged_input: false,
             deterioration: None,
             rate: None,
             shaping: InputOptions::default(),

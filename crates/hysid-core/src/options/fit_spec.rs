@@ -76,6 +76,8 @@ impl FitSpec {
                         ("degradation", options.degradation),
                         ("differential form", options.differential_form),
                         ("logarithmic thresholds", options.logarithmic_thresholds),
+                        ("resonance", options.resonance),
+                        ("lagged input", options.lagged_input),
                         ("rate", options.rate.is_some() && !options.model.needs_rate()),
                         ("tanh layer", has_tanh_layer),
                         ("no stops", options.operators == Some(0) && !has_no_memory),

@@ -92,7 +92,7 @@ const PENALTY: Values = Values::Number(*PENALTIES.start(), *PENALTIES.end());
 const SHARE: Values = Values::ZeroOr(*SHARES.start(), *SHARES.end());
 
 /// Every option, in the order in which it is listed.
-pub const OPTIONS: [FitOption; 32] = [
+pub const OPTIONS: [FitOption; 34] = [
     FitOption {
         name: "model",
         group: Model,
@@ -139,11 +139,12 @@ pub const OPTIONS: [FitOption; 32] = [
     FitOption {
         name: "relaxation",
         group: Model,
-        meaning: "Relaxation neurons of each input of xpnn+, for data with time stamps; 0 for none",
+        meaning: "Relaxation neurons of each input of xpnn+, for data with time stamps, or relaxation elements of \
+                  dynamic-prandtl-ishlinskii (at most 3); 0 for none",
         values: Values::Count(0, 1000),
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::ByCandidate,
-            _ => Preset::Count(Sizes::default().relaxation),
+            _ => count_of(model, "relaxation", Sizes::default().relaxation),
         },
         used_by: |model, _| network_or_auto(model, |family| family.relaxes()),
     },
@@ -360,7 +361,7 @@ pub const OPTIONS: [FitOption; 32] = [
     FitOption {
         name: "dead_zones",
         group: Classical,
-        meaning: "Dead zones on each side of modified-prandtl-ishlinskii",
+        meaning: "Dead zones on each side of modified-prandtl-ishlinskii or dynamic-prandtl-ishlinskii",
         values: Values::Count(1, 100),
         default: |model, _| count_of(model, "dead_zones", 0),
         used_by: of_none,
@@ -403,6 +404,23 @@ pub const OPTIONS: [FitOption; 32] = [
         name: "differential_form",
         group: Classical,
         meaning: "Use jiles-atherton in its differential form of 1992 in place of that of 1986",
+        values: Values::Flag,
+        default: |_, _| Preset::Off,
+        used_by: of_none,
+    },
+    FitOption {
+        name: "resonance",
+        group: Classical,
+        meaning: "Use dynamic-prandtl-ishlinskii with a resonance behind its plays",
+        values: Values::Flag,
+        default: |_, _| Preset::Off,
+        used_by: of_none,
+    },
+    FitOption {
+        name: "lagged_input",
+        group: Classical,
+        meaning: "Use dynamic-prandtl-ishlinskii with a lag before its plays, and the input beside them: for what depends \
+                  on a quantity that the input moves, such as the charge of a cell",
         values: Values::Flag,
         default: |_, _| Preset::Off,
         used_by: of_none,

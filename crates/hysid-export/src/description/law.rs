@@ -2,6 +2,7 @@
 
 mod bouc_wen;
 mod duhem_nn;
+mod dynamic_prandtl_ishlinskii;
 mod generalized_prandtl_ishlinskii;
 mod hysteretic_dynamics;
 mod jiles_atherton;
@@ -29,6 +30,9 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &Classical, sample: &
     match law {
         Classical::BoucWen(law) => bouc_wen::step(builder, name, law, sample),
         Classical::DuhemNn(law) => duhem_nn::step(builder, name, law, sample),
+        Classical::DynamicPrandtlIshlinskii(law) => {
+            dynamic_prandtl_ishlinskii::step(builder, name, law, sample)
+        }
         Classical::GeneralizedPrandtlIshlinskii(law) => {
             generalized_prandtl_ishlinskii::step(builder, name, law, sample)
         }

@@ -61,6 +61,8 @@ def fit(
     degradation: bool | None = None,
     asymmetric: bool | None = None,
     differential_form: bool | None = None,
+    resonance: bool | None = None,
+    lagged_input: bool | None = None,
     time_limit: float | None = None,
     threads: int | None = None,
     progress: Listener = True,
@@ -68,7 +70,7 @@ def fit(
     """Identify a model from measured data.
 
     Without `model`, Hysid cross-validates networks and classical models and combines the best in an ensemble, or takes
-    one law of few numbers that fits about as well as any. This is the most accurate choice and takes ten seconds to a
+    one law that fits about as well as any. This is the most accurate choice and takes ten seconds to a
     minute. A single named model takes seconds.
 
     Options have the same names as on the command line of the program `hysid`; ``None`` is the default. A model warns
@@ -106,8 +108,9 @@ def fit(
         neuro-madelung and duhem-nn; 8 (4 with degradation) for hysteretic-oscillator and
         hysteretic-state-space; chosen by cross-validation for random-stops.
     relaxation : int, optional
-        Relaxation neurons of each input of xpnn+, for data with time stamps; 0 for none. Default: 4 for
-        networks; set by each candidate for auto.
+        Relaxation neurons of each input of xpnn+, for data with time stamps, or relaxation elements of
+        dynamic-prandtl-ishlinskii (at most 3); 0 for none. Default: 4 for networks; set by each candidate for
+        auto; 2 for dynamic-prandtl-ishlinskii.
     no_deterioration : bool, optional
         Use stops that do not deteriorate. Default: off for networks; chosen by cross-validation for auto and
         random-stops.
@@ -136,10 +139,10 @@ def fit(
         as long. Default: normal.
     starts : int, optional
         Number of random starts: networks, populations or parameter sets from which the training begins.
-        Default: 2 for subgradient and auto; 8 for levenberg-marquardt, bouc-wen, jiles-atherton and lugre; 1
-        for hybrid and genetic; 32 for generalized-prandtl-ishlinskii; 16 for rate-dependent-prandtl-ishlinskii,
-        neuro-madelung, peak-oriented and menegotto-pinto; 6 for duhem-nn; 4 for hysteretic-oscillator and
-        hysteretic-state-space.
+        Default: 2 for subgradient and auto; 8 for levenberg-marquardt, dynamic-prandtl-ishlinskii, bouc-wen,
+        jiles-atherton and lugre; 1 for hybrid and genetic; 32 for generalized-prandtl-ishlinskii; 16 for
+        rate-dependent-prandtl-ishlinskii, neuro-madelung, peak-oriented and menegotto-pinto; 6 for duhem-nn; 4
+        for hysteretic-oscillator and hysteretic-state-space.
     epochs : int, optional
         Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
         iterations of the sub-gradient method; the hybrid uses half of them for each. Default: 400 for
@@ -167,8 +170,8 @@ def fit(
         Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of
         duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none).
         Default: set by each candidate for auto; 30 for masing, prandtl-ishlinskii and preisach; 20 for
-        modified-prandtl-ishlinskii; 10 for generalized-prandtl-ishlinskii and
-        rate-dependent-prandtl-ishlinskii; 6 for duhem-nn; 0 (6 with degradation) for hysteretic-oscillator and
+        modified-prandtl-ishlinskii; 10 for generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii
+        and dynamic-prandtl-ishlinskii; 6 for duhem-nn; 0 (6 with degradation) for hysteretic-oscillator and
         hysteretic-state-space; 300 for random-stops.
     states : int, optional
         States of duhem-nn, driven by the input and by time (1 to 20), or memory states of each hysteretic
@@ -184,7 +187,8 @@ def fit(
     sign : str, optional
         Sign of the weights of plays, or of the cells of a Preisach plane. Default: chosen by cross-validation.
     dead_zones : int, optional
-        Dead zones on each side of modified-prandtl-ishlinskii. Default: 6.
+        Dead zones on each side of modified-prandtl-ishlinskii or dynamic-prandtl-ishlinskii. Default: 6 for
+        modified-prandtl-ishlinskii; 2 for dynamic-prandtl-ishlinskii.
     free_weights : bool, optional
         Give each play of generalized-prandtl-ishlinskii or rate-dependent-prandtl-ishlinskii a weight of its
         own, in place of an exponential law. Default: true.
@@ -199,6 +203,11 @@ def fit(
         Use peak-oriented or menegotto-pinto with different strengths upwards and downwards. Default: off.
     differential_form : bool, optional
         Use jiles-atherton in its differential form of 1992 in place of that of 1986. Default: off.
+    resonance : bool, optional
+        Use dynamic-prandtl-ishlinskii with a resonance behind its plays. Default: off.
+    lagged_input : bool, optional
+        Use dynamic-prandtl-ishlinskii with a lag before its plays, and the input beside them: for what depends
+        on a quantity that the input moves, such as the charge of a cell. Default: off.
     time_limit : float, optional
         Time in seconds after which to stop and keep the best model so far.
     threads : int, optional

@@ -48,7 +48,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     members, stops, hidden, relaxation, no_deterioration, companding, rate_companding, history : optional
     warm_up, initial_state, training, effort, starts, epochs, population, stall, validation, ridge, decay : optional
     operators, states, modes, thresholds, sign, dead_zones, free_weights : optional
-    logarithmic_thresholds, degradation, asymmetric, differential_form, time_limit, threads : optional
+    logarithmic_thresholds, degradation, asymmetric, differential_form, resonance, lagged_input,
+    time_limit, threads : optional
         As of `hysid.fit`.
     random_state : int, RandomState instance or None, default None
         Seed of all random numbers; an int is the seed of `hysid.fit`.
@@ -113,6 +114,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         degradation: bool | None = None,
         asymmetric: bool | None = None,
         differential_form: bool | None = None,
+        resonance: bool | None = None,
+        lagged_input: bool | None = None,
         time_limit: float | None = None,
         threads: int | None = None,
         random_state: Any = None,
@@ -152,6 +155,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.degradation = degradation
         self.asymmetric = asymmetric
         self.differential_form = differential_form
+        self.resonance = resonance
+        self.lagged_input = lagged_input
         self.time_limit = time_limit
         self.threads = threads
         self.random_state = random_state

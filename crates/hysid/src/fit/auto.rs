@@ -190,6 +190,7 @@ impl Chosen<'_, '_, '_> {
     fn fit(mut self, alone: Model) -> Result<Fitted> {
         let Bench { work, .. } = self.bench;
         let fit = |model| Ok(Fitted::of(model, work.done()));
+        self.drops_what_does_not_fit();
         if let Some(place) = self.place_of_law()
             && let Some(fitted) = self.of_law(place)?
         {

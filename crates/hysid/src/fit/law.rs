@@ -2,6 +2,7 @@
 
 pub mod bouc_wen;
 pub mod duhem_nn;
+pub mod dynamic_prandtl_ishlinskii;
 pub mod generalized_prandtl_ishlinskii;
 mod grids;
 pub mod hysteretic_dynamics;

@@ -151,7 +151,9 @@ fn a_law_of_few_numbers_takes_the_place_of_an_ensemble() {
     let single = selection.single.as_ref().expect("one model was chosen");
     assert!(single.is_law && !single.distilled);
     assert_eq!(provenance.validation.as_ref().unwrap().nrmse_std_percent, selection.held_out_percent);
-    assert!(selection.candidates.len() > 1 && selection.summary()[0].contains("a law of few numbers"));
+    assert!(
+        selection.candidates.len() > 1 && selection.summary()[0].contains("a law, in place of an ensemble")
+    );
     // The noise has a root mean square of 0.07.
     let trained = provenance.trained_error().rmse;
     assert!((0.05..0.09).contains(&trained), "{trained}");
@@ -325,4 +327,62 @@ fn rows_of_a_wrong_beginning_are_not_trained_on() {
     };
     let (from_the_beginning, after) = (error(0), error(20));
     assert!(after < 0.8 * from_the_beginning, "{after} after a warm-up, {from_the_beginning} without");
+}
+
+/// Closed loops of relays whose thresholds are those of a soft magnet, one record for each amplitude.
+fn loops_of_relays(amplitudes: &[f64]) -> Dataset {
+    let thresholds: Vec<f64> = (0..80).map(|place| -0.9875 + 0.025 * f64::from(place)).collect();
+    let bell = |distance: f64| exp(-distance * distance / 0.05);
+    let record = |&amplitude: &f64| {
+        let pairs = thresholds.iter().flat_map(|&up| thresholds.iter().map(move |&down| (up, down)));
+        let mut relays: Vec<(f64, f64, f64, f64)> = pairs
+            .filter(|(up, down)| up >= down)
+            .map(|(up, down)| {
+                (up, down, bell(up - 0.15) * bell(down + 0.15), if up + down > 0.0 { -1.0 } else { 1.0 })
+            })
+            .collect();
+        let x: Vec<f64> = through(&[0.0, amplitude, -amplitude, amplitude], 50);
+        let output = |&x: &f64| -> f64 {
+            let states = relays.iter_mut().map(|(up, down, weight, state)| {
+                *state = if x >= *up {
+                    1.0
+                } else if x <= *down {
+                    -1.0
+                } else {
+                    *state
+                };
+                *weight * *state
+            });
+            states.sum()
+        };
+        let y = x.iter().map(output).collect();
+        Record::new(format!("loop to {amplitude}"), vec![x], y).unwrap()
+    };
+    Dataset::new(ColumnNames::plain(1), amplitudes.iter().map(record).collect()).unwrap()
+}
+
+#[test]
+fn a_preisach_model_takes_the_place_of_an_ensemble_on_loops_of_a_magnet() {
+    let data = loops_of_relays(&[0.3, 0.5, 0.7, 1.0]);
+    let model = fitted(&data, AutoOptions { operators: None, ..options(None) });
+    assert_eq!(model.name(), ModelName::Classical(ClassicalModel::Preisach));
+    assert!(model.provenance().selection.as_ref().unwrap().single.as_ref().unwrap().is_law);
+    let unseen = error_percent(&model, &loops_of_relays(&[0.4, 0.85]));
+    assert!(unseen < 5.0, "{unseen}");
+}
+
+/// Closed loops of electrical steel of high loss, far below saturation: each asks for what the other does not show.
+#[test]
+fn where_the_folds_tell_nothing_the_default_fits_the_data() {
+    let record = |largest: f64| {
+        let mut sheet = hysid::specimens::Ferromagnet::m800_65a();
+        let x = through(&[0.0, largest, -largest, largest], 100);
+        let y = x.iter().map(|h| sheet.step(*h)).collect();
+        Record::new(format!("to {largest} A/m"), vec![x], y).unwrap()
+    };
+    let data = Dataset::new(ColumnNames::plain(1), vec![record(73.0), record(148.0)]).unwrap();
+    let model = fitted(&data, AutoOptions { operators: None, ..options(None) });
+    let alone = model_of(&data, &request(serde_json::json!({ "model": "preisach" })));
+    let error = |model: &Model| model.provenance().trained_error().nrmse_std_percent.unwrap();
+    assert!(error(&model) < 1.4 * error(&alone), "{} {}", error(&model), error(&alone));
 }

@@ -7,6 +7,7 @@ mod classical_nonlinear;
 mod data_doctor;
 mod diagnosis;
 mod duhem_nn;
+mod dynamic_plays;
 mod examples;
 mod gradient;
 mod hysteretic_dynamics;

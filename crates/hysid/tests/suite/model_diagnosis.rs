@@ -34,6 +34,7 @@ fn guaranteed(name: &str) -> (&'static [Property], &'static [Property]) {
         "gpnn" => (&[OddSymmetry], &[RateDependence]),
         "jiles-atherton" => (&[OddSymmetry], &[RateDependence, Deterioration]),
         // At a vanishing speed.
+        "dynamic-prandtl-ishlinskii" => (&[WipingOut, Congruency, LoopClosure], &[Deterioration]),
         "rate-dependent-prandtl-ishlinskii" => {
             (&[WipingOut, Congruency, Masing, OddSymmetry, LoopClosure], &[Deterioration])
         }

@@ -116,6 +116,9 @@ fn with_all_parts(spec: FitSpec) -> FitSpec {
             options.shaping = shaping(false);
             options.states = Some(3);
             options.modes = Some(2);
+            options.relaxation = Some(1);
+            options.resonance = true;
+            options.lagged_input = true;
             options.deterioration = Some(true);
             FitSpec::Classical(options)
         }

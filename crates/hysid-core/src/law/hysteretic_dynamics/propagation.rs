@@ -56,8 +56,10 @@ impl Dual {
 
 /// The factors of a step of a mode: `Φ_qq, Φ_qp, α_0, α_1` of the displacement, `Φ_pq, Φ_pp, β_0, β_1` of the velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Propagation {
+pub struct Propagation {
+    /// `Φ_qq, Φ_qp, α_0, α_1`.
     pub displacement: [f64; 4],
+    /// `Φ_pq, Φ_pp, β_0, β_1`.
     pub velocity: [f64; 4],
 }
 
@@ -79,6 +81,14 @@ impl Propagation {
     /// Of a step of any length, even an infinite one, after which the mode is at rest.
     pub fn new(frequency: f64, damping: f64, step: f64) -> Self {
         PropagationSlopes::new(frequency, damping, step).of
+    }
+
+    /// Displacement and velocity `[q, p]` after the step, under a force that goes from one value to the other.
+    #[inline(always)]
+    pub fn moved(&self, [q, p]: [f64; 2], [f_before, f]: [f64; 2]) -> [f64; 2] {
+        let of =
+            |[by_q, by_p, by_before, by_f]: [f64; 4]| by_q * q + by_p * p + by_before * f_before + by_f * f;
+        [of(self.displacement), of(self.velocity)]
     }
 
     const AT_REST: Self = Self { displacement: [0.0, 0.0, 0.0, 1.0], velocity: [0.0; 4] };

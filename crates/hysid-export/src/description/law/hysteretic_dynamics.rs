@@ -12,7 +12,7 @@ use crate::program::expression::{Real, Whole, fused};
 use crate::program::{Array, Builder};
 use element::ElementParts;
 use input::Steps;
-use propagation::Factors;
+pub(super) use propagation::Factors;
 
 /// Scaled inputs are limited to this magnitude, as in the library.
 const LARGEST_INPUT: f64 = 1e6;

@@ -88,6 +88,7 @@ pub fn laws() -> Vec<(String, Model)> {
             1,
             &with(&[("logarithmic_thresholds", json!(true)), ("free_weights", json!(false))]),
         ),
+        fitted("dynamic-prandtl-ishlinskii", 1, &with(&[("lagged_input", json!(true))])),
         fitted("masing", 1, &[("sign", json!("any"))]),
         fitted("preisach", 1, &[("operators", json!(7))]),
         fitted("neuro-madelung", 1, &with(&[("hidden", json!(4))])),
@@ -112,7 +113,13 @@ pub fn laws_with_inertia() -> Vec<(String, Model)> {
     let (name, model) = fitted("hysteretic-oscillator", 1, &options);
     assert!(!model.lead_in().is_empty());
     let variants = dynamics::variants(&model);
-    [vec![(name, model)], variants].concat()
+    let with_resonance = fitted(
+        "dynamic-prandtl-ishlinskii",
+        1,
+        &[("starts", 1), ("epochs", 3), ("resonance", 1), ("relaxation", 1), ("operators", 5)]
+            .map(|(name, value)| (name, if name == "resonance" { json!(true) } else { json!(value) })),
+    );
+    [vec![(name, model), with_resonance], variants].concat()
 }
 
 /// The default ensemble, of hasty members.

@@ -41,7 +41,7 @@ impl Kind {
             FitSpec::Classical(options) => match options.model {
                 ClassicalModel::RandomStops => Kind::RandomStops,
                 ClassicalModel::DuhemNn => Kind::Recurrent,
-                model if model.needs_time() => Kind::Dynamic,
+                model if model.has_inertia() => Kind::Dynamic,
                 _ => Kind::Classical,
             },
             FitSpec::Auto(_) => Kind::Classical,
@@ -463,7 +463,8 @@ fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
         rate: options.rate.filter(|_| model.uses_rate()),
         ..of_law(options, model)
     };
-    let wanted = searched.filter(|model| !model.needs_rate() || options.rate.is_some());
+    let is_timed = |model: &ClassicalModel| model.needs_rate() || model.needs_time() && !model.has_inertia();
+    let wanted = searched.filter(|model| !is_timed(model) || options.rate.is_some());
     let searched = |law: ClassicalOptions| match options.effort {
         Effort::Normal => law,
         effort => ClassicalOptions {

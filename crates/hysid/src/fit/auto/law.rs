@@ -1,6 +1,6 @@
-//! A law that is the model by itself: one of few numbers whose errors are about the lowest of all candidates, on the
-//! data and on the folds. Whatever the data do not show, it predicts better than a combination of networks: its numbers
-//! cannot follow the data by chance.
+//! A law that is the model by itself: one of few numbers, or a Preisach model, whose errors are about the lowest of all
+//! candidates, on the data and on the folds. Whatever the data do not show, it predicts better than a combination of
+//! networks: its numbers cannot follow the data by chance, and a Preisach plane wipes out and is congruent everywhere.
 
 use super::Chosen;
 use crate::error::Result;
@@ -8,13 +8,20 @@ use crate::fit::auto::candidates::Kind;
 use crate::fit::auto::trial::Trial;
 use crate::fit::network::Fitted;
 use crate::model::selection::SingleModel;
+use crate::options::ModelName;
+use crate::options::classical::ClassicalModel;
 
 /// Most numbers of such a law. Designed.
 const FEW_NUMBERS: usize = 40;
 
-/// Largest product of its two errors, on the data and on the folds, each relative to the lowest of all candidates.
-/// Designed.
+/// Largest product of its two errors, on the data and on the folds, each relative to the lowest of all candidates: of a
+/// law of few numbers, and of a Preisach model where there is no such law. Designed.
 const ABOUT_THE_LOWEST: f64 = 1.4;
+const ABOUT_THE_LOWEST_OF_PREISACH: f64 = 2.0;
+
+/// Largest training error of such a Preisach model, relative to the standard deviation: data that it leaves more of are
+/// not those of relays. Designed.
+const LEFT_BY_PREISACH: f64 = 0.05;
 
 /// Scores of laws, relative to the lowest, that tell nothing apart: the law with the fewest numbers is taken. Designed.
 const ALIKE: f64 = 1.05;
@@ -23,6 +30,7 @@ const ALIKE: f64 = 1.05;
 struct Judged {
     place: usize,
     is_law: bool,
+    is_preisach: bool,
     numbers: usize,
     training: f64,
     score: f64,
@@ -40,10 +48,14 @@ impl Chosen<'_, '_, '_> {
             .map(|(place, trial)| self.judged(place, trial))
             .collect();
         let lowest = |error: fn(&Judged) -> f64| judged.iter().map(error).fold(f64::INFINITY, f64::min);
-        let most = ABOUT_THE_LOWEST * lowest(|one| one.training) * lowest(|one| one.score);
-        let is_such_a_law =
-            |one: &&Judged| one.is_law && one.numbers <= FEW_NUMBERS && one.training * one.score <= most;
-        let laws: Vec<&Judged> = judged.iter().filter(is_such_a_law).collect();
+        let least = lowest(|one| one.training) * lowest(|one| one.score);
+        let is_about = |most: f64| move |one: &&Judged| one.training * one.score <= most * least;
+        let few = judged.iter().filter(|one| one.is_law && one.numbers <= FEW_NUMBERS);
+        let mut laws: Vec<&Judged> = few.filter(is_about(ABOUT_THE_LOWEST)).collect();
+        if laws.is_empty() {
+            let preisach = judged.iter().filter(|one| one.is_preisach && one.training <= LEFT_BY_PREISACH);
+            laws = preisach.filter(is_about(ABOUT_THE_LOWEST_OF_PREISACH)).collect();
+        }
         let best = laws.iter().map(|law| law.score).fold(f64::INFINITY, f64::min);
         let alike = laws.into_iter().filter(|law| law.score <= ALIKE * best);
         alike.min_by(|a, b| a.numbers.cmp(&b.numbers).then(a.score.total_cmp(&b.score))).map(|law| law.place)
@@ -53,6 +65,7 @@ impl Chosen<'_, '_, '_> {
         Judged {
             place,
             is_law: trial.candidate.kind == Kind::Classical,
+            is_preisach: trial.candidate.asked().model() == ModelName::Classical(ClassicalModel::Preisach),
             numbers: trial.members.values().map(|model| model.parameters()).max().unwrap_or(usize::MAX),
             training: trial.training_error(),
             score: trial.score(self.bench.folds, self.evidence, |_| true).mean_percent(),

@@ -3,6 +3,9 @@
 //! An ensemble is given only if its held-out error is at most 1/[`CLEARLY_BETTER`] times that of the best candidate, and its
 //! training error at most [`FITS`] times that of the candidate that fits best, unless the ensemble predicts held-out
 //! rows better than that candidate. Otherwise the candidates that are worse are dropped, in two steps.
+//!
+//! Where even the best candidate misses held-out rows by half of their standard deviation, the folds tell nothing: each
+//! asks for more than the others show. Candidates that do not fit the data are then left out before all else.
 
 use super::{Assembled, Chosen, Trial, errors_held_out};
 use crate::fit::auto::score::Score;
@@ -16,6 +19,9 @@ const SLACK_OF_ONE_LOOP: f64 = 0.5;
 /// Held-out error, relative to the ensemble's, at which a candidate is preferred: the lowest of many is low by chance.
 /// Designed.
 const CLEARLY_BETTER: f64 = 0.9;
+
+/// Lowest score, in percent of the standard deviation, at which the folds tell nothing. Designed.
+const TELLS_NOTHING: f64 = 50.0;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
@@ -65,11 +71,28 @@ impl Chosen<'_, '_, '_> {
         if self.options.only.is_some() || !is_misfit && !is_beaten || !keeps.contains(&true) {
             return false;
         }
+        self.keep(keeps);
+        true
+    }
+
+    /// Leaves out candidates that do not fit the data, where the folds tell nothing.
+    pub(super) fn drops_what_does_not_fit(&mut self) {
+        let all: Vec<Option<Fitness>> = self.trials.iter().map(|trial| self.fitness(trial)).collect();
+        let lowest =
+            |figure: fn(&Fitness) -> f64| all.iter().flatten().map(figure).fold(f64::INFINITY, f64::min);
+        let most = FITS * lowest(|one| one.training);
+        let tells = self.options.only.is_some() || lowest(|one| one.score) < TELLS_NOTHING;
+        if tells || !most.is_finite() {
+            return;
+        }
+        self.keep(all.iter().map(|one| one.is_some_and(|one| one.training <= most)).collect());
+    }
+
+    fn keep(&mut self, keeps: Vec<bool>) {
         let (kept, left): (Vec<_>, Vec<_>) =
             std::mem::take(&mut self.trials).into_iter().zip(keeps).partition(|(_, keep)| *keep);
         self.trials = kept.into_iter().map(|(trial, _)| trial).collect();
         self.left_out.extend(left.into_iter().map(|(trial, _)| trial));
-        true
     }
 
     fn fitness(&self, trial: &Trial) -> Option<Fitness> {

@@ -12,7 +12,7 @@ const TERMS: usize = 20;
 const SHORT: f64 = 1.0;
 
 /// The factors of all modes: `Φ_qq, Φ_qp, α_0, α_1, Φ_pq, Φ_pp, β_0, β_1`, each of every mode.
-pub(super) struct Factors {
+pub struct Factors {
     modes: usize,
     factors: Array,
     frequencies: Array,
