@@ -381,7 +381,7 @@ fn where_the_folds_tell_nothing_the_default_fits_the_data() {
         Record::new(format!("to {largest} A/m"), vec![x], y).unwrap()
     };
     let data = Dataset::new(ColumnNames::plain(1), vec![record(73.0), record(148.0)]).unwrap();
-    let model = fitted(&data, AutoOptions { operators: None, ..options(None) });
+    let model = hysid::Fit::new().option("effort", "quick").run(&data).unwrap();
     let alone = model_of(&data, &request(serde_json::json!({ "model": "preisach" })));
     let error = |model: &Model| model.provenance().trained_error().nrmse_std_percent.unwrap();
     assert!(error(&model) < 1.4 * error(&alone), "{} {}", error(&model), error(&alone));
