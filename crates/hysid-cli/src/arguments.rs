@@ -58,21 +58,8 @@ pub struct Arguments {
 }
 
 /// What stands for a number in the usage of an option.
-const NUMBERS: [&str; 13] = [
-    "N",
-    "SHARE",
-    "ROWS",
-    "SECONDS",
-    "FRACTION",
-    "PROBABILITY",
-    "PERCENT",
-    "LOW:HIGH",
-    "RATE",
-    "TIME",
-    "MM",
-    "POINTS",
-    "MASS",
-];
+const NUMBERS: &str = "N SHARE ROWS SECONDS FRACTION PROBABILITY PERCENT LOW:HIGH RATE TIME MM POINTS \
+                       MASS";
 
 impl Arguments {
     /// What was typed.
@@ -82,7 +69,7 @@ impl Arguments {
         let takes_numbers = |option: clap::Arg| {
             let takes_value = matches!(option.get_action(), ArgAction::Set | ArgAction::Append);
             let names = option.get_value_names().unwrap_or_default();
-            let is_number = names.iter().any(|name| NUMBERS.contains(&name.as_str()));
+            let is_number = names.iter().any(|name| NUMBERS.split(' ').any(|number| number == name));
             match option.get_long() {
                 Some(_) if is_number => option.allow_hyphen_values(true),
                 Some(_) if takes_value => option.allow_negative_numbers(true),

@@ -15,40 +15,12 @@ const OTHER: [&str; 1] = ["degC"];
 const OTHER_ALONE: [&str; 5] = ["°C", "℃", "°F", "Celsius", "n.u."];
 
 /// Names that only time has.
-const TIME_NAMES: [&str; 2] = ["t", "time"];
+const TIME_NAMES: &str = "t time";
 
 /// Further names of time, lower case, without blanks and underscores. The values must confirm them.
-const FURTHER_TIME_NAMES: [&str; 29] = [
-    "timestamp",
-    "elapsed",
-    "elapsedtime",
-    "timeelapsed",
-    "testtime",
-    "runtime",
-    "clock",
-    "date",
-    "datetime",
-    "sec",
-    "secs",
-    "second",
-    "seconds",
-    "zeit",
-    "zeitstempel",
-    "messzeit",
-    "temps",
-    "tiempo",
-    "tempo",
-    "xvalue",
-    "relativetime",
-    "tijd",
-    "czas",
-    "tid",
-    "время",
-    "时间",
-    "时刻",
-    "時間",
-    "時刻",
-];
+const FURTHER_TIME_NAMES: &str = "timestamp elapsed elapsedtime timeelapsed testtime runtime clock date \
+                                  datetime sec secs second seconds zeit zeitstempel messzeit temps tiempo \
+                                  tempo xvalue relativetime tijd czas tid время 时间 时刻 時間 時刻";
 
 /// Words of longer names of time, such as `Running Time`.
 const TIME_WORDS: [&str; 6] = ["time", "zeit", "temps", "tiempo", "tempo", "время"];
@@ -115,7 +87,7 @@ pub fn is_unit(text: &str) -> bool {
 
 /// True for `t`, `time`, and either with a unit of time.
 pub fn is_time(name: &str) -> bool {
-    is_named_time(name, &TIME_NAMES)
+    is_named_time(name, TIME_NAMES)
 }
 
 /// True for names that may mean time, in several languages, or have a unit of time.
@@ -125,13 +97,13 @@ pub fn may_be_time(name: &str) -> bool {
         quantity.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| TIME_WORDS.contains(&word))
     };
     let is_in_time = is_in_unit_of_time(unit.as_deref());
-    is_time(name) || is_named_time(name, &FURTHER_TIME_NAMES) || is_in_time || unit.is_none() && has_word()
+    is_time(name) || is_named_time(name, FURTHER_TIME_NAMES) || is_in_time || unit.is_none() && has_word()
 }
 
-fn is_named_time(name: &str, names: &[&str]) -> bool {
+fn is_named_time(name: &str, names: &str) -> bool {
     let (quantity, unit) = split(name);
     let plain: String = quantity.to_lowercase().chars().filter(|c| !" _-.".contains(*c)).collect();
-    (unit.is_none() || is_in_unit_of_time(unit.as_deref())) && names.contains(&plain.as_str())
+    (unit.is_none() || is_in_unit_of_time(unit.as_deref())) && names.split(' ').any(|known| known == plain)
 }
 
 fn is_in_unit_of_time(unit: Option<&str>) -> bool {

@@ -76,55 +76,21 @@ impl Protocol {
     }
 
     /// Beginnings of words by which a text is recognised.
-    fn words(self) -> &'static [&'static str] {
+    fn words(self) -> &'static str {
         match self {
-            Self::Structure => &[
-                "structure",
-                "structural",
-                "column",
-                "beam",
-                "frame",
-                "wall",
-                "joint",
-                "brace",
-                "connection",
-                "timber",
-                "wood",
-                "concrete",
-                "masonry",
-                "member",
-                "coupon",
-                "metal",
-                "steel",
-            ],
-            Self::Damper => {
-                &["damper", "bearing", "isolator", "friction", "magnetorheological", "magneto-rheological"]
+            Self::Structure => {
+                "structure structural column beam frame wall joint brace connection timber wood concrete \
+                 masonry member coupon metal steel"
             }
-            Self::Rubber => &["rubber", "elastomer", "bush", "mount", "viscoelastic"],
-            Self::Actuator => &[
-                "actuator",
-                "piezo",
-                "stack",
-                "bender",
-                "stage",
-                "shape-memory",
-                "shape",
-                "sma",
-                "magnetostrictive",
-                "terfenol",
-                "muscle",
-            ],
-            Self::Magnet => &[
-                "magnet",
-                "ferrite",
-                "core",
-                "transformer",
-                "sheet",
-                "lamination",
-                "ferroelectric",
-                "capacitor",
-                "recording",
-            ],
+            Self::Damper => "damper bearing isolator friction magnetorheological magneto-rheological",
+            Self::Rubber => "rubber elastomer bush mount viscoelastic",
+            Self::Actuator => {
+                "actuator piezo stack bender stage shape-memory shape sma magnetostrictive terfenol \
+                 muscle"
+            }
+            Self::Magnet => {
+                "magnet ferrite core transformer sheet lamination ferroelectric capacitor recording"
+            }
         }
     }
 
@@ -138,7 +104,7 @@ impl Protocol {
         // The longest beginning of a word counts: a magnetorheological damper is no magnet.
         let letters = |kind: &Self| -> usize {
             let of_word = |word: &&str| {
-                let known = kind.words().iter().filter(|known| word.starts_with(**known));
+                let known = kind.words().split(' ').filter(|known| word.starts_with(known));
                 known.map(|known| known.len()).max().unwrap_or(0)
             };
             words.iter().map(of_word).sum()
