@@ -17,6 +17,7 @@ pub mod error;
 pub mod law;
 pub mod linear_algebra;
 pub mod model;
+mod named;
 pub mod network;
 pub mod operator;
 pub mod options;

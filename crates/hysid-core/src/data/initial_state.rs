@@ -14,12 +14,11 @@
 //! leg. The legs are quasi-static: the rate is 0, and each takes an infinite time, so that relaxation is
 //! complete. Further inputs have their values of the first row. The rows of a lead-in have no output.
 
-use std::str::FromStr;
-
 use serde::{Deserialize, Serialize};
 
 use crate::data::turning_points::turning_points;
-use crate::error::{Error, MOST_TURNS, Result};
+use crate::error::MOST_TURNS;
+use crate::named;
 use crate::significant::Significant;
 
 /// Half cycles of a demagnetisation.
@@ -47,29 +46,13 @@ pub enum InitialState {
     Unknown,
 }
 
+named!(
+    InitialState, "initial state":
+    Virgin = "virgin", SaturatedUp = "saturated-up", SaturatedDown = "saturated-down",
+    Demagnetised = "demagnetised", Periodic = "periodic", Unknown = "unknown"
+);
+
 impl InitialState {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Virgin,
-        Self::SaturatedUp,
-        Self::SaturatedDown,
-        Self::Demagnetised,
-        Self::Periodic,
-        Self::Unknown,
-    ];
-
-    /// The name on the command line, in Python and in model files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Virgin => "virgin",
-            Self::SaturatedUp => "saturated-up",
-            Self::SaturatedDown => "saturated-down",
-            Self::Demagnetised => "demagnetised",
-            Self::Periodic => "periodic",
-            Self::Unknown => "unknown",
-        }
-    }
-
     /// The names of those that need no output to be found.
     pub fn known() -> Vec<&'static str> {
         Self::ALL.into_iter().filter(|state| *state != Self::Unknown).map(Self::name).collect()
@@ -91,17 +74,6 @@ impl InitialState {
             }
             Self::Periodic | Self::Unknown => None,
         }
-    }
-}
-
-impl FromStr for InitialState {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        Self::ALL.into_iter().find(|state| state.name() == name).ok_or_else(|| {
-            let known = Self::ALL.map(Self::name).into();
-            Error::UnknownName { what: "initial state", name: name.into(), known }
-        })
     }
 }
 

@@ -14,7 +14,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::record::{Excitation, Record};
-use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, Result};
+use crate::error::{Channel, DataProblem, LARGEST_VALUE, Result};
+use crate::named;
 
 /// Method by which the rate of the first input is found. A model stores the method of its training.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,6 +36,11 @@ pub enum RateMethod {
 
 /// Neighbours on each side of a Savitzky-Golay window.
 const HALF_WINDOW: usize = 5;
+
+named!(
+    RateMethod, "rate":
+    Given = "given", Central = "central", Backward = "backward", SavitzkyGolay = "savitzky-golay"
+);
 
 impl RateMethod {
     /// Numbers of rows before and after a row from which its rate follows.
@@ -87,23 +93,6 @@ impl RateMethod {
 fn each(rows: std::ops::Range<usize>, rate: &mut [f64], value: impl Fn(usize) -> f64) {
     for (rate, row) in rate.iter_mut().zip(rows) {
         *rate = value(row);
-    }
-}
-
-impl std::str::FromStr for RateMethod {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        match text {
-            "given" => Ok(RateMethod::Given),
-            "central" => Ok(RateMethod::Central),
-            "backward" => Ok(RateMethod::Backward),
-            "savitzky-golay" => Ok(RateMethod::SavitzkyGolay),
-            _ => {
-                let known = vec!["given", "central", "backward", "savitzky-golay"];
-                Err(Error::UnknownName { what: "rate", name: text.into(), known })
-            }
-        }
     }
 }
 

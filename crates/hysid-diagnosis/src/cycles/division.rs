@@ -9,11 +9,10 @@
 //! The noise of the input decides what is a turning point ([`ReversalRule`](crate::branch::ReversalRule)). What is left at
 //! the beginning and at the end of a record is a part of its own, marked as incomplete.
 
-use std::fmt;
 use std::ops::Range;
-use std::str::FromStr;
 
 use hysid_core::elementary::ln;
+use hysid_core::named;
 use serde::Serialize;
 
 use super::CLOSED;
@@ -36,37 +35,10 @@ pub enum Division {
     Start,
 }
 
-impl Division {
-    /// All divisions.
-    pub const ALL: [Self; 4] = [Self::Zero, Self::Mean, Self::Reversals, Self::Start];
-
-    /// The name, such as `zero`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Zero => "zero",
-            Self::Mean => "mean",
-            Self::Reversals => "reversals",
-            Self::Start => "start",
-        }
-    }
-}
-
-impl fmt::Display for Division {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for Division {
-    type Err = hysid_core::Error;
-
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        Self::ALL.into_iter().find(|division| division.name() == name).ok_or_else(|| {
-            let known = Self::ALL.map(Self::name).to_vec();
-            hysid_core::Error::UnknownName { what: "division", name: name.into(), known }
-        })
-    }
-}
+named!(
+    Division, "division":
+    Zero = "zero", Mean = "mean", Reversals = "reversals", Start = "start"
+);
 
 /// A half cycle passes a level if it goes on to both sides by this share of its way.
 const BEYOND: f64 = 0.1;

@@ -1,11 +1,9 @@
 //! The field of engineering that data come from.
 
-use std::fmt;
-use std::str::FromStr;
-
 use hysid_core::data::column::{Domain, Part};
 use hysid_core::data::record::ColumnNames;
 use hysid_core::data::unit;
+use hysid_core::named;
 use serde::Serialize;
 
 /// A field of engineering, which determines what is read from its loops.
@@ -22,10 +20,12 @@ pub enum Field {
     General,
 }
 
-impl Field {
-    /// All fields.
-    pub const ALL: [Self; 4] = [Self::Structure, Self::Magnet, Self::Actuator, Self::General];
+named!(
+    Field, "field":
+    Structure = "structure", Magnet = "magnet", Actuator = "actuator", General = "general"
+);
 
+impl Field {
     /// The field that the names and units of the first input and the output indicate.
     pub fn of(names: &ColumnNames) -> Self {
         if names.inputs.first().is_some_and(|name| is_applied_field(name)) && is_magnetic_state(&names.output)
@@ -63,86 +63,38 @@ impl Field {
     pub(super) fn sense_of_energy(self) -> f64 {
         if self == Self::Magnet { -1.0 } else { 1.0 }
     }
-
-    /// The name, such as `structure`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Structure => "structure",
-            Self::Magnet => "magnet",
-            Self::Actuator => "actuator",
-            Self::General => "general",
-        }
-    }
-}
-
-impl fmt::Display for Field {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for Field {
-    type Err = hysid_core::Error;
-
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        let known = || Self::ALL.map(Self::name).to_vec();
-        Self::ALL.into_iter().find(|field| field.name() == name).ok_or_else(|| {
-            hysid_core::Error::UnknownName { what: "field", name: name.into(), known: known() }
-        })
-    }
 }
 
 /// Units of magnetic and electric fields, without blanks.
-const FIELD_UNITS: [&str; 16] = [
-    "T", "mT", "uT", "µT", "G", "kG", "Oe", "kOe", "A/m", "kA/m", "MA/m", "V/m", "kV/m", "MV/m", "kV/cm",
-    "kV/mm",
-];
+const FIELD_UNITS: &str = "T mT uT µT G kG Oe kOe A/m kA/m MA/m V/m kV/m MV/m kV/cm kV/mm";
 
 /// Words of an applied field.
-const FIELD_WORDS: [&str; 5] = ["field", "feld", "champ", "campo", "h"];
+const FIELD_WORDS: &str = "field feld champ campo h";
 
 /// Units of moments, magnetisations and polarisations, without blanks.
-const STATE_UNITS: [&str; 16] = [
-    "emu", "memu", "emu/g", "emu/cm3", "emu/cc", "Am2", "Am^2", "mAm2", "Am2/kg", "Am^2/kg", "uB", "C/m2",
-    "uC/cm2", "µC/cm2", "mdeg", "mrad",
-];
+const STATE_UNITS: &str = "emu memu emu/g emu/cm3 emu/cc Am2 Am^2 mAm2 Am2/kg Am^2/kg uB C/m2 uC/cm2 \
+                           µC/cm2 mdeg mrad";
 
 /// Words of moments, magnetisations and polarisations.
-const STATE_WORDS: [&str; 16] = [
-    "moment",
-    "magnetization",
-    "magnetisation",
-    "magnetisierung",
-    "magnetic",
-    "polarization",
-    "polarisation",
-    "kerr",
-    "moke",
-    "induction",
-    "flux",
-    "charge",
-    "m",
-    "j",
-    "b",
-    "p",
-];
+const STATE_WORDS: &str = "moment magnetization magnetisation magnetisierung magnetic polarization \
+                           polarisation kerr moke induction flux charge m j b p";
 
-fn has_word(name: &str, words: &[&str]) -> bool {
+fn has_word(name: &str, words: &str) -> bool {
     let lower = name.to_lowercase();
-    lower.split(|c: char| !c.is_alphanumeric()).any(|word| words.contains(&word))
+    lower.split(|c: char| !c.is_alphanumeric()).any(|word| words.split(' ').any(|known| known == word))
 }
 
-fn has_unit(name: &str, units: &[&str]) -> bool {
+fn has_unit(name: &str, units: &str) -> bool {
     let plain = |unit: String| unit.replace([' ', '·', '*', '.'], "");
-    unit::of_column(name).map(plain).is_some_and(|unit| units.contains(&unit.as_str()))
+    unit::of_column(name).map(plain).is_some_and(|unit| units.split(' ').any(|known| known == unit))
 }
 
 fn is_applied_field(name: &str) -> bool {
-    has_unit(name, &FIELD_UNITS) || has_word(unit::split(name).0, &FIELD_WORDS)
+    has_unit(name, FIELD_UNITS) || has_word(unit::split(name).0, FIELD_WORDS)
 }
 
 fn is_magnetic_state(name: &str) -> bool {
-    has_unit(name, &STATE_UNITS) || has_word(unit::split(name).0, &STATE_WORDS)
+    has_unit(name, STATE_UNITS) || has_word(unit::split(name).0, STATE_WORDS)
 }
 
 #[cfg(test)]

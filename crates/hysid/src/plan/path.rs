@@ -2,13 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use std::str::FromStr;
-
 use hysid_core::elementary::cos;
+use hysid_core::named;
 use serde::{Deserialize, Serialize};
 
 use super::limits::Limits;
-use crate::error::{Error, Result};
 
 /// Fewest rows of a swing, so that a small loop is a loop.
 const FEWEST_ROWS: usize = 4;
@@ -23,34 +21,15 @@ pub enum Wave {
     Triangle,
 }
 
+named!(Wave, "wave": Smooth = "smooth", Triangle = "triangle");
+
 impl Wave {
-    /// All shapes.
-    pub const ALL: [Self; 2] = [Self::Smooth, Self::Triangle];
-
-    /// The name, such as `smooth`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Smooth => "smooth",
-            Self::Triangle => "triangle",
-        }
-    }
-
     /// Largest rate over mean rate of a swing.
     pub fn peak(self) -> f64 {
         match self {
             Self::Smooth => FRAC_PI_2,
             Self::Triangle => 1.0,
         }
-    }
-}
-
-impl FromStr for Wave {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        let known = || Self::ALL.map(Self::name).into();
-        let found = Self::ALL.into_iter().find(|wave| wave.name() == name);
-        found.ok_or_else(|| Error::UnknownName { what: "wave", name: name.into(), known: known() })
     }
 }
 
