@@ -11,6 +11,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// An error of the library. Its text states what is wrong and what helps.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the message of each has its fields")]
 pub enum Error {
     /// A record cannot be used as it is.
     #[error(transparent)]
@@ -26,14 +27,11 @@ pub enum Error {
     /// An option of a fit that cannot be used.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// An unknown name.
     #[error("{what} `{}` is unknown: choose one of {}", one_line(.name), .known.join(", "))]
     UnknownName {
         /// What the name is of, such as "model".
         what: &'static str,
-        /// The name.
         name: String,
-        /// The known names.
         known: Vec<&'static str>,
     },
     /// A parameter of a law that is not finite or out of bounds.
@@ -41,31 +39,13 @@ pub enum Error {
         "{law}: {symbol} ({meaning}) is {:.6}, and must be from {:.6} to {:.6}",
         Significant(*value), Significant(*low), Significant(*high)
     )]
-    Parameter {
-        /// The law.
-        law: &'static str,
-        /// The field's symbol of the parameter.
-        symbol: String,
-        /// What it is.
-        meaning: &'static str,
-        /// Its value.
-        value: f64,
-        /// The smallest that it may have.
-        low: f64,
-        /// The largest.
-        high: f64,
-    },
+    Parameter { law: &'static str, symbol: String, meaning: &'static str, value: f64, low: f64, high: f64 },
     /// Parts of a model, or arguments of an element, that cannot be used together.
     #[error("{}", one_line(.0))]
     Parts(String),
     /// A model that takes one input, and data with several.
     #[error("{model} takes one input, not {found}: use xpnn+, or choose one input")]
-    SeveralInputs {
-        /// The model.
-        model: &'static str,
-        /// Inputs of the data.
-        found: usize,
-    },
+    SeveralInputs { model: &'static str, found: usize },
     /// A model that cannot be fitted without the rate of its input.
     #[error("{0} needs the rate of the input: there are no time stamps to compute it from")]
     RateNeeded(&'static str),
@@ -83,10 +63,7 @@ pub enum Error {
     NoCandidate,
     /// Data that cannot be divided into two folds.
     #[error("too few data to hold any out: at least two records, or one of {rows} rows, are needed")]
-    TooFewForFolds {
-        /// Rows that one record needs.
-        rows: usize,
-    },
+    TooFewForFolds { rows: usize },
     /// A data set without records.
     #[error("a data set needs at least one record")]
     NoRecords,
@@ -98,14 +75,7 @@ pub enum Error {
     NoBand(&'static str),
     /// A probability that no band is calibrated for.
     #[error("a band of {probability}: choose a probability from {least} to {most}")]
-    Probability {
-        /// The requested value.
-        probability: f64,
-        /// The smallest that there is.
-        least: f64,
-        /// The largest.
-        most: f64,
-    },
+    Probability { probability: f64, least: f64, most: f64 },
     /// A number of data sets of ten that no band is made for.
     #[error("a band for {0} of ten data sets: choose 5 to 9 of ten")]
     DataSetsOfTen(usize),
@@ -124,11 +94,8 @@ pub enum Error {
     Memory {
         /// Bytes needed, as estimated.
         needed: f64,
-        /// Bytes available.
         available: f64,
-        /// What needs them.
         taken_by: String,
-        /// What reduces them.
         advice: &'static str,
     },
     /// The observer stopped the fit before there was a model.
@@ -185,37 +152,23 @@ impl fmt::Display for Channel {
 /// What is wrong with a record.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the message of each has its fields")]
 pub enum DataProblem {
     /// No rows at all.
     #[error("has no rows")]
     Empty,
     /// A column of another length than the first input.
     #[error("has {found} values where the first input has {expected}")]
-    Length {
-        /// Rows of the first input.
-        expected: usize,
-        /// Rows of this column.
-        found: usize,
-    },
+    Length { expected: usize, found: usize },
     /// A column of another length than the displacement.
     #[error("has {found} values where the displacement has {expected}")]
-    LengthOf {
-        /// Rows of the displacement.
-        expected: usize,
-        /// Rows of this column.
-        found: usize,
-    },
+    LengthOf { expected: usize, found: usize },
     /// Fewer rows than the window of a filter has.
     #[error(
         "has {}: at least {needed} rows are needed, the window of the filter that differentiates it",
         if *.found == 1 { "1 row".to_string() } else { format!("{} rows", .found) }
     )]
-    TooFewForWindow {
-        /// Rows of the record.
-        found: usize,
-        /// Rows of the window.
-        needed: usize,
-    },
+    TooFewForWindow { found: usize, needed: usize },
     /// NaN or infinity where a number is needed.
     #[error("{0} is not a finite number")]
     NotFinite(f64),
@@ -226,12 +179,7 @@ pub enum DataProblem {
     #[error(
         "time {now} does not come after {before} (sort the rows, or name the records in a column `record`)"
     )]
-    TimeNotIncreasing {
-        /// The time stamp before.
-        before: f64,
-        /// The offending time stamp.
-        now: f64,
-    },
+    TimeNotIncreasing { before: f64, now: f64 },
     /// A rate that overflows because a time step is too short.
     #[error("the rate here is {0:.2e}: the time step is too small (is the time column right?)")]
     RateTooLarge(f64),
@@ -252,23 +200,13 @@ pub enum DataProblem {
         "has a range of {:.2}, and the output one of {:.2}: their ratio must be from 1e-50 to 1e50 (choose other units)",
         Significant(*input), Significant(*output)
     )]
-    Ranges {
-        /// Range of the input.
-        input: f64,
-        /// Range of the output.
-        output: f64,
-    },
+    Ranges { input: f64, output: f64 },
     /// A lead-in with more turning points than [`MOST_TURNS`].
     #[error("the lead-in has {0} turning points: at most {MOST_TURNS} are possible")]
     LongLeadIn(usize),
     /// The number of inputs is not what it must be.
     #[error("has {found} inputs where {expected} are expected")]
-    Inputs {
-        /// Inputs expected.
-        expected: usize,
-        /// Inputs found.
-        found: usize,
-    },
+    Inputs { expected: usize, found: usize },
     /// The input has one value throughout.
     #[error("is constant ({}): there is nothing to identify", Significant(*.0))]
     ConstantInput(f64),
@@ -292,33 +230,16 @@ pub enum DataProblem {
     BlankWithin,
     /// Too few rows with an output for a test of the residual.
     #[error("has only {found} rows with an output: tests of the residual need at least {needed}")]
-    TooFewForTests {
-        /// Rows with an output.
-        found: usize,
-        /// Rows needed.
-        needed: usize,
-    },
+    TooFewForTests { found: usize, needed: usize },
     /// Too few rows with an output after the warm-up.
     #[error(
         "has only {found} rows with an output after a warm-up of {warm_up} rows: at least {needed} are needed to identify a \
          model (shorten the warm-up)"
     )]
-    LongWarmUp {
-        /// Rows at the beginning of each record that are not trained on.
-        warm_up: usize,
-        /// Rows with an output after them.
-        found: usize,
-        /// Rows needed.
-        needed: usize,
-    },
+    LongWarmUp { warm_up: usize, found: usize, needed: usize },
     /// Too few rows with an output.
     #[error("has only {found} rows with an output: at least {needed} are needed to identify a model")]
-    TooFewRows {
-        /// Rows with an output.
-        found: usize,
-        /// Rows needed.
-        needed: usize,
-    },
+    TooFewRows { found: usize, needed: usize },
 }
 
 impl DataProblem {
@@ -406,15 +327,11 @@ impl std::error::Error for MotionError {}
 /// A sample that a model cannot take.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the message of each has its fields")]
 pub enum SampleError {
     /// Another number of inputs than the model has.
     #[error("{found} inputs where the model has {expected}")]
-    Inputs {
-        /// Inputs of the model.
-        expected: usize,
-        /// Inputs of the sample.
-        found: usize,
-    },
+    Inputs { expected: usize, found: usize },
     /// A time stamp that does not come after the last sample's.
     #[error("time {0} does not come after the last sample's")]
     Time(f64),
@@ -438,6 +355,7 @@ pub enum SampleError {
 /// A bound of an [`Inverse`](crate::model::Inverse) that cannot be used, or a row that it cannot take.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the message of each has its fields")]
 pub enum InverseError {
     /// Limits of the input.
     #[error("the limits of the input are {0} and {1}: they must be finite, and the first the lower one")]
@@ -453,17 +371,11 @@ pub enum InverseError {
     Row {
         /// The row, counted from 0.
         row: usize,
-        /// What is wrong.
         problem: SampleError,
     },
     /// A column of another length than the wanted outputs.
     #[error("a column of {length} values for {rows} wanted outputs")]
-    Length {
-        /// Wanted outputs.
-        rows: usize,
-        /// Values of the column.
-        length: usize,
-    },
+    Length { rows: usize, length: usize },
     /// Time stamps are needed, and there are none.
     #[error("there are no time stamps, and the model, its slew limit or its preview needs them")]
     NoTime,
@@ -481,6 +393,7 @@ pub struct OptionError {
 /// What is wrong with an option of a fit.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the message of each has its fields")]
 pub enum OptionProblem {
     /// The option is unknown; these are the known names.
     Unknown(Vec<&'static str>),

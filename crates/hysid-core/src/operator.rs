@@ -71,6 +71,7 @@ pub trait Operator {
 /// Parameters with which no operator can be made, or times over which none can be run.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the message of each has its fields")]
 pub enum InvalidOperator {
     /// The threshold of a relay, a stop or a deteriorating stop is not finite or not greater than 0.
     #[error("threshold r = {0}: it must be finite and greater than 0")]
@@ -94,9 +95,7 @@ pub enum InvalidOperator {
     TimeDecreases {
         /// Index of the row, counted from 0.
         row: usize,
-        /// Time of the row before.
         previous: f64,
-        /// Time of this row.
         time: f64,
     },
     /// A time is NaN or infinite.
@@ -104,17 +103,11 @@ pub enum InvalidOperator {
     TimeNotFinite {
         /// Index of the row, counted from 0.
         row: usize,
-        /// Time of this row.
         time: f64,
     },
     /// The numbers of times and inputs differ.
     #[error("{times} times for {inputs} inputs: there must be one time for each input")]
-    Lengths {
-        /// Number of times.
-        times: usize,
-        /// Number of inputs.
-        inputs: usize,
-    },
+    Lengths { times: usize, inputs: usize },
 }
 
 impl From<InvalidOperator> for crate::Error {

@@ -5,6 +5,7 @@ use thiserror::Error;
 /// Why a model was not exported.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the message of each has its fields")]
 pub enum Error {
     /// A name that is no identifier of the target's language.
     #[error(
@@ -13,28 +14,15 @@ pub enum Error {
     Name(String),
     /// A name that has another meaning in the target's language.
     #[error("{name:?} has another meaning in exports to {target}: choose another name")]
-    Reserved {
-        /// The name.
-        name: String,
-        /// The target.
-        target: &'static str,
-    },
+    Reserved { name: String, target: &'static str },
     /// More inputs than the target takes.
     #[error("{target} has one input, and the model has {inputs}")]
-    Inputs {
-        /// The target.
-        target: &'static str,
-        /// Inputs of the model.
-        inputs: usize,
-    },
+    Inputs { target: &'static str, inputs: usize },
     /// A model with inertia for a target whose elements have none.
     #[error(
         "{target} is a force that follows from a displacement, and the model has inertia: a resonance of its own"
     )]
-    Inertia {
-        /// The target.
-        target: &'static str,
-    },
+    Inertia { target: &'static str },
     /// A band of a model that has none.
     #[error("the model has no prediction band: only ensembles and single models that replace one have")]
     NoBand,

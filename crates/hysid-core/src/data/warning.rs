@@ -8,67 +8,31 @@ use crate::significant::Significant;
 /// A warning, with its likely cause and a remedy.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the message of each has its fields")]
 pub enum Warning {
     /// A record has few turning points, so it contains little information about memory.
-    FewTurningPoints {
-        /// The record.
-        record: String,
-        /// Turning points of the first input.
-        found: usize,
-    },
+    FewTurningPoints { record: String, found: usize },
     /// Inputs or rates lie outside the range of the training data.
-    OutsideTrainedRange {
-        /// The input, or its rate.
-        name: String,
-        /// Rows outside, in percent.
-        share_percent: f64,
-        /// Range in training.
-        trained: (f64, f64),
-        /// Range in the data.
-        seen: (f64, f64),
-    },
+    OutsideTrainedRange { name: String, share_percent: f64, trained: (f64, f64), seen: (f64, f64) },
     /// Time steps of one record differ widely.
-    UnevenTimeSteps {
-        /// The record.
-        record: String,
-        /// Shortest step.
-        shortest: f64,
-        /// Longest step.
-        longest: f64,
-    },
+    UnevenTimeSteps { record: String, shortest: f64, longest: f64 },
     /// The measured output of a record is constant.
-    ConstantOutput {
-        /// The record.
-        record: String,
-        /// The value.
-        value: f64,
-    },
+    ConstantOutput { record: String, value: f64 },
     /// Two records that are one measurement.
     SameMeasurement {
         /// The record that is a copy or a part.
         copy: String,
-        /// The other.
         of: String,
-        /// How similar they are.
         likeness: Likeness,
     },
     /// A test record was used in training.
-    TrainedOn {
-        /// The record.
-        record: String,
-        /// How similar it is to the training record.
-        likeness: Likeness,
-    },
+    TrainedOn { record: String, likeness: Likeness },
     /// The input of a record jumps at random from row to row, as if rows were not in the order of time.
-    RowsOutOfOrder {
-        /// The record.
-        record: String,
-    },
+    RowsOutOfOrder { record: String },
     /// A model has more parameters than there are rows to determine them.
     MoreParametersThanRows {
         /// Parameters of the model, or of the largest member of an ensemble.
         parameters: usize,
-        /// Rows with an output.
         rows: usize,
     },
 }
