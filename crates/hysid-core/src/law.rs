@@ -245,6 +245,26 @@ impl Dimension {
     }
 }
 
+/// Stores a law as its parts, which are checked when they are read.
+macro_rules! stored_as {
+    ($parts:ident of $law:ident in $field:ident) => {
+        impl TryFrom<$parts> for $law {
+            type Error = crate::error::Error;
+
+            fn try_from(parts: $parts) -> crate::error::Result<Self> {
+                Self::new(parts)
+            }
+        }
+
+        impl From<$law> for $parts {
+            fn from(law: $law) -> Self {
+                law.$field
+            }
+        }
+    };
+}
+pub(crate) use stored_as;
+
 /// Makes of the laws one type that is any of them.
 macro_rules! any_of {
     ($($module:ident::$law:ident),* $(,)?) => {

@@ -21,7 +21,7 @@ use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
 use crate::law::turning_point_stack::{Branch, TurningPointStack};
-use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::law::{Dimension, Law, Parameter, Sample, stored_as};
 use crate::property::Property;
 
 /// A model by Masing's rule: `y = c + g(x)` on the virgin curve, `y = y* + 2 g((x - x*)/2)` from a turning
@@ -46,19 +46,7 @@ pub struct MasingParts {
     pub slopes: Vec<f64>,
 }
 
-impl TryFrom<MasingParts> for Masing {
-    type Error = Error;
-
-    fn try_from(parts: MasingParts) -> Result<Self> {
-        Self::new(parts)
-    }
-}
-
-impl From<Masing> for MasingParts {
-    fn from(model: Masing) -> Self {
-        model.parts
-    }
-}
+stored_as!(MasingParts of Masing in parts);
 
 impl Masing {
     /// A model from its parameters.

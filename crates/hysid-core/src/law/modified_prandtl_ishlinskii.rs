@@ -20,7 +20,7 @@ use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::properties::WIPES_OUT;
 use crate::law::thresholds::{check_count, check_weights};
-use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::law::{Dimension, Law, Parameter, Sample, stored_as};
 use crate::property::Property;
 
 /// A modified Prandtl-Ishlinskii model `y = S(H[x])` (theory.md (7.6)).
@@ -52,19 +52,7 @@ pub struct DeadZoneParts {
     pub weights: Vec<f64>,
 }
 
-impl TryFrom<DeadZoneParts> for DeadZones {
-    type Error = Error;
-
-    fn try_from(parts: DeadZoneParts) -> Result<Self> {
-        Self::new(parts)
-    }
-}
-
-impl From<DeadZones> for DeadZoneParts {
-    fn from(zones: DeadZones) -> Self {
-        zones.parts
-    }
-}
+stored_as!(DeadZoneParts of DeadZones in parts);
 
 impl DeadZones {
     /// Dead zones from their parameters.

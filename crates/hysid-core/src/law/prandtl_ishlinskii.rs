@@ -23,7 +23,7 @@ use crate::property::Property;
 
 /// A Prandtl-Ishlinskii model `y = c + w_0 x + Σ_i w_i p_{r_i}[x]` (theory.md (7.4)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, try_from = "Parts", into = "Parts")]
+#[serde(try_from = "Parts")]
 pub struct PrandtlIshlinskii {
     constant: f64,
     linear: f64,
@@ -31,8 +31,8 @@ pub struct PrandtlIshlinskii {
     weights: Vec<f64>,
 }
 
-/// The form in which a model is stored.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+/// A model before its check.
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Parts {
     constant: f64,
@@ -46,13 +46,6 @@ impl TryFrom<Parts> for PrandtlIshlinskii {
 
     fn try_from(parts: Parts) -> Result<Self> {
         Self::new(parts.constant, parts.linear, parts.thresholds, parts.weights)
-    }
-}
-
-impl From<PrandtlIshlinskii> for Parts {
-    fn from(model: PrandtlIshlinskii) -> Self {
-        let PrandtlIshlinskii { constant, linear, thresholds, weights } = model;
-        Self { constant, linear, thresholds, weights }
     }
 }
 

@@ -24,7 +24,7 @@ use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::thresholds::{check_weights, limited};
 use crate::law::turning_point_stack::{Branch, TurningPointStack};
-use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::law::{Dimension, Law, Parameter, Sample, stored_as};
 use crate::property::Property;
 use everett::Everett;
 use plane::Plane;
@@ -76,19 +76,7 @@ pub struct Tables {
     pub reversible: Vec<f64>,
 }
 
-impl TryFrom<PreisachWeights> for Preisach {
-    type Error = Error;
-
-    fn try_from(weights: PreisachWeights) -> Result<Self> {
-        Self::new(weights)
-    }
-}
-
-impl From<Preisach> for PreisachWeights {
-    fn from(model: Preisach) -> Self {
-        model.weights
-    }
-}
+stored_as!(PreisachWeights of Preisach in weights);
 
 impl Preisach {
     /// A model from its parameters.
