@@ -45,7 +45,8 @@
 //! direct path and the constant are ours.
 
 mod architecture;
-mod decay;
+#[doc(hidden)]
+pub mod decay;
 pub mod free_run;
 mod gradient;
 #[cfg(test)]
@@ -56,7 +57,8 @@ mod parameters;
 mod readout;
 pub mod scaling;
 mod sweep;
-pub(crate) mod tanh;
+#[doc(hidden)]
+pub mod tanh;
 mod transpose;
 
 pub use architecture::{Architecture, Family, Sizes};

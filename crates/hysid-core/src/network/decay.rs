@@ -16,7 +16,7 @@ use crate::simd::{multiply_add, nearest_power};
 
 /// `(e^s - 1 - s) / s²` by powers of `s`, highest first: Chebyshev interpolation of degree 10 on `|s| <= (ln 2)/2`,
 /// computed with 70 digits; its relative error in `e^s - 1` is 5e-19.
-const SQUARE_AND_UP: [f64; 11] = [
+pub const SQUARE_AND_UP: [f64; 11] = [
     2.09147553258932e-09,
     2.5105312729622103e-08,
     2.755727347871858e-07,
@@ -31,7 +31,7 @@ const SQUARE_AND_UP: [f64; 11] = [
 ];
 
 /// ln 2 as a sum: the first part has so few digits that its products with `k` are exact.
-const LN_2: [f64; 2] = [0.6931471801362932, 4.236521365809284e-10];
+pub const LN_2: [f64; 2] = [0.6931471801362932, 4.236521365809284e-10];
 
 /// From this many relaxation times on, `E` is 0.
 const LONGEST: f64 = 700.0;

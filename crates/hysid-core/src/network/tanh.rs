@@ -15,7 +15,7 @@ use crate::simd::{multiply_add, nearest_power};
 
 /// `(tanh s / s - 1) / s²` by powers of `s²`, highest first: Chebyshev interpolation of degree 5 on `|s| <= (ln 2)/4`,
 /// computed with 60 digits; its relative error in `tanh s` is 2e-17.
-const CUBIC_AND_UP: [f64; 6] = [
+pub const CUBIC_AND_UP: [f64; 6] = [
     0.0034639177836130425,
     -0.008858936176728246,
     0.021869421825241465,

@@ -1,7 +1,9 @@
 //! Networks of all families, with the operations of the library's kernels in their order.
 
 use hysid_core::elementary::exp;
+use hysid_core::network::decay::{LN_2, SQUARE_AND_UP};
 use hysid_core::network::scaling::Scaling;
+use hysid_core::network::tanh::CUBIC_AND_UP;
 use hysid_core::network::{Layout, Network};
 
 use crate::description::Sample;
@@ -161,20 +163,6 @@ fn relaxation(
 
 /// `e^{-φ}` and `(1 - e^{-φ})/φ`, as `hysid_core::network::decay`.
 fn decay(builder: &mut Builder, phi: Real) -> (Real, Real) {
-    const SQUARE_AND_UP: [f64; 11] = [
-        2.09147553258932e-09,
-        2.5105312729622103e-08,
-        2.755727347871858e-07,
-        2.755725517000089e-06,
-        2.480158732567746e-05,
-        0.0001984126987500228,
-        0.0013888888888883711,
-        0.008333333333326084,
-        0.04166666666666667,
-        0.1666666666666667,
-        0.5,
-    ];
-    const LN_2: [f64; 2] = [0.6931471801362932, 4.236521365809284e-10];
     let longest = match builder.precision() {
         Precision::Double => LONGEST,
         Precision::Single => LONGEST_SINGLE,
@@ -210,14 +198,6 @@ fn polynomial(builder: &mut Builder, coefficients: &[f64], x: &Real) -> Real {
 
 /// tanh, as `hysid_core::network::tanh`.
 pub(super) fn tanh(builder: &mut Builder, x: &Real) -> Real {
-    const CUBIC_AND_UP: [f64; 6] = [
-        0.0034639177836130425,
-        -0.008858936176728246,
-        0.021869421825241465,
-        -0.05396825349959849,
-        0.13333333333212813,
-        -0.3333333333333328,
-    ];
     let magnitude = builder.value(x.abs());
     let a = builder.value(magnitude.below(20.0).choose(&magnitude, 20.0));
     let k = nearest_whole(builder, &a, 2.0 * std::f64::consts::LOG2_E);
