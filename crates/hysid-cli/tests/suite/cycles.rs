@@ -65,8 +65,7 @@ fn a_member_has_the_figures_of_its_law_in_csv_text_and_json() {
     assert!(ran.stdout.lines().all(|line| line.chars().count() <= 80), "{}", ran.stdout);
     must_contain(&ran.stdout, &["backbone: 4 points", "energy, J", "no time: no period and frequency"]);
 
-    let ran = bench.succeeds("cycles member.csv --json");
-    let told: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let told = bench.json("cycles member.csv --json");
     assert_eq!((&told["field"], &told["division"]), (&"structure".into(), &"zero".into()));
     assert_eq!((&told["units"]["energy"], &told["of_model"]), (&"J".into(), &false.into()));
     assert!((told["cycles"][3]["energy"].as_f64().unwrap() - 24.0).abs() < 1e-6);
@@ -170,8 +169,7 @@ fn a_model_is_driven_through_cycles_and_reversal_curves_and_they_are_said_to_be_
     let nodes = rows(&bench.text("model.cycles.forc.csv"));
     assert!(nodes.len() > 800, "{}", nodes.len());
     assert!(bench.text("model.cycles.html").contains("Hysid drove the model"));
-    let ran = bench.succeeds("cycles model.json --json");
-    let told: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let told = bench.json("cycles model.json --json");
     assert_eq!(told["of_model"], Value::Bool(true));
     assert_eq!(told["reversal_curves"]["curves"].as_array().unwrap().len(), 40);
 }

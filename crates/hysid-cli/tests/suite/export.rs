@@ -160,8 +160,7 @@ fn an_inverse_has_the_bounds_that_were_asked_for() {
         assert_eq!(slew, bounds.contains("slew"), "{header}");
         assert!(bench.path("stage_2_c").join("inverse_vectors.csv").exists());
     }
-    let ran = bench.succeeds("export stage-2.json --to fmu --inverse --json");
-    let answer: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    let answer = bench.json("export stage-2.json --to fmu --inverse --json");
     let files: Vec<&str> =
         answer["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
     assert_eq!(

@@ -235,8 +235,7 @@ fn a_table_that_is_streamed_is_read_as_one_that_is_not() {
     let fit = format!("fit {} --model prandtl-ishlinskii --no-report -o m.json", path("plain.csv"));
     bench.succeeds(&fit);
     let errors = |file: &str, options: &str| {
-        let ran = bench.succeeds(&format!("evaluate m.json {} --json {options}", path(file)));
-        let errors: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+        let errors = bench.json(&format!("evaluate m.json {} --json {options}", path(file)));
         (errors["samples"].as_u64().unwrap(), errors["rmse"].as_f64().unwrap())
     };
     let expected = errors("plain.csv", "");

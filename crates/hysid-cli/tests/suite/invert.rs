@@ -155,8 +155,7 @@ fn each_record_of_a_model_that_lags_has_its_preview() {
     let rows = table.lines().filter(|line| !line.ends_with(','));
     bench.put("wanted.csv", rows.collect::<Vec<_>>().join("\n"));
     let previews = |arguments: &str| -> Vec<f64> {
-        let ran = bench.succeeds(&format!("invert stage.json wanted.csv -o drive.csv --json {arguments}"));
-        let answer: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+        let answer = bench.json(&format!("invert stage.json wanted.csv -o drive.csv --json {arguments}"));
         serde_json::from_value(answer["previews"].clone()).unwrap()
     };
     let found = previews("");
@@ -254,8 +253,7 @@ fn a_band_gives_the_inputs_whose_band_contains_the_wanted_output() {
 fn the_result_as_json_and_the_table_on_stdout() {
     let bench = with_model();
     put_wanted(&bench);
-    let ran = bench.succeeds("invert stage.json wanted.csv -o drive.csv --json --limits=-1:1");
-    let answer: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    let answer = bench.json("invert stage.json wanted.csv -o drive.csv --json --limits=-1:1");
     let mut names: Vec<&String> = answer.as_object().unwrap().keys().collect();
     names.sort();
     let names = names.into_iter().map(String::as_str).collect::<Vec<_>>().join(" ");
