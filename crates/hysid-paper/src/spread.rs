@@ -7,7 +7,6 @@ use hysid_document::number;
 pub struct Spread {
     /// Lowest value.
     pub low: f64,
-    /// Median.
     pub median: f64,
     /// Highest value.
     pub high: f64,

@@ -242,7 +242,6 @@ impl Cut {
     }
 }
 
-/// A part of each run.
 fn of_runs(data: &Dataset, judged: &[RowsOf], part: &dyn Fn(&Record, RowsOf) -> Record) -> Dataset {
     data.of_records(judged.iter().map(|&rows| part(&data.records()[rows.record], rows)).collect())
 }

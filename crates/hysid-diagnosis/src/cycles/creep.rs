@@ -36,7 +36,6 @@ const DECADE: f64 = 10.0;
 pub(super) struct Hold {
     /// Its first row and its last.
     pub rows: (usize, usize),
-    /// Its duration.
     pub duration: f64,
     /// Output at the end less output at the beginning.
     pub drift: f64,

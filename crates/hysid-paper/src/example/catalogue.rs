@@ -53,7 +53,6 @@ pub enum Opponent {
 /// A figure and its limit.
 #[derive(Debug)]
 pub struct Wanted {
-    /// Which figure.
     pub figure: Figure,
     /// At most this for an error, at least this for a ratio.
     pub limit: f64,
@@ -312,7 +311,6 @@ pub static EXAMPLES: [Example; 7] = [
 /// Why unseen cycles of the joint have larger errors than trained ones.
 const THIRD_CYCLES: &str = "Why the largest error on the unseen third cycles is above the paper's 3.2 %: the XPNN can represent all cycles, as the row fitted to the unseen rows too shows, and with the law of the specimen, which has a course of damage built in, the rows of the first two cycles are enough. For an XPNN they are not. A likely reason: the first cycle differs from the second by its first visit to a new drift and by damage together, and two cycles do not tell these apart. Separate runs, as medians of three seeds of the median of eight networks: 5.8 % with 20 stops instead of 4.4 %; 3.9 % with four cycles at each drift, of which three are trained. The median of the 24 best of 72 starts has 4.4 % as well. More starts and more stops do not help; more cycles help a little.";
 
-/// What a forecast beyond trained damage can be.
 const FORECAST: &str = "What a forecast beyond the trained damage can be: the last 30 % of the test reach a drift and a damage that no training row has. A network has learnt how the force falls with the slip of its stops up to the end of training, and nothing says how it falls beyond: its forecast is an extrapolation of that course, and networks that fit the training data equally well differ from each other there, as the ranges of the seeds show. The law of the specimen, Bouc-Wen with the degradation and pinching of Baber and Noori, is fitted to the same rows: it has the right course of damage built in, so that a few parameters, found from the beginning, are enough for all that follows. A forecast of a degrading specimen is as good as the law of damage that is assumed, not as good as the fit.";
 
 /// Why an XPNN does not beat a GPIM on a GPIM.

@@ -35,7 +35,6 @@ pub struct Choice {
     pub has_rate: bool,
     /// The stops deteriorate; otherwise their capacities are unlimited, as the paper's 10⁷ is.
     pub deteriorates: bool,
-    /// Penalties.
     pub penalties: Regularisation,
     /// Iterations of a start.
     pub iterations: usize,
@@ -53,7 +52,6 @@ struct Trial {
 /// What was chosen, and from what.
 #[derive(Debug, Clone)]
 pub struct Chosen {
-    /// The choice.
     pub choice: Choice,
     trials: Vec<Trial>,
     why_rate: &'static str,
@@ -187,7 +185,6 @@ fn mean(percents: &[f64]) -> f64 {
 }
 
 impl Choice {
-    /// In words.
     pub fn words(self) -> String {
         format!(
             "{}, {}, ridge {:e} and decay {:e}, {} iterations",

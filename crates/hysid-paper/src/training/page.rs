@@ -35,7 +35,6 @@ pub const FILES: [FurtherFile; 4] = [
     FurtherFile { name: SECONDS_CHART, header: None },
 ];
 
-/// The chapter on all repetitions.
 pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
     let (epochs, seconds) = (chart(repetitions, Abscissa::Epochs), chart(repetitions, Abscissa::Seconds));
     let files = [

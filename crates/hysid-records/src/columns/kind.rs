@@ -48,7 +48,6 @@ const INTEGRALS: &str = "capacity capacité kapazität capacidad 容量 energy e
 const UNITS_OF_SUMS: [&str; 12] =
     ["Ah", "mAh", "uAh", "Wh", "mWh", "kWh", "A.h", "W.h", "mA.h", "A·h", "Ahr", "mAhr"];
 
-/// Units of a speed.
 const UNITS_OF_SPEED: [&str; 6] = ["mm/s", "m/s", "cm/s", "in/s", "deg/s", "rad/s"];
 
 /// Words of figures that are calculated from others.

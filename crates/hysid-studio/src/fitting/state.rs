@@ -60,7 +60,6 @@ impl std::error::Error for Unsaved {}
 /// A candidate of `auto`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Candidate {
-    /// Its name.
     pub name: String,
     /// Error on the held-out rows so far.
     pub error_percent: Option<f64>,

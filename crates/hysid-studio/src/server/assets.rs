@@ -10,7 +10,6 @@ use sha2::{Digest, Sha256};
 
 use super::answer::{Answer, Problem};
 
-/// The page.
 const PAGE: &str = include_str!("../../page/index.html");
 
 /// The page that shows a report.

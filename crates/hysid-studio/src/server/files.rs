@@ -119,7 +119,6 @@ pub async fn use_as(
     Ok(done())
 }
 
-/// A specimen.
 #[derive(Deserialize)]
 pub struct Specimen {
     name: String,

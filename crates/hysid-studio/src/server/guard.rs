@@ -19,7 +19,6 @@ use super::assets;
 use super::connections::Proof;
 use super::keys::Keys;
 
-/// The header with the key.
 const KEY: HeaderName = HeaderName::from_static("x-hysid-key");
 
 /// What a page may do: use what this server gives, and nothing else.

@@ -5,7 +5,6 @@ use super::MOST_LINES;
 /// Lines that one pair of quotation marks may span.
 const LONGEST_QUOTE: usize = 8;
 
-/// A line.
 #[derive(Debug, Clone, Copy)]
 pub struct Line<'t> {
     /// Without its end.

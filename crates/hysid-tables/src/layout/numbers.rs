@@ -16,7 +16,6 @@ pub fn chosen(reading: &Reading) -> NumberFormat {
     }
 }
 
-/// The format of the numbers of a run.
 pub fn format(lines: &[Line<'_>], run: &Run, reading: &Reading) -> NumberFormat {
     let mut format = chosen(reading);
     if format.is_chosen {

@@ -66,7 +66,6 @@ impl Wanted {
     }
 }
 
-/// The data in a known initial state.
 pub(crate) fn known(data: &Dataset, state: InitialState, measured_from: Origin) -> Result<Dataset> {
     if state == InitialState::Periodic {
         return data.clone().with_periodic_lead_ins();

@@ -92,7 +92,6 @@ impl Drive {
         self.inputs.len() + rows <= self.path.limits.rows
     }
 
-    /// Adds legs.
     pub fn add(&mut self, kind: Kind, legs: &[Leg]) {
         let first_row = self.inputs.len();
         let (mut rate, mut range) = (0.0_f64, NO_RANGE);

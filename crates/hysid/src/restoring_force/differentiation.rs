@@ -17,7 +17,6 @@ const SHARE_OF_RECORD: f64 = 0.25;
 pub struct Derivative {
     /// The derivative in each row; near an end, that of the first or last window's polynomial.
     pub values: Vec<Vec<f64>>,
-    /// The filter.
     pub filter: Filter,
     /// Standard deviation of its noise within the record: the noise of the channel times the gain of the filter.
     pub noise: f64,

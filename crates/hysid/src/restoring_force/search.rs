@@ -117,7 +117,6 @@ impl<'s> Search<'s> {
 
 /// A filter and its errors.
 pub struct Trial {
-    /// The filter.
     pub filter: Filter,
     /// The derivative in the tried rows.
     values: Vec<f64>,

@@ -27,7 +27,6 @@ pub(crate) fn has_few_rows(parameters: usize, features: usize, rows: usize) -> b
 pub enum Curvature {
     /// The Gauss-Newton matrix with decay.
     Matrix(Symmetric),
-    /// Its rows.
     Rows(Rows),
 }
 
