@@ -10,6 +10,7 @@ mod source;
 use crate::error::Error;
 use crate::reserved;
 use crate::subject::{File, Subject};
+use crate::target::template::filled;
 use crate::target::{BackEnd, Written};
 
 pub(super) const BACK_END: BackEnd = BackEnd {
@@ -59,24 +60,8 @@ one, `-DHYSID_TWO_ROUNDINGS` makes it as fast; the outputs then differ from thos
         }
         false => "",
     };
-    format!(
-        "```c
-#include \"{name}.h\"
-
-{name}_model model;
-{name}_reset(&model);
-y = {name}_step(&model, x);      /* further arguments: see {name}.h */
-```
-
-A solver that iterates calls `{name}_trial` or `{name}_trial_tangent` as often as it needs, each time from the committed
-state, and `{name}_commit` once it accepts.
-{inverse}
-Compile with `-ffp-contract=off`: the outputs then equal those of Hysid to the last bit, on every machine. `exp` and its
-like are in {name}.c, not those of the C library. `-ffast-math` is refused.{fast}
-
-```
-cc -std=c99 -O3 -ffp-contract=off -o {name}_test {name}_test.c {name}.c{more} -lm && ./{name}_test
-```
-"
+    filled(
+        include_str!("c/usage.md.txt"),
+        &[("NAME", name), ("@inverse@", &inverse), ("@fast@", fast), ("@more@", &more)],
     )
 }

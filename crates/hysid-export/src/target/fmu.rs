@@ -15,6 +15,7 @@ use crate::manifest::checksum;
 use crate::options::FmiVersion;
 use crate::reserved;
 use crate::subject::{File, Subject};
+use crate::target::template::filled;
 use crate::target::{BackEnd, Written, c};
 use crate::text::in_markdown;
 
@@ -89,30 +90,15 @@ over the wanted one, and -1 after an invalid time step. The limits are in `{name
         ),
     };
     let more = more.replace("{name}", name);
-    format!(
-        "`{name}.fmu` is {what} for co-simulation with FMI {version}.
-
-- Inputs: {inputs}
-- Outputs: {outputs}
-
-It has its source code, and a binary if there was a C compiler where it was written (`unzip -l {name}.fmu` shows it).
-
-A row of the model is the inputs at a communication point. A step from there commits them. The output after inputs were
-set is that of these inputs; an importer that reads it before it sets new ones, at the end of a step, reads the output
-of the inputs at the step's beginning. The communication step may vary. A model that depends on the rate forms it from
-the inputs of two communication points: choose steps like those of the training data.
-
-The state can be saved, restored and serialised. {more}
-
-```
-python -m pip install fmpy
-python {name}_test.py
-```
-
-runs the test vectors.
-",
-        version = subject.fmi().number(),
-        inputs = listed(&inputs),
-        outputs = listed(&outputs),
+    filled(
+        include_str!("fmu/usage.md.txt"),
+        &[
+            ("NAME", name),
+            ("@what@", what),
+            ("@version@", subject.fmi().number()),
+            ("@inputs@", &listed(&inputs)),
+            ("@outputs@", &listed(&outputs)),
+            ("@more@", &more),
+        ],
     )
 }

@@ -10,6 +10,7 @@ use crate::program::{Declaration, Program, Storage};
 use crate::reserved;
 use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer, Syntax};
+use crate::target::template::filled;
 use crate::target::{BackEnd, Written};
 
 pub(super) const BACK_END: BackEnd = BackEnd {
@@ -34,34 +35,7 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
 fn usage(subject: &Subject<'_>) -> String {
     let name = subject.name();
     let arguments = subject.argument_names().join(", ");
-    format!(
-        "Put `{name}.m` where MATLAB or GNU Octave finds it. No toolbox is needed.
-
-```matlab
-state = {name}();                               % the initial state, a column of numbers
-[y, state] = {name}(state, {arguments});        % a step
-[y, next, slope] = {name}(state, {arguments});  % a trial: state stays as it is
-state = next;                                   % commit
-```
-
-A state is a value: keeping it saves it, and using it again restores it. `{name}_test` runs the test vectors.
-
-In Simulink, a MATLAB Function block with a persistent variable simulates the model:
-
-```matlab
-function y = hysteresis({arguments})
-persistent state
-if isempty(state)
-    state = {name}();
-end
-[y, state] = {name}(state, {arguments});
-end
-```
-
-`{name}_system.m` is the same as a System object, for `step` in a loop and for the MATLAB System block. Hysid's tests
-run the function with GNU Octave, which has no System objects: **the class has not been run.**
-"
-    )
+    filled(include_str!("matlab/usage.md.txt"), &[("NAME", name), ("@arguments@", &arguments)])
 }
 
 fn function_file(subject: &Subject<'_>) -> String {
@@ -71,31 +45,16 @@ fn function_file(subject: &Subject<'_>) -> String {
     let facts: String = subject.facts().iter().map(|(fact, text)| format!("%   {fact}: {text}\n")).collect();
     let (step, tangent) = (without_choices(subject.program()), without_choices(subject.tangent()));
     let initial: Vec<f64> = step.states().flat_map(|(_, _, values)| values.iter().copied()).collect();
-    let mut text = format!(
-        "function [y, state, slope] = {name}(state, {arguments})
-%{upper}  A model of hysteresis, written by Hysid.
-%   STATE = {upper}() gives the initial state, a column of numbers.
-%   [Y, NEXT] = {upper}(STATE, {upper_arguments}) gives the output of a step from
-%   STATE, and the state after it.
-%   [Y, NEXT, SLOPE] = {upper}(STATE, {upper_arguments}) gives also the slope of Y
-%   by X; at a kink that of the branch taken.
-%
-{facts}%
-%   Values are in the units of the columns above. Inputs must be finite.
-
-if nargin == 0
-    y = {initial};
-elseif nargout < 3
-    [y, state] = advance(state, {arguments});
-else
-    [y, state, slope] = advance_with_tangent(state, {arguments});
-end
-end
-
-",
-        upper = name.to_uppercase(),
-        upper_arguments = arguments.to_uppercase(),
-        initial = matlab.column(&initial, "        "),
+    let mut text = filled(
+        include_str!("matlab/function.m.txt"),
+        &[
+            ("NAME", name),
+            ("@arguments@", &arguments),
+            ("UPPER", &name.to_uppercase()),
+            ("@upper_arguments@", &arguments.to_uppercase()),
+            ("@facts@", &facts),
+            ("@initial@", &matlab.column(&initial, "        ")),
+        ],
     );
     text += &function(&matlab, &step, "advance", false);
     text += &function(&matlab, &tangent, "advance_with_tangent", true);
@@ -103,14 +62,7 @@ end
     text
 }
 
-const OWN_FUNCTIONS: &str = "function a = with_sign(a, b)
-% The magnitude of a with the sign of b.
-a = abs(a);
-if b < 0 || (b == 0 && 1 / b < 0)
-    a = -a;
-end
-end
-";
+const OWN_FUNCTIONS: &str = include_str!("matlab/with_sign.m.txt");
 
 fn function(matlab: &Matlab, program: &Program, name: &str, with_tangent: bool) -> String {
     let slope = if with_tangent { ", slope" } else { "" };
@@ -162,75 +114,16 @@ fn system_object(subject: &Subject<'_>) -> String {
     let names =
         subject.argument_names().iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
     let outputs = (1..=count).map(|index| format!("name{index}")).collect::<Vec<_>>().join(", ");
-    format!(
-        "classdef {name}_system < matlab.System
-%{upper}_SYSTEM  The model of hysteresis of {name}.m as a System object.
-%   MODEL = {name}_system() is in the initial state. Y = MODEL({arguments}) is a
-%   step. [Y, SLOPE] = TRIAL(MODEL, {arguments}) is a trial from the committed
-%   state, COMMIT(MODEL) accepts the last one, REVERT(MODEL) forgets it.
-
-    properties (DiscreteState)
-        State
-    end
-
-    properties (Access = private)
-        Trial = []
-    end
-
-    methods
-        function [y, slope] = trial(obj, {arguments})
-            state = obj.State;
-            if isempty(state)
-                state = {name}();
-            end
-            [y, obj.Trial, slope] = {name}(state, {arguments});
-        end
-
-        function commit(obj)
-            if ~isempty(obj.Trial)
-                obj.State = obj.Trial;
-                obj.Trial = [];
-            end
-        end
-
-        function revert(obj)
-            obj.Trial = [];
-        end
-    end
-
-    methods (Access = protected)
-        function setupImpl(obj, varargin)
-            obj.State = {name}();
-        end
-
-        function y = stepImpl(obj, {arguments})
-            obj.Trial = [];
-            [y, obj.State] = {name}(obj.State, {arguments});
-        end
-
-        function resetImpl(obj)
-            obj.State = {name}();
-            obj.Trial = [];
-        end
-
-        function count = getNumInputsImpl(~)
-            count = {count};
-        end
-
-        function [{outputs}] = getInputNamesImpl(~)
-            names = {{{names}}};
-            [{outputs}] = names{{:}};
-        end
-
-        function [size, type, is_complex] = getDiscreteStateSpecificationImpl(~, ~)
-            size = [numel({name}()), 1];
-            type = 'double';
-            is_complex = false;
-        end
-    end
-end
-",
-        upper = name.to_uppercase(),
+    filled(
+        include_str!("matlab/system.m.txt"),
+        &[
+            ("NAME", name),
+            ("UPPER", &name.to_uppercase()),
+            ("@arguments@", &arguments),
+            ("@count@", &count.to_string()),
+            ("@outputs@", &outputs),
+            ("@names@", &names),
+        ],
     )
 }
 
@@ -252,52 +145,17 @@ fn self_test(subject: &Subject<'_>) -> String {
     let (low, high) = subject.model().trained_ranges().output;
     let scale = 0.5 * (high - low);
     let given: String = (0..count).map(|index| format!(", v({})", index + 2)).collect();
-    format!(
-        "function {name}_test()
-%{upper}_TEST  Compares {name}.m with the test vectors; an error if they differ.
-
-% Action, arguments, output, slope. Actions: 1 reset, 2 trial, 3 commit, 4 revert, 5 step, 6 save, 7 restore.
-vectors = [
-{rows}];
-
-scale = {scale:?};
-state = {name}();
-saved = state;
-next = state;
-differences = [];
-for row = 1:size(vectors, 1)
-    v = vectors(row, :);
-    switch v(1)
-        case 1
-            state = {name}();
-        case 2
-            [y, next, slope] = {name}(state{given});
-            differences(end + 1) = abs(y - v({output})) / scale;
-            differences(end + 1) = abs(slope - v({tangent})) / (scale + abs(v({tangent})));
-            [y, next] = {name}(state{given});
-            differences(end + 1) = abs(y - v({output})) / scale;
-        case 3
-            state = next;
-        case 4
-            next = state;
-        case 5
-            [y, state] = {name}(state{given});
-            differences(end + 1) = abs(y - v({output})) / scale;
-        case 6
-            saved = state;
-        case 7
-            state = saved;
-    end
-end
-fprintf('%d test vectors, largest difference %.1e of half the trained range\\n', size(vectors, 1), max(differences));
-if ~all(differences <= 1e-9)
-    error('{name} differs from its test vectors');
-end
-end
-",
-        upper = name.to_uppercase(),
-        output = count + 2,
-        tangent = count + 3,
+    filled(
+        include_str!("matlab/test.m.txt"),
+        &[
+            ("NAME", name),
+            ("UPPER", &name.to_uppercase()),
+            ("@rows@", &rows),
+            ("@scale@", &format!("{scale:?}")),
+            ("@given@", &given),
+            ("@output@", &(count + 2).to_string()),
+            ("@tangent@", &(count + 3).to_string()),
+        ],
     )
 }
 

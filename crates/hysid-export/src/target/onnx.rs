@@ -9,6 +9,7 @@ use prost::Message;
 use crate::error::Error;
 use crate::program::Program;
 use crate::subject::{File, Subject};
+use crate::target::template::filled;
 use crate::target::{BackEnd, Written};
 use graph::{NEXT_STATE, OUTPUT, STATE, row};
 use messages::{Attribute, Entry, Graph, Model, Node, OperatorSet, ValueInfo};
@@ -48,33 +49,14 @@ fn usage(subject: &Subject<'_>) -> String {
         true => "\n`time_step` is the time since the row before; that of the first row is ignored.\n",
         false => "",
     };
-    format!(
-        "All numbers are of double precision.
-
-- `{name}.onnx`: a whole record from the initial state. Inputs and output `y` have a number for each row; `next_state` is
-  the state at the end.
-- `{name}_step.onnx`: a step. Inputs `state` and scalars, outputs `y` and `next_state`. The initial state is in the
-  metadata, entry `initial_state`.
-- `{name}_tangent.onnx`: the same, and `slope`, the slope of `y` by `x`; at a kink that of the branch taken.
-
-```python
-import json
-import numpy as np
-import onnxruntime
-
-record = onnxruntime.InferenceSession(\"{name}.onnx\")
-y, state = record.run(None, {{{columns}}})
-
-step = onnxruntime.InferenceSession(\"{name}_step.onnx\")
-state = np.array(json.loads(step.get_modelmeta().custom_metadata_map[\"initial_state\"]))
-y, state = step.run(None, {{\"state\": state, {values}}})
-```
-{time}
-A trial is a step whose `next_state` is not used, a commit one whose `next_state` is the next `state`. `python
-{name}_test.py` runs the test vectors; it needs onnxruntime.
-",
-        columns = columns.join(", "),
-        values = values.join(", "),
+    filled(
+        include_str!("onnx/usage.md.txt"),
+        &[
+            ("NAME", name),
+            ("@columns@", &columns.join(", ")),
+            ("@values@", &values.join(", ")),
+            ("@time@", time),
+        ],
     )
 }
 
@@ -149,52 +131,8 @@ fn self_test(subject: &Subject<'_>) -> String {
     let arguments = subject.argument_names();
     let names: Vec<String> = arguments.iter().map(|name| format!("\"{name}\"")).collect();
     let (low, high) = subject.model().trained_ranges().output;
-    format!(
-        "\"\"\"Compares the ONNX models with the test vectors. Exit status 0 if all agree.\"\"\"
-
-import csv
-import json
-import pathlib
-import sys
-
-import numpy as np
-import onnxruntime
-
-SCALE = {scale:?}
-ARGUMENTS = [{names}]
-
-folder = pathlib.Path(__file__).parent
-step = onnxruntime.InferenceSession(str(folder / \"{name}_step.onnx\"), providers=[\"CPUExecutionProvider\"])
-tangent = onnxruntime.InferenceSession(str(folder / \"{name}_tangent.onnx\"), providers=[\"CPUExecutionProvider\"])
-initial = np.array(json.loads(step.get_modelmeta().custom_metadata_map[\"initial_state\"]))
-state = after = saved = initial
-differences = []
-with (folder / \"test_vectors.csv\").open(newline=\"\") as file:
-    for action, *numbers in list(csv.reader(file))[1:]:
-        if action in (\"step\", \"trial\"):
-            values = [np.array(float(number or 0)) for number in numbers]
-            expected = values[len(ARGUMENTS)]
-            given = dict(zip(ARGUMENTS, values), state=state)
-            if action == \"step\":
-                y, state = step.run([\"y\", \"next_state\"], given)
-            else:
-                y, slope, after = tangent.run([\"y\", \"slope\", \"next_state\"], given)
-                differences.append(abs(slope - values[-1]) / (SCALE + abs(values[-1])))
-            differences.append(abs(y - expected) / SCALE)
-        elif action == \"reset\":
-            state = initial
-        elif action == \"commit\":
-            state = after
-        elif action == \"save\":
-            saved = state
-        elif action == \"restore\":
-            state = saved
-# One that is not a number is the largest.
-largest = max(map(float, differences), key=lambda difference: (difference != difference, difference))
-print(f\"{{len(differences)}} numbers differ by at most {{largest:.1e}} of half the trained range\")
-sys.exit(0 if largest <= 1e-9 else 1)
-",
-        scale = 0.5 * (high - low),
-        names = names.join(", "),
+    filled(
+        include_str!("onnx/test.py.txt"),
+        &[("@scale@", &format!("{:?}", 0.5 * (high - low))), ("@names@", &names.join(", ")), ("NAME", name)],
     )
 }

@@ -6,6 +6,7 @@ mod native;
 use crate::error::Error;
 use crate::reserved;
 use crate::subject::{File, Subject};
+use crate::target::template::filled;
 use crate::target::{BackEnd, Written, c};
 use crate::text::in_markdown;
 
@@ -57,38 +58,8 @@ fn usage(subject: &Subject<'_>) -> String {
         ),
         Err(reason) => format!("There is no native command for this model: {reason}."),
     };
-    format!(
-        "Strain is {x}, stress is {y}, in their units; OpenSees asks for consistent ones.
-
-## The native material
-
-{native}
-
-## The C++ material
-
-It computes exactly what Hysid computes. Build it as a library that OpenSees loads, with the headers of the OpenSees that
-loads it (`OPENSEES` is its source folder):
-
-```
-INCLUDES=$(find $OPENSEES/SRC -name '*.h' -exec dirname {{}} \\; | sort -u | sed 's/^/-I/')
-cc  -std=c99 -O2 -fPIC -ffp-contract=off -c {name}.c
-c++ -O2 -fPIC -shared $INCLUDES {name}Material.cpp {name}.o -o {name}.so
-```
-
-In Tcl, with `{name}.so` in the working folder: `uniaxialMaterial {name} $tag`. To compile it into OpenSees instead, add
-`OPS_{name}` to the table of materials.
-
-The tangent is exact; at a kink it is that of the branch taken. Before the first trial, stress and tangent are those at
-strain 0. A model that needs the time step takes it from `ops_Dt`.
-
-The class is compiled against the interface and run through the test vectors in Hysid's tests, with headers that
-declare that interface; **it was not loaded into an OpenSees program there.**
-
-```
-cc -std=c99 -O2 -o {name}_test {name}_test.c {name}.c -lm && ./{name}_test
-```
-
-runs the test vectors on the C code.
-"
+    filled(
+        include_str!("opensees/usage.md.txt"),
+        &[("@x@", &x), ("@y@", &y), ("@native@", &native), ("NAME", name)],
     )
 }

@@ -12,6 +12,7 @@ use crate::program::{Array, Declaration, Program, Storage};
 use crate::reserved;
 use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer, Syntax, rows_of_numbers};
+use crate::target::template::filled;
 use crate::target::{BackEnd, Written};
 
 pub(super) const BACK_END: BackEnd = BackEnd {
@@ -36,21 +37,9 @@ fn usage(subject: &Subject<'_>) -> String {
     let name = subject.name();
     let columns = whole_record(subject).join(", ");
     let arguments = subject.argument_names().join(", ");
-    format!(
-        "```python
-import {name}
-
-y = {name}.Model().simulate({columns})  # a whole record, as arrays
-
-model = {name}.Model()                  # or step by step
-y = model.step({arguments})
-y, slope = model.trial_tangent({arguments})
-model.commit()
-```
-
-Trials begin at the committed state as often as they are asked for; `commit` accepts the last one. `python
-{name}_test.py` runs the test vectors.
-"
+    filled(
+        include_str!("python/usage.md.txt"),
+        &[("NAME", name), ("@columns@", &columns), ("@arguments@", &arguments)],
     )
 }
 
@@ -102,63 +91,7 @@ import numpy as np
 }
 
 /// Functions that raise no exception where a C program gives an infinite number.
-const FUNCTIONS: &str = "
-def _quotient(a, b):
-    if b != 0.0:
-        return a / b
-    if a == 0.0 or a != a or b != b:
-        return math.nan
-    return math.copysign(math.inf, a) * math.copysign(1.0, b)
-
-
-def _exp(a):
-    return math.exp(a) if a < 709.0 else float(np.exp(min(a, 710.0)))
-
-
-def _expm1(a):
-    return math.expm1(a) if a < 709.0 else _exp(a)
-
-
-def _log(a):
-    return math.log(a) if a > 0.0 else (-math.inf if a == 0.0 else math.nan)
-
-
-def _log1p(a):
-    return math.log1p(a) if a > -1.0 else (-math.inf if a == -1.0 else math.nan)
-
-
-def _sqrt(a):
-    return math.sqrt(a) if a >= 0.0 else math.nan
-
-
-def _power(a, b):
-    try:
-        return math.pow(a, b)
-    except OverflowError:
-        return math.inf
-    except ValueError:
-        return math.inf if a == 0.0 else math.nan
-
-
-def _ceil(a):
-    return float(math.ceil(a)) if math.isfinite(a) else a
-
-
-def _power_of_two(a):
-    return math.ldexp(1.0, int(a))
-
-
-def _hypot(a, b):
-    return float(np.hypot(a, b))  # That of the C library; math.hypot rounds in another way.
-
-
-def _asinh(a):
-    inverse = _quotient(1.0, abs(a))
-    root = _hypot(1.0, inverse) + inverse
-    return math.copysign(math.log1p(abs(a) + abs(a) / root), a)
-
-
-";
+const FUNCTIONS: &str = include_str!("python/functions.py.txt");
 
 fn constants(python: &Python, programs: &[&Program]) -> String {
     let used: BTreeSet<Array> = programs.iter().flat_map(|program| used_arrays(program)).collect();
@@ -251,61 +184,17 @@ fn class(subject: &Subject<'_>) -> String {
             )
         }
     };
-    format!(
-        "class Model:
-    \"\"\"One instance of the model, with a committed state and a trial state.\"\"\"
-
-    def __init__(self):
-        self.reset()
-
-    def reset(self):
-        \"\"\"Go to the initial state.\"\"\"
-        self._committed = [list(values) for values in _INITIAL_STATE]
-        self._trial = None
-
-    def trial(self{parameters}):
-        \"\"\"Give the output at a new input, from the committed state, which stays as it is.\"\"\"
-        self._trial = [values.copy() for values in self._committed]
-        return _advance(self._trial{arguments})
-
-    def trial_tangent(self{parameters}):
-        \"\"\"Give the same, and the slope of the output by x; at a kink that of the branch taken.\"\"\"
-        self._trial = [values.copy() for values in self._committed]
-        return _advance_with_tangent(self._trial{arguments})
-
-    def commit(self):
-        \"\"\"Make the state of the last trial the committed one. Without a trial, nothing changes.\"\"\"
-        if self._trial is not None:
-            self._committed, self._trial = self._trial, None
-
-    def revert(self):
-        \"\"\"Forget the last trial.\"\"\"
-        self._trial = None
-
-    def step(self{parameters}):
-        \"\"\"Give the output of a trial that is committed at once.\"\"\"
-        self._trial = None
-        return _advance(self._committed{arguments})
-
-    def save(self):
-        \"\"\"Give the committed state as bytes.\"\"\"
-        state = struct.pack(\"<{numbers}d\", *(value for values in self._committed for value in values))
-        return state + struct.pack(\"<II\", _TOKEN, zlib.crc32(state))
-
-    def restore(self, state):
-        \"\"\"Go back to a saved state of this model; other bytes raise a ValueError.\"\"\"
-        state, tail = state[:-8], state[-8:]
-        if len(state) != 8 * {numbers} or tail != struct.pack(\"<II\", _TOKEN, zlib.crc32(state)):
-            raise ValueError(\"the state is damaged or that of another model\")
-        numbers = iter(struct.unpack(\"<{numbers}d\", state))
-        self._committed = [[next(numbers) for _ in values] for values in _INITIAL_STATE]
-        self._trial = None
-
-{half_width}    def simulate(self{names}):
-        \"\"\"Give the outputs over a whole record, from the initial state.\"\"\"
-        self.reset()
-{prepared}        return np.array([self.step({row}) for row in range(len(x))])
-"
+    filled(
+        include_str!("python/class.py.txt"),
+        &[
+            ("@parameters@", &parameters),
+            ("@arguments@", &arguments),
+            ("@numbers@", &numbers.to_string()),
+            ("@half_width@", &half_width),
+            ("@names@", &names),
+            ("@prepared@", &prepared),
+            ("@row@", &row),
+        ],
     )
 }
 
@@ -314,47 +203,9 @@ fn self_test(subject: &Subject<'_>) -> String {
     let count = subject.argument_names().len();
     let (low, high) = subject.model().trained_ranges().output;
     let scale = 0.5 * (high - low);
-    format!(
-        "\"\"\"Compares {name}.py with the test vectors. Exit status 0 if all agree.\"\"\"
-
-import csv
-import pathlib
-import sys
-
-import {name}
-
-SCALE = {scale:?}
-
-model = {name}.Model()
-saved = model.save()
-differences = []
-path = pathlib.Path(__file__).with_name(\"test_vectors.csv\")
-with path.open(newline=\"\") as file:
-    for action, *numbers in list(csv.reader(file))[1:]:
-        if action in (\"step\", \"trial\"):
-            arguments = [float(number) for number in numbers[:{count}]]
-            expected = float(numbers[{count}])
-            if action == \"step\":
-                differences.append(abs(model.step(*arguments) - expected) / SCALE)
-            else:
-                slope = float(numbers[{count} + 1])
-                output, tangent = model.trial_tangent(*arguments)
-                differences.append(abs(output - expected) / SCALE)
-                differences.append(abs(tangent - slope) / (SCALE + abs(slope)))
-                differences.append(abs(model.trial(*arguments) - expected) / SCALE)
-        elif action == \"save\":
-            saved = model.save()
-        elif action == \"restore\":
-            model.restore(saved)
-        else:
-            getattr(model, action)()
-
-# One that is not a number is the largest.
-largest = max(differences, key=lambda difference: (difference != difference, difference))
-different = sum(difference != 0.0 for difference in differences)
-print(f\"{{different}} of {{len(differences)}} numbers differ, by at most {{largest:.1e}} of half the trained range\")
-sys.exit(0 if largest <= 1e-9 else 1)
-"
+    filled(
+        include_str!("python/test.py.txt"),
+        &[("NAME", name), ("@scale@", &format!("{scale:?}")), ("@count@", &count.to_string())],
     )
 }
 

@@ -114,21 +114,5 @@ pub(super) fn literal(precision: Precision, value: f64) -> String {
 /// How to use it.
 pub(super) fn usage(name: &str, inverse: &Inverse) -> String {
     let further: String = inverse.argument_names().iter().map(|name| format!(", {name}")).collect();
-    format!(
-        "
-The inverse gives the input for a wanted output:
-
-```c
-#include \"{name}_inverse.h\"
-
-{name}_inverse inverse;
-{name}_inverse_reset(&inverse);
-reach = {name}_inverse_step(&inverse, wanted{further}, &input, &output);
-```
-
-`output` is that of the model at this input: the wanted one, or the nearest, and `reach` says why. Limits of the input,
-the tolerance and the largest number of model steps of a call are in `{name}_inverse.h`. {name}_test.c
-runs the test vectors of the inverse too.
-"
-    )
+    filled(include_str!("inverse_usage.md.txt"), &[("NAME", name), ("@further@", &further)])
 }

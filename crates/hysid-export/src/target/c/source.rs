@@ -12,24 +12,13 @@ use crate::program::{Array, Declaration, Precision, Program, Storage};
 use crate::subject::Subject;
 use crate::target::c::elementary;
 use crate::target::printer::{Binding, Language, Printer, Syntax, rows_of_numbers};
+use crate::target::template::filled;
 
 /// Refuses options of compilers that change results, and switches off the optimisation of gcc that fuses products and sums
 /// in spite of `-ffp-contract=off` (gcc 12: alternating sums and differences become one `vfmaddsub`). That line makes gcc
 /// apply `-fassociative-math`, which it ignores by itself, so the options are looked at again. Clang tells of few of them,
 /// but can be told to reorder nothing; `float_control` alone would let it fuse.
-pub(super) const EXACT: &str = "#if defined __GNUC__ && !defined __clang__ && __GNUC__ >= 12
-#pragma GCC optimize (\"no-tree-slp-vectorize\")
-#endif
-#if defined __clang__ && __clang_major__ >= 12
-#pragma float_control(precise, on)
-#pragma clang fp reassociate(off) contract(off)
-#endif
-#if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || \\
-    (defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__)
-#error \"-ffast-math and its parts change the results of this file\"
-#endif
-
-";
+pub(super) const EXACT: &str = include_str!("exact.c.txt");
 
 /// A product and a sum in one rounding.
 const FUSED: &str = include_str!("fused.c.txt");
@@ -146,79 +135,14 @@ fn function(c: &C, name: &str, program: &Program, function: &str, with_tangent: 
 fn around(c: &C, name: &str, token: u32) -> String {
     let parameters: String = c.arguments.iter().map(|argument| format!(", real {argument}")).collect();
     let arguments: String = c.arguments.iter().map(|argument| format!(", {argument}")).collect();
-    format!(
-        "/* Tells saved states of this model from those of others. */
-static const double token = {token}.0;
-
-/* A checksum of a saved state (FNV-1a). */
-static double checksum(const unsigned char *bytes)
-{{
-    unsigned long sum = 2166136261UL;
-    size_t i;
-    for (i = 0; i < sizeof({name}_state); i++)
-        sum = ((sum ^ bytes[i]) * 16777619UL) & 0xffffffffUL;
-    return (double)sum;
-}}
-
-void {name}_reset({name}_model *model)
-{{
-    model->committed = first_values;
-    model->has_trial = 0;
-}}
-
-real {name}_trial({name}_model *model{parameters})
-{{
-    model->trial = model->committed;
-    model->has_trial = 1;
-    return advance(&model->trial{arguments});
-}}
-
-real {name}_trial_tangent({name}_model *model{parameters}, real *tangent)
-{{
-    model->trial = model->committed;
-    model->has_trial = 1;
-    return advance_with_tangent(&model->trial{arguments}, tangent);
-}}
-
-void {name}_commit({name}_model *model)
-{{
-    if (model->has_trial) {{
-        model->committed = model->trial;
-        model->has_trial = 0;
-    }}
-}}
-
-void {name}_revert({name}_model *model)
-{{
-    model->has_trial = 0;
-}}
-
-real {name}_step({name}_model *model{parameters})
-{{
-    model->has_trial = 0;
-    return advance(&model->committed{arguments});
-}}
-
-void {name}_save(const {name}_model *model, unsigned char *bytes)
-{{
-    double tail[2];
-    memcpy(bytes, &model->committed, sizeof({name}_state));
-    tail[0] = token;
-    tail[1] = checksum(bytes);
-    memcpy(bytes + sizeof({name}_state), tail, sizeof tail);
-}}
-
-int {name}_restore({name}_model *model, const unsigned char *bytes)
-{{
-    double tail[2];
-    memcpy(tail, bytes + sizeof({name}_state), sizeof tail);
-    if (tail[0] != token || tail[1] != checksum(bytes))
-        return 0;
-    memcpy(&model->committed, bytes, sizeof({name}_state));
-    model->has_trial = 0;
-    return 1;
-}}
-",
+    filled(
+        include_str!("around.c.txt"),
+        &[
+            ("@token@", &token.to_string()),
+            ("NAME", name),
+            ("@parameters@", &parameters),
+            ("@arguments@", &arguments),
+        ],
     )
 }
 

@@ -7,6 +7,7 @@ use hysid_core::data::unit;
 use crate::description::Argument;
 use crate::options::FmiVersion;
 use crate::subject::Subject;
+use crate::target::template::filled;
 
 /// Value references: the time has 0, then come the inputs, in the order of the step's arguments without the time step.
 pub(super) const FIRST_INPUT: usize = 1;
@@ -143,41 +144,29 @@ fn version_three(subject: &Subject<'_>, token: &str) -> String {
     let inputs: Vec<String> =
         (0..start_values(subject).len()).map(|index| (FIRST_INPUT + index).to_string()).collect();
     let inputs = inputs.join(" ");
+    let derivatives = match subject.inverse() {
+        None => "\n    providesDirectionalDerivatives=\"true\" providesAdjointDerivatives=\"true\"",
+        Some(_) => "",
+    };
     let unknowns = |kind: &str| -> String {
         let line = |reference: &usize| {
             format!("    <{kind} valueReference=\"{reference}\" dependencies=\"{inputs}\"/>\n")
         };
         outputs(subject).iter().map(line).collect()
     };
-    format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
-<fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" instantiationToken=\"{token}\"
-  description=\"{description}\" generationTool=\"Hysid {tool}\" variableNamingConvention=\"flat\">
-  <CoSimulation modelIdentifier=\"{name}\" canHandleVariableCommunicationStepSize=\"true\"
-    canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"{derivatives}
-    providesPerElementDependencies=\"true\"/>
-{units}  <LogCategories>
-    <Category name=\"logStatusError\" description=\"errors\"/>
-  </LogCategories>
-  <DefaultExperiment startTime=\"0\"/>
-  <ModelVariables>
-{lines}
-  </ModelVariables>
-  <ModelStructure>
-{output_lines}{unknown_lines}  </ModelStructure>
-</fmiModelDescription>
-",
-        name = subject.name(),
-        derivatives = match subject.inverse() {
-            None => "\n    providesDirectionalDerivatives=\"true\" providesAdjointDerivatives=\"true\"",
-            Some(_) => "",
-        },
-        description = summary(subject),
-        tool = env!("CARGO_PKG_VERSION"),
-        units = units(&variables),
-        lines = lines.join("\n"),
-        output_lines = unknowns("Output"),
-        unknown_lines = unknowns("InitialUnknown"),
+    filled(
+        include_str!("model_description_3.xml.txt"),
+        &[
+            ("NAME", subject.name()),
+            ("@token@", token),
+            ("@description@", &summary(subject)),
+            ("@tool@", env!("CARGO_PKG_VERSION")),
+            ("@derivatives@", derivatives),
+            ("@units@", &units(&variables)),
+            ("@lines@", &lines.join("\n")),
+            ("@output_lines@", &unknowns("Output")),
+            ("@unknown_lines@", &unknowns("InitialUnknown")),
+        ],
     )
 }
 
@@ -202,6 +191,10 @@ fn version_two(subject: &Subject<'_>, token: &str) -> String {
             )
         })
         .collect();
+    let (derivative, inverse) = match subject.inverse() {
+        None => (" providesDirectionalDerivative=\"true\"", String::new()),
+        Some(_) => ("", format!("      <File name=\"{name}_inverse.c\"/>\n")),
+    };
     // In version 2, dependencies are places in the list of variables, from 1 on.
     let count = start_values(subject).len();
     let inputs: Vec<String> = (1..=count).map(|place| place.to_string()).collect();
@@ -209,43 +202,19 @@ fn version_two(subject: &Subject<'_>, token: &str) -> String {
     let unknowns: String = (count + 1..=variables.len())
         .map(|place| format!("      <Unknown index=\"{place}\" dependencies=\"{inputs}\"/>\n"))
         .collect();
-    format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
-<fmiModelDescription fmiVersion=\"2.0\" modelName=\"{name}\" guid=\"{token}\"
-  description=\"{description}\" generationTool=\"Hysid {tool}\" variableNamingConvention=\"flat\"
-  numberOfEventIndicators=\"0\">
-  <CoSimulation modelIdentifier=\"{name}\" canHandleVariableCommunicationStepSize=\"true\"
-    canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\"{derivative}
-    canNotUseMemoryManagementFunctions=\"true\">
-    <SourceFiles>
-      <File name=\"fmi2.c\"/>
-      <File name=\"{name}.c\"/>
-{inverse}    </SourceFiles>
-  </CoSimulation>
-{units}  <LogCategories>
-    <Category name=\"logStatusError\" description=\"errors\"/>
-  </LogCategories>
-  <DefaultExperiment startTime=\"0\"/>
-  <ModelVariables>
-{lines}
-  </ModelVariables>
-  <ModelStructure>
-    <Outputs>
-{unknowns}    </Outputs>
-    <InitialUnknowns>
-{unknowns}    </InitialUnknowns>
-  </ModelStructure>
-</fmiModelDescription>
-",
-        derivative = if subject.inverse().is_none() { " providesDirectionalDerivative=\"true\"" } else { "" },
-        inverse = match subject.inverse() {
-            None => String::new(),
-            Some(_) => format!("      <File name=\"{name}_inverse.c\"/>\n"),
-        },
-        description = summary(subject),
-        tool = env!("CARGO_PKG_VERSION"),
-        units = units(&variables),
-        lines = lines.join("\n"),
+    filled(
+        include_str!("model_description_2.xml.txt"),
+        &[
+            ("NAME", name),
+            ("@token@", token),
+            ("@description@", &summary(subject)),
+            ("@tool@", env!("CARGO_PKG_VERSION")),
+            ("@derivative@", derivative),
+            ("@inverse@", &inverse),
+            ("@units@", &units(&variables)),
+            ("@lines@", &lines.join("\n")),
+            ("@unknowns@", &unknowns),
+        ],
     )
 }
 
@@ -256,18 +225,7 @@ pub(super) fn build_description(subject: &Subject<'_>) -> String {
         None => String::new(),
         Some(_) => format!("      <SourceFile name=\"{name}_inverse.c\"/>\n"),
     };
-    format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
-<fmiBuildDescription fmiVersion=\"3.0\">
-  <BuildConfiguration modelIdentifier=\"{name}\">
-    <SourceFileSet language=\"C99\" compilerOptions=\"-ffp-contract=off\">
-      <SourceFile name=\"fmi3.c\"/>
-      <SourceFile name=\"{name}.c\"/>
-{inverse}    </SourceFileSet>
-  </BuildConfiguration>
-</fmiBuildDescription>
-"
-    )
+    filled(include_str!("build_description.xml.txt"), &[("NAME", name), ("@inverse@", &inverse)])
 }
 
 /// Causality, variability and start value of each variable.

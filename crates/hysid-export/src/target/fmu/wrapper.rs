@@ -22,27 +22,21 @@ pub(super) fn wrapper(subject: &Subject<'_>, version: FmiVersion, token: &str) -
         None => (format!("{name}.h"), of_model(subject)),
         Some(inverse) => (format!("{name}_inverse.h"), of_inverse(subject, inverse)),
     };
-    let head = format!(
-        "/* {file}: the Functional Mock-up Interface {number} around {name}.c. */
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include \"{header}\"
-
-#define MODEL_TOKEN \"{token}\"
-#define FIRST_INPUT {FIRST_INPUT}
-#define INPUTS {inputs}
-#define OUTPUT {OUTPUT}
-
-static const double start_values[INPUTS] = {{ {start} }};
-
-",
-        file = version.source(),
-        number = version.number(),
-        inputs = start_values(subject).len(),
-        start = start_values(subject).iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", "),
+    let start = start_values(subject);
+    let values = start.iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", ");
+    let head = filled(
+        include_str!("head.c.txt"),
+        &[
+            ("@file@", version.source()),
+            ("@number@", version.number()),
+            ("NAME", name),
+            ("@header@", &header),
+            ("@token@", token),
+            ("@FIRST_INPUT@", &FIRST_INPUT.to_string()),
+            ("@inputs@", &start.len().to_string()),
+            ("@OUTPUT@", &OUTPUT.to_string()),
+            ("@start@", &values),
+        ],
     );
     head + &unit + include_str!("instance.c.txt") + functions
 }
@@ -50,25 +44,17 @@ static const double start_values[INPUTS] = {{ {start} }};
 /// The model as `instance.c.txt` uses it.
 fn of_model(subject: &Subject<'_>) -> String {
     let name = subject.name();
-    format!(
-        "{half_width}typedef {name}_model model_type;
-#define RESET {name}_reset
-#define COMMIT {name}_commit
-
-/* A trial step with the inputs at a point, and its slope. */
-static double trial_of_inputs(model_type *model, const double *inputs, double time_step, double *slope)
-{{
-    (void)time_step;
-    return {name}_trial_tangent(model{given}, slope);
-}}
-
-",
-        half_width = match subject.half_width() {
-            None => String::new(),
-            Some(_) =>
-                format!("#define HALF_WIDTH {HALF_WIDTH}\n#define READ_HALF_WIDTH {name}_half_width\n"),
-        },
-        given = given(&subject.description().arguments, 0),
+    let half_width = match subject.half_width() {
+        None => String::new(),
+        Some(_) => format!("#define HALF_WIDTH {HALF_WIDTH}\n#define READ_HALF_WIDTH {name}_half_width\n"),
+    };
+    filled(
+        include_str!("model.c.txt"),
+        &[
+            ("@half_width@", &half_width),
+            ("NAME", name),
+            ("@given@", &given(&subject.description().arguments, 0)),
+        ],
     )
 }
 

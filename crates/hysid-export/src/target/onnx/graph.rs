@@ -169,23 +169,19 @@ impl<'a> Compiler<'a> {
     }
 
     fn constant(&mut self, value: f64) -> String {
-        let key = (false, value.to_bits());
-        if let Some(name) = self.constants.get(&key) {
-            return name.clone();
-        }
-        let name = format!("c{}", self.constants.len());
-        self.initializers.push(Tensor { dims: Vec::new(), ..row(&name, &[value]) });
-        self.constants.insert(key, name.clone());
-        name
+        self.constant_of((false, value.to_bits()), |name| row(name, &[value]))
     }
 
     fn whole_constant(&mut self, value: i64) -> String {
-        let key = (true, value.cast_unsigned());
+        self.constant_of((true, value.cast_unsigned()), |name| row_of_wholes(name, &[value]))
+    }
+
+    fn constant_of(&mut self, key: (bool, u64), row: impl FnOnce(&str) -> Tensor) -> String {
         if let Some(name) = self.constants.get(&key) {
             return name.clone();
         }
         let name = format!("c{}", self.constants.len());
-        self.initializers.push(Tensor { dims: Vec::new(), ..row_of_wholes(&name, &[value]) });
+        self.initializers.push(Tensor { dims: Vec::new(), ..row(&name) });
         self.constants.insert(key, name.clone());
         name
     }

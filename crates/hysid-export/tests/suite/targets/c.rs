@@ -147,51 +147,11 @@ fn soak(kinds: &[Argument]) -> String {
     let arguments = kinds.len();
     let given: String = (0..arguments).map(|index| format!(", a[{index}]")).collect();
     let others = random_others(&kinds[1..]);
-    format!(
-        "#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include \"actuator.h\"
-{UNIT}int main(int count, char **values)
-{{
-    static actuator_model model;
-    static unsigned char saved[ACTUATOR_STATE_BYTES];
-    const long steps = count > 1 ? atol(values[1]) : 0;
-    double a[{arguments}] = {{0}}, slope = 0;
-    long k;
-    actuator_reset(&model);
-    actuator_save(&model, saved);
-    for (k = 0; k < steps; k++) {{
-        const double kind = unit();
-        double y;
-        a[0] += pow(10.0, 4.0 * unit() - 2.0) * (unit() < 0.5 ? -1.0 : 1.0);
-        if (kind < 0.02)
-            a[0] = 40.0;
-        if (fabs(a[0] - 40.0) > 300.0)
-            a[0] = 40.0 + 10.0 * (unit() - 0.5);
-        {others}
-        if (kind > 0.999)
-            a[0] *= pow(10.0, 90.0 * unit());
-        if (kind < 0.3) {{
-            y = actuator_trial_tangent(&model{given}, &slope);
-            if (kind < 0.15)
-                actuator_commit(&model);
-        }} else
-            y = actuator_step(&model{given});
-        if (!isfinite(y) || !isfinite(slope)) {{
-            printf(\"step %ld: %g, slope %g at %g\\n\", k, y, slope, a[0]);
-            return 1;
-        }}
-        if (kind > 0.9999)
-            actuator_save(&model, saved);
-        else if (kind > 0.9998)
-            actuator_restore(&model, saved);
-    }}
-    return 0;
-}}
-"
-    )
+    include_str!("programs/soak.c.txt")
+        .replace("@UNIT@", UNIT)
+        .replace("@arguments@", &arguments.to_string())
+        .replace("@others@", &others)
+        .replace("@given@", &given)
 }
 
 /// `HYSID_SOAK_STEPS=100000000 cargo test --release -p hysid-export --test targets survive` is the long one.

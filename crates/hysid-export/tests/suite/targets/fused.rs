@@ -63,47 +63,7 @@ fn outputs_do_not_depend_on_the_instruction() {
 
 /// Compares with the function of the C library over numbers of random bits, terms that nearly cancel, ties, small results
 /// and special numbers.
-const COMPARED: &str = "#define HYSID_SOFTWARE_FMA
-#include \"actuator.c\"
-#include <stdio.h>
-static uint64_t state = 7;
-static uint64_t next(void)
-{
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return state * UINT64_C(2685821657736338717);
-}
-/* A number with this digits mask and an exponent from `first` on. */
-static double number(uint64_t digits, uint64_t first, uint64_t count)
-{
-    return fused_value((next() & (fused_sign | (digits & 0xfffffffffffff))) | (first + next() % count) << 52);
-}
-int main(void)
-{
-    const double special[] = {0.0, -0.0, 1.0, -1.5, 5e-324, 1e-200, 1e-300, 1e200, 1.7976931348623157e308, HUGE_VAL,
-                              -HUGE_VAL, HUGE_VAL - HUGE_VAL, 2.2250738585072014e-308, 2.225073858507201e-308};
-    long k;
-    for (k = 0; k < 2000000; k++) {
-        double a = fused_value(next()), b = fused_value(next()), c = fused_value(next()), exact, found;
-        switch (k % 8) {
-        case 1: c = -(a * b); break;
-        case 2: c = fused_value(fused_bits(-(a * b)) + next() % 7 - 3); break;
-        case 3: a = number(~0ULL, 483, 60); b = number(~0ULL, 503, 60); c = number(~0ULL, 0, 2); break;
-        case 4: a = number(~0ULL << 30, 900, 200); b = number(~0ULL << 28, 900, 200); c = ldexp(a * b, -(int)(next() % 120)); break;
-        case 5: c = a * b * ldexp(1.0, (int)(next() % 240) - 120); break;
-        case 6: a = number(~0ULL << 30, 1019, 8); b = number(~0ULL << 28, 1019, 8); c = number(~0ULL << 32, 963, 120); break;
-        case 7: a = special[next() % 14]; b = special[next() % 14]; c = special[next() % 14]; break;
-        default: break;
-        }
-        exact = fma(a, b, c);
-        found = fused(a, b, c);
-        if (fused_bits(exact) != fused_bits(found) && (exact == exact || found == found))
-            return printf(\"%a * %a + %a: %a, not %a\\n\", a, b, c, found, exact), 1;
-    }
-    return 0;
-}
-";
+const COMPARED: &str = include_str!("programs/fused.c.txt");
 
 #[test]
 fn products_and_sums_in_software_are_rounded_once() {

@@ -45,30 +45,10 @@ fn program(arguments: usize) -> String {
         })
         .concat();
     let soon = if arguments > 1 { soon } else { String::new() };
-    format!(
-        "#include <math.h>
-#include <stdio.h>
-#include <string.h>
-#include \"actuator.h\"
-int main(void)
-{{
-    static actuator_model model, other;
-    double slope, x = 0;
-    int i;
-    actuator_reset(&model);
-    actuator_reset(&other);
-    for (i = 0; i < 100; i++) {{
-        x = sin(0.1 * i);
-        if (i == 50) {{
-{invalid}        }}
-        if (actuator_step(&model{plain}) != actuator_step(&other{plain}))
-            return printf(\"row %d is another\\n\", i), 1;
-    }}
-{soon}    (void)x;
-    return 0;
-}}
-"
-    )
+    include_str!("programs/invalid.c.txt")
+        .replace("@invalid@", &invalid)
+        .replace("@plain@", &plain)
+        .replace("@soon@", &soon)
 }
 
 #[test]

@@ -27,32 +27,9 @@ fn compiled(compiler: &str, folder: &Path, program: &str) {
 /// state, goes elsewhere, and returns.
 fn driver(arguments: usize) -> String {
     let given: String = (1..arguments).map(|index| format!(", row[{index}]")).collect();
-    format!(
-        "#include <stdio.h>
-#include \"actuator_inverse.h\"
-int main(void)
-{{
-    static actuator_inverse inverse;
-    static unsigned char saved[ACTUATOR_INVERSE_STATE_BYTES];
-    double row[{arguments}];
-    int count = 0;
-    actuator_inverse_reset(&inverse);
-    while (fread(row, sizeof(double), {arguments}, stdin) == {arguments}) {{
-        double numbers[4] = {{0}};
-        if (++count % 97 == 0) {{
-            double there[2];
-            actuator_inverse_save(&inverse, saved);
-            (void)actuator_inverse_step(&inverse, row[0] + 1.0{given}, &there[0], &there[1]);
-            actuator_inverse_restore(&inverse, saved);
-        }}
-        numbers[2] = actuator_inverse_step(&inverse, row[0]{given}, &numbers[0], &numbers[1]);
-        numbers[3] = inverse.trials;
-        fwrite(numbers, sizeof numbers, 1, stdout);
-    }}
-    return 0;
-}}
-"
-    )
+    include_str!("programs/inverse.c.txt")
+        .replace("@arguments@", &arguments.to_string())
+        .replace("@given@", &given)
 }
 
 /// `HYSID_ROWS=100000 cargo test --release -p hysid-export --test targets inverses_equal -- --nocapture` is the long
@@ -109,47 +86,13 @@ fn test_vectors_of_inverses_agree_in_both_precisions() {
 fn soak(kinds: &[Argument], (low, high): (f64, f64)) -> String {
     let given: String = (1..=kinds.len()).map(|index| format!(", a[{index}]")).collect();
     let others = random_others(kinds);
-    format!(
-        "#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include \"actuator_inverse.h\"
-{UNIT}int main(int count, char **values)
-{{
-    static actuator_inverse inverse;
-    static unsigned char saved[ACTUATOR_INVERSE_STATE_BYTES];
-    const long steps = count > 1 ? atol(values[1]) : 0;
-    double a[{arguments}] = {{{low:?}}}, input, output;
-    long k;
-    actuator_inverse_reset(&inverse);
-    actuator_inverse_save(&inverse, saved);
-    for (k = 0; k < steps; k++) {{
-        const double kind = unit();
-        actuator_reach reach;
-        a[0] += ({high:?} - {low:?}) * pow(10.0, 3.0 * unit() - 3.0) * (unit() < 0.5 ? -1.0 : 1.0);
-        if (!(a[0] > {low:?}) || !(a[0] < {high:?}))
-            a[0] = {low:?} + ({high:?} - {low:?}) * unit();
-        if (kind > 0.99)
-            a[0] *= pow(10.0, 300.0 * unit());
-        {others}
-        reach = actuator_inverse_step(&inverse, a[0]{given}, &input, &output);
-        if (reach < ACTUATOR_REACHED || reach > ACTUATOR_JUMP || !isfinite(output) ||
-            !(input >= ACTUATOR_INVERSE_LOW && input <= ACTUATOR_INVERSE_HIGH) ||
-            inverse.trials > ACTUATOR_INVERSE_MOST_TRIALS) {{
-            printf(\"step %ld: wanted %g, input %g, output %g\\n\", k, a[0], input, output);
-            return 1;
-        }}
-        if (kind < 0.01)
-            actuator_inverse_save(&inverse, saved);
-        else if (kind < 0.02)
-            actuator_inverse_restore(&inverse, saved);
-    }}
-    return 0;
-}}
-",
-        arguments = kinds.len() + 1,
-    )
+    include_str!("programs/inverse_soak.c.txt")
+        .replace("@UNIT@", UNIT)
+        .replace("@arguments@", &(kinds.len() + 1).to_string())
+        .replace("@low@", &format!("{low:?}"))
+        .replace("@high@", &format!("{high:?}"))
+        .replace("@others@", &others)
+        .replace("@given@", &given)
 }
 
 /// `HYSID_SOAK_STEPS=1000000 cargo test --release -p hysid-export --test targets inverses_survive` is the long one.

@@ -14,64 +14,7 @@ use super::tools::{python, succeeds, tool};
 
 /// Runs rows of arguments in binary as an importer does, writes inputs, outputs and reaches in binary, and tries what
 /// importers do besides.
-const DRIVER: &str = "
-outputs = [v.valueReference for v in description.modelVariables if v.causality == 'output'][:3]
-folder = fmpy.extract('actuator.fmu')
-
-class Unit:
-    def __init__(self):
-        self.fmu = fmpy.instantiate_fmu(folder, description, 'CoSimulation')
-        self.three = description.fmiVersion.startswith('3')
-        self.get = self.fmu.getFloat64 if self.three else self.fmu.getReal
-        self.put = self.fmu.setFloat64 if self.three else self.fmu.setReal
-        self.time = steps[0]
-        if self.three:
-            self.fmu.enterInitializationMode(startTime=self.time)
-        else:
-            self.fmu.setupExperiment(startTime=self.time)
-            self.fmu.enterInitializationMode()
-        self.put(references, list(inputs[0]))
-        self.fmu.exitInitializationMode()
-    def row(self, k):
-        if k > 0:
-            self.fmu.doStep(currentCommunicationPoint=self.time, communicationStepSize=steps[k])
-            self.time += steps[k]
-            self.put(references, list(inputs[(k + 7) % len(rows)]))
-            self.get(outputs[:1])
-            self.put(references, list(inputs[k]))
-        return self.get(outputs)
-    def repeat(self, k):
-        # The state saved, serialised, rewound and repeated.
-        f = self.fmu
-        if self.three:
-            state = f.deserializeFMUState(f.serializeFMUState(f.getFMUState()))
-        else:
-            state = f.deSerializeFMUstate(f.serializeFMUstate(f.getFMUstate()))
-        time, found = self.time, []
-        for _ in range(2):
-            found.append([self.row(j) for j in range(k, k + 40)])
-            f.setFMUState(state) if self.three else f.setFMUstate(state)
-            self.time = time
-        assert found[0] == found[1]
-
-units = [Unit() for _ in range(3)]
-found = [[] for _ in units]
-for k in range(0, len(rows) + 3):
-    for number, unit in enumerate(units):
-        if 0 <= k - number < len(rows):
-            if number == 1 and k - number == 100:
-                unit.repeat(100)
-            found[number].append(unit.row(k - number))
-assert found[1] == found[0] and found[2] == found[0]
-np.array(found[0]).tofile('outputs')
-
-# A whole simulation by FMPy.
-h = 0.01
-t = h * np.arange(len(rows))
-signals = np.array([(time, *row) for time, row in zip(t, inputs)], dtype=[('time', float)] + [(n, float) for n in names])
-result = fmpy.simulate_fmu('actuator.fmu', stop_time=t[-1], output_interval=h, step_size=h, input=signals)
-assert len(result) == len(rows)
-";
+const DRIVER: &str = include_str!("programs/inverse_fmu.py.txt");
 
 #[test]
 fn importers_find_nothing_wrong_and_units_of_inverses_agree() {

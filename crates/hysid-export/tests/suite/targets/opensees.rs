@@ -27,103 +27,7 @@ const INTERFACE: [(&str, &str); 7] = [
 ];
 
 /// Runs the test vectors on the class, and prints the number of differences.
-const DRIVER: &str = r#"
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <iostream>
-#include <sstream>
-#include <string>
-#include <vector>
-#include <Channel.h>
-#include <FEM_ObjectBroker.h>
-#include <OPS_Globals.h>
-#include <elementAPI.h>
-#include "actuatorMaterial.h"
-
-double ops_Dt = 0.0;
-OPS_Stream opserr;
-extern "C" int OPS_GetIntInput(int *count, int *values) { (void)count; *values = 7; return 0; }
-extern "C" void *OPS_actuator(void);
-
-class Memory : public Channel
-{
-  public:
-    Vector data;
-    Memory() : data(0) {}
-    int sendVector(int, int, const Vector &vector) { data = vector; return 0; }
-    int recvVector(int, int, Vector &vector) { vector = data; return 0; }
-};
-
-static double sumOf(Vector &data)
-{
-    std::uint32_t sum = 2166136261U;
-    for (int i = 0; i + 1 < data.Size(); i++) {
-        std::uint64_t bits;
-        std::memcpy(&bits, &data(i), sizeof bits);
-        for (int k = 0; k < 64; k += 8)
-            sum = (sum ^ ((bits >> k) & 255U)) * 16777619U;
-    }
-    return sum;
-}
-
-int main(int, char **arguments)
-{
-    const bool has_time = std::string(arguments[1]) == "true";
-    UniaxialMaterial *material = static_cast<UniaxialMaterial *>(OPS_actuator());
-    std::ifstream file("test_vectors.csv");
-    std::string line;
-    std::getline(file, line);
-    Memory saved;
-    FEM_ObjectBroker broker;
-    int different = 0, compared = 0;
-    auto compare = [&](double found, double expected) { compared++; different += found != expected; };
-    while (std::getline(file, line)) {
-        std::stringstream fields(line);
-        std::string action, field;
-        std::getline(fields, action, ',');
-        std::vector<double> numbers;
-        while (std::getline(fields, field, ','))
-            numbers.push_back(field.empty() ? 0.0 : std::stod(field));
-        numbers.resize(4 + has_time);
-        const double output = numbers[1 + has_time], tangent = numbers[2 + has_time];
-        ops_Dt = has_time ? numbers[1] : 0.0;
-        if (action == "reset") material->revertToStart();
-        if (action == "trial" || action == "step") {
-            material->setTrialStrain(numbers[0]);
-            compare(material->getStress(), output);
-            compare(material->getStrain(), numbers[0]);
-        }
-        if (action == "trial") compare(material->getTangent(), tangent);
-        if (action == "step" || action == "commit") material->commitState();
-        if (action == "revert") material->revertToLastCommit();
-        if (action == "save") material->sendSelf(0, saved);
-        if (action == "restore") {
-            // Another material takes its place.
-            UniaxialMaterial *other = material->getCopy();
-            delete material;
-            material = other;
-            material->revertToStart();
-            // Damaged data are refused and change nothing; so are impossible data with a right checksum.
-            for (int i = 0; i < 8; i++)
-                for (double wild : {1e300, -0.5, double(NAN), double(INFINITY)}) {
-                    Memory damaged = saved;
-                    damaged.data(i) = wild;
-                    compare(material->recvSelf(0, damaged, broker), -1);
-                    damaged.data(damaged.data.Size() - 1) = sumOf(damaged.data);
-                    if (i == 0 || (i < 6 && !std::isfinite(wild)))
-                        compare(material->recvSelf(0, damaged, broker), -1);
-                }
-            compare(material->getTag(), 7);
-            material->recvSelf(0, saved, broker);
-        }
-    }
-    std::cout << different << " of " << compared << " differ, tag " << material->getTag() << std::endl;
-    delete material;
-    return 0;
-}
-"#;
+const DRIVER: &str = include_str!("opensees/driver.cpp.txt");
 
 /// True for laws with a resonance of their own.
 fn has_inertia(name: &str) -> bool {
@@ -176,25 +80,7 @@ fn model_of(law: BoucWen) -> Model {
 }
 
 /// Drives the native material along a path whose steps are divided into parts, and writes its stress at the rows.
-const NATIVE: &str = "
-import sys
-import numpy as np
-import openseespy.opensees as ops
-import actuator
-x = np.fromfile('rows')
-parts = int(sys.argv[1])
-ops.wipe()
-ops.model('basic', '-ndm', 1, '-ndf', 1)
-actuator.define(3)
-ops.testUniaxialMaterial(3)
-outputs, before = [], 0.0
-for strain in x:
-    for part in range(1, parts + 1):
-        ops.setStrain(float(before + (strain - before) * part / parts))
-    before = strain
-    outputs.append(ops.getStress())
-np.array(outputs).tofile('outputs')
-";
+const NATIVE: &str = include_str!("opensees/native.py.txt");
 
 #[test]
 fn native_materials_approach_the_model_with_small_steps() {
