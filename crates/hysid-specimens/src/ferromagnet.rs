@@ -96,74 +96,34 @@ impl Ferromagnet {
         Self { everett, extrema: Vec::new() }
     }
 
+    /// A demagnetised material from `h_sat`, `m`, `r`, `q`, `p1`, `p2`, `hc` and `k` of its Everett function.
+    fn published([h_sat, m, r, q, p1, p2, hc, k]: [f64; 8]) -> Self {
+        Self::new(Everett { h_sat, m, r, q, p1, p2, hc, k })
+    }
+
     /// Electrical steel M270-50A. Published.
     pub fn m270_50a() -> Self {
-        Self::new(Everett {
-            h_sat: 650.0,
-            m: 0.980890,
-            r: 0.429330,
-            q: 0.027285,
-            p1: 0.48567,
-            p2: 0.000549,
-            hc: 24.4948,
-            k: 50.0,
-        })
+        Self::published([650.0, 0.980890, 0.429330, 0.027285, 0.48567, 0.000549, 24.4948, 50.0])
     }
 
     /// Electrical steel M330-50A. Published.
     pub fn m330_50a() -> Self {
-        Self::new(Everett {
-            h_sat: 650.0,
-            m: 0.967,
-            r: 0.502560,
-            q: 0.039964,
-            p1: 0.188070,
-            p2: 0.000781,
-            hc: 42.2283,
-            k: 50.0,
-        })
+        Self::published([650.0, 0.967, 0.502560, 0.039964, 0.188070, 0.000781, 42.2283, 50.0])
     }
 
     /// Electrical steel M400-50AP. Published.
     pub fn m400_50ap() -> Self {
-        Self::new(Everett {
-            h_sat: 600.0,
-            m: 1.0013,
-            r: 0.42687,
-            q: 0.034302,
-            p1: 0.31794,
-            p2: 0.000759,
-            hc: 36.204,
-            k: 50.0,
-        })
+        Self::published([600.0, 1.0013, 0.42687, 0.034302, 0.31794, 0.000759, 36.204, 50.0])
     }
 
     /// Electrical steel M800-65A. Published.
     pub fn m800_65a() -> Self {
-        Self::new(Everett {
-            h_sat: 700.0,
-            m: 1.146100,
-            r: 0.160700,
-            q: 0.012965,
-            p1: 0.183490,
-            p2: 0.000425,
-            hc: 100.0602,
-            k: 50.0,
-        })
+        Self::published([700.0, 1.146100, 0.160700, 0.012965, 0.183490, 0.000425, 100.0602, 50.0])
     }
 
     /// Cobalt-iron alloy Vacoflux 17. Published.
     pub fn vacoflux17() -> Self {
-        Self::new(Everett {
-            h_sat: 1000.0,
-            m: 0.919590,
-            r: 0.728070,
-            q: 0.015757,
-            p1: 0.016407,
-            p2: 0.001049,
-            hc: 98.0842,
-            k: 110.0,
-        })
+        Self::published([1000.0, 0.919590, 0.728070, 0.015757, 0.016407, 0.001049, 98.0842, 110.0])
     }
 
     /// Returns to the demagnetised state, at field 0.

@@ -34,6 +34,11 @@ fn table_of(data: &Dataset, field: Field) -> CycleTable {
     CycleTable::of(data, &CycleOptions { field: Some(field), ..CycleOptions::default() }).unwrap()
 }
 
+fn divided(data: &Dataset, field: Field, division: Division) -> CycleTable {
+    let (field, division) = (Some(field), Some(division));
+    CycleTable::of(data, &CycleOptions { field, division, ..CycleOptions::default() }).unwrap()
+}
+
 fn stop(turning: &[f64]) -> Dataset {
     let x = path(turning, 0.05);
     let y = Stop::new(1.0).unwrap().run(&x);
@@ -217,16 +222,11 @@ fn a_record_of_whole_periods_has_whole_cycles_and_the_true_period() {
 fn a_width_needs_both_branches_over_the_whole_swing() {
     let x = path(&[2.0, 4.0, 0.0, 2.0], 0.05);
     let y = Play::new(0.5).unwrap().run(&x);
-    let options = CycleOptions {
-        field: Some(Field::Actuator),
-        division: Some(Division::Mean),
-        ..CycleOptions::default()
-    };
-    let table = CycleTable::of(&data(x.clone(), y.clone()), &options).unwrap();
+    let table = divided(&data(x.clone(), y.clone()), Field::Actuator, Division::Mean);
     assert_relative_eq!(table.cycles[0].width.unwrap(), 1.0, epsilon = 1e-9);
     let mut blank = y;
     blank[..36].fill(f64::NAN);
-    let table = CycleTable::of(&data(x, blank), &options).unwrap();
+    let table = divided(&data(x, blank), Field::Actuator, Division::Mean);
     assert_eq!((table.cycles[0].complete, table.cycles[0].width), (true, None));
     assert!(
         table.cycles[0].notes.iter().any(|note| note.starts_with("no width")),
@@ -325,12 +325,7 @@ fn a_drifting_mean_gives_loops_where_the_input_comes_back() {
 /// A loop of amplitude 2 on the way to amplitude 4: `4 (2 - 1)`, and not that of the tips 2 and 4.
 #[test]
 fn a_growing_cycle_from_tip_to_tip_is_the_loop_that_closes() {
-    let options = CycleOptions {
-        field: Some(Field::Structure),
-        division: Some(Division::Reversals),
-        ..CycleOptions::default()
-    };
-    let table = CycleTable::of(&stop(&[0.0, 2.0, -2.0, 4.0, -4.0, 4.0]), &options).unwrap();
+    let table = divided(&stop(&[0.0, 2.0, -2.0, 4.0, -4.0, 4.0]), Field::Structure, Division::Reversals);
     let row = &table.cycles[1];
     assert_eq!((row.complete, row.amplitude, row.peak_input), (true, Some(2.0), Some(2.0)));
     assert_relative_eq!(row.energy.unwrap(), 4.0, epsilon = 1e-9);
@@ -346,12 +341,7 @@ fn a_growing_cycle_from_tip_to_tip_is_the_loop_that_closes() {
 /// From 4 down to -1 and back to 1: the way down through 1 and the way up to 1 have different outputs there.
 #[test]
 fn a_shrinking_cycle_that_does_not_close_has_no_loop() {
-    let options = CycleOptions {
-        field: Some(Field::General),
-        division: Some(Division::Reversals),
-        ..CycleOptions::default()
-    };
-    let table = CycleTable::of(&stop(&[0.0, 4.0, -1.0, 1.0, -3.0, 0.5]), &options).unwrap();
+    let table = divided(&stop(&[0.0, 4.0, -1.0, 1.0, -3.0, 0.5]), Field::General, Division::Reversals);
     let row = &table.cycles[1];
     assert!(row.complete && row.notes.iter().any(|note| note.starts_with("no loop")), "{:?}", row.notes);
     assert_eq!((row.energy, row.damping_percent, row.width, row.coercive_input), (None, None, None, None));
@@ -518,12 +508,7 @@ fn a_rippled_loop_has_its_coercive_field() {
     let phase = |row: usize| TAU * row as f64 / 400.0;
     let x: Vec<f64> = (0..=1200).map(|row| sin(phase(row)) + 0.3 * sin(5.0 * phase(row))).collect();
     let y = Play::new(0.2).unwrap().run(&x);
-    let options = CycleOptions {
-        field: Some(Field::Magnet),
-        division: Some(Division::Mean),
-        ..CycleOptions::default()
-    };
-    let table = CycleTable::of(&data(x, y), &options).unwrap();
+    let table = divided(&data(x, y), Field::Magnet, Division::Mean);
     assert_eq!(table.complete().count(), 3);
     for row in table.complete() {
         assert_relative_eq!(row.coercive_input.unwrap(), 0.2, max_relative = 0.01);
@@ -544,12 +529,7 @@ fn a_cycle_of_two_frequencies_has_none_and_round_tips_are_closed() {
             y.push(sin(phase - 0.3));
         }
     }
-    let options = CycleOptions {
-        field: Some(Field::Magnet),
-        division: Some(Division::Reversals),
-        ..CycleOptions::default()
-    };
-    let table = CycleTable::of(&timed(t, x, y), &options).unwrap();
+    let table = divided(&timed(t, x, y), Field::Magnet, Division::Reversals);
     let found: Vec<f64> = table.losses.iter().map(|loss| loss.frequency.round()).collect();
     assert_eq!(found, [1.0, 5.0, 20.0]);
     let mixed: Vec<&CycleRow> = table.complete().filter(|row| row.frequency.is_none()).collect();
@@ -572,12 +552,7 @@ fn a_cycle_with_a_joint_has_no_coercive_field() {
         };
         let loops = [(2.0, 0.3), (amplitude, 0.5)];
         let (x, y) = loops.into_iter().flat_map(|of| (0..300).map(move |number| row(of, number))).unzip();
-        let options = CycleOptions {
-            field: Some(Field::Magnet),
-            division: Some(Division::Zero),
-            ..CycleOptions::default()
-        };
-        for cycle in CycleTable::of(&data(x, y), &options).unwrap().complete() {
+        for cycle in divided(&data(x, y), Field::Magnet, Division::Zero).complete() {
             let found = (cycle.coercive_input, cycle.remanent_output);
             let (a, lag) = loops[usize::from(cycle.rows.0 >= 300)];
             match cycle.rows.0 < 299 && cycle.rows.1 > 300 {
@@ -602,12 +577,7 @@ fn smaller_loops_and_jumps_behind_a_cycle_are_not_in_its_figures() {
         };
         let rows = loops.into_iter().flat_map(|of| (0..300).map(move |number| row(of, number)));
         let (x, y) = rows.unzip();
-        let options = CycleOptions {
-            field: Some(Field::Magnet),
-            division: Some(Division::Zero),
-            ..CycleOptions::default()
-        };
-        CycleTable::of(&data(x, y), &options).unwrap()
+        divided(&data(x, y), Field::Magnet, Division::Zero)
     };
     let least: f64 = 2.0 * sin(0.3);
     let table = after(asin(least));

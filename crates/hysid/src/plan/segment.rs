@@ -36,35 +36,27 @@ pub enum Kind {
 impl Kind {
     /// What it is, in a few words.
     pub fn words(self) -> &'static str {
-        match self {
-            Self::Conditioning => "full loop",
-            Self::TwoSpeeds => "loop at two speeds",
-            Self::RepeatedLoop => "repeated loop",
-            Self::Hold => "hold",
-            Self::CentredLoop => "centred loop",
-            Self::MinorLoop => "minor loop",
-            Self::ReversalCurve => "reversal curve",
-            Self::NestedLoops => "nested loops",
-            Self::RandomReversals => "random reversals",
-            Self::RisingLoops => "rising loops",
-            Self::Return => "return",
-        }
+        self.texts().0
     }
 
     /// What it adds, in a few words.
     pub fn purpose(self) -> &'static str {
+        self.texts().1
+    }
+
+    fn texts(self) -> (&'static str, &'static str) {
         match self {
-            Self::Conditioning => "brings the memory into a known state",
-            Self::TwoSpeeds => "makes rate dependence testable",
-            Self::RepeatedLoop => "makes deterioration testable, and shows the noise",
-            Self::Hold => "shows creep and relaxation",
-            Self::CentredLoop => "amplitudes about the middle",
-            Self::MinorLoop => "loops away from the middle",
-            Self::ReversalCurve => "reversals on the branches of the full loop",
-            Self::NestedLoops => "loops inside loops: what the memory keeps",
-            Self::RandomReversals => "many pairs of turning points in few rows",
-            Self::RisingLoops => "each amplitude before a larger one changes the specimen",
-            Self::Return => "back to the beginning",
+            Self::Conditioning => ("full loop", "brings the memory into a known state"),
+            Self::TwoSpeeds => ("loop at two speeds", "makes rate dependence testable"),
+            Self::RepeatedLoop => ("repeated loop", "makes deterioration testable, and shows the noise"),
+            Self::Hold => ("hold", "shows creep and relaxation"),
+            Self::CentredLoop => ("centred loop", "amplitudes about the middle"),
+            Self::MinorLoop => ("minor loop", "loops away from the middle"),
+            Self::ReversalCurve => ("reversal curve", "reversals on the branches of the full loop"),
+            Self::NestedLoops => ("nested loops", "loops inside loops: what the memory keeps"),
+            Self::RandomReversals => ("random reversals", "many pairs of turning points in few rows"),
+            Self::RisingLoops => ("rising loops", "each amplitude before a larger one changes the specimen"),
+            Self::Return => ("return", "back to the beginning"),
         }
     }
 

@@ -68,6 +68,19 @@ pub fn with_fitting_checksum(text: &str) -> String {
     format!("{}\"checksum\": \"{:08x}\"\n}}\n", &text[..end], crc32fast::hash(content.as_bytes()))
 }
 
+/// The file with another first value of a field.
+fn with_value(part: &str, field: &str, value: &str) -> String {
+    let mut text = FULL.to_json();
+    let begin = text.find(&format!("\"{part}\"")).unwrap();
+    let field = format!("\"{field}\": ");
+    let at = begin + text[begin..].find(&field).unwrap() + field.len();
+    let at = at + text[at..].find(|c: char| c.is_ascii_alphanumeric() || c == '-').unwrap();
+    let end = at + text[at..].find([',', '\n', ']']).unwrap();
+    assert_ne!(&text[at..end], value);
+    text.replace_range(at..end, value);
+    with_fitting_checksum(&text)
+}
+
 #[test]
 fn a_model_comes_back_to_the_last_bit() {
     for model in models() {
@@ -136,24 +149,14 @@ fn a_blank_within_a_text_is_noticed() {
 #[test]
 fn scales_that_nothing_can_be_divided_by_are_refused() {
     let text = FULL.to_json();
-    let with = |part: &str, field: &str, value: &str| {
-        let begin = text.find(&format!("\"{part}\"")).unwrap();
-        let field = format!("\"{field}\": ");
-        let at = begin + text[begin..].find(&field).unwrap() + field.len();
-        let at = at + text[at..].find(|c: char| c.is_ascii_digit() || c == '-').unwrap();
-        let end = at + text[at..].find([',', '\n', ']']).unwrap();
-        let mut changed = text.clone();
-        changed.replace_range(at..end, value);
-        with_fitting_checksum(&changed)
-    };
     for field in ["inputs", "rate", "output_deviation"] {
         for value in ["0.0", "-1.0", "1e308", "5e-324"] {
-            let said = refusal(&with("scaling", field, value));
+            let said = refusal(&with_value("scaling", field, value));
             assert!(said.contains("its scaling has the factor"), "{field} {value}: {said}");
         }
     }
-    assert!(refusal(&with("scaling", "output_mean", "1e308")).contains("mean output"));
-    assert!(refusal(&with("trained_ranges", "inputs", "1e9")).contains("range"));
+    assert!(refusal(&with_value("scaling", "output_mean", "1e308")).contains("mean output"));
+    assert!(refusal(&with_value("trained_ranges", "inputs", "1e9")).contains("range"));
     let preprocessing = text.replacen(
         "\"trained_ranges\"",
         "\"preprocessing\": {\"companding\": 5e-324, \"rate_companding\": null, \"history\": null}, \"trained_ranges\"",
@@ -212,28 +215,17 @@ fn an_unknown_field_is_another_layout() {
 
 #[test]
 fn a_file_that_contradicts_itself_is_refused() {
-    let text = FULL.to_json();
-    let architecture = |field: &str, value: &str| {
-        let begin = text.find("\"architecture\"").unwrap();
-        let field = format!("\"{field}\": ");
-        let at = begin + text[begin..].find(&field).unwrap() + field.len();
-        let end = at + text[at..].find([',', '\n']).unwrap();
-        let mut changed = text.clone();
-        changed.replace_range(at..end, value);
-        assert_ne!(changed, text);
-        with_fitting_checksum(&changed)
-    };
     let changes = [("inputs", "2"), ("rate", "false"), ("stops", "4"), ("hidden", "1"), ("relaxation", "0")];
     for (field, value) in changes {
-        let said = refusal(&architecture(field, value));
+        let said = refusal(&with_value("architecture", field, value));
         assert!(said.contains("contradicts itself"), "{field}: {said}");
     }
     for field in ["deterioration", "linear", "direct", "constant"] {
-        refusal(&architecture(field, "false"));
+        refusal(&with_value("architecture", field, "false"));
     }
     // Of absurd size, without a panic.
     for field in ["stops", "hidden", "relaxation"] {
-        refusal(&architecture(field, "18446744073709551615"));
+        refusal(&with_value("architecture", field, "18446744073709551615"));
     }
 }
 

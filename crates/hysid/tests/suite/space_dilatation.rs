@@ -36,32 +36,29 @@ fn solve(
     search(&mut f, x, options, iterations, target).0
 }
 
-/// Σ κ^{i/(n-1)} x_i²
-fn quadratic(condition: f64) -> impl FnMut(&[f64], &mut [f64]) -> f64 {
+/// Σ κ^{i/(n-1)} f(x_i), of a function with its derivative.
+fn weighted(condition: f64, f: fn(f64) -> (f64, f64)) -> impl FnMut(&[f64], &mut [f64]) -> f64 {
     move |x, g| {
         let n = x.len() as f64;
         let mut value = 0.0;
         for (i, (x, g)) in x.iter().zip(g).enumerate() {
             let weight = powf(condition, i as f64 / (n - 1.0));
-            value += weight * x * x;
-            *g = 2.0 * weight * x;
+            let (of_x, slope) = f(*x);
+            value += weight * of_x;
+            *g = weight * slope;
         }
         value
     }
 }
 
+/// Σ κ^{i/(n-1)} x_i²
+fn quadratic(condition: f64) -> impl FnMut(&[f64], &mut [f64]) -> f64 {
+    weighted(condition, |x| (x * x, 2.0 * x))
+}
+
 /// Σ κ^{i/(n-1)} |x_i|
 fn absolute_values(condition: f64) -> impl FnMut(&[f64], &mut [f64]) -> f64 {
-    move |x, g| {
-        let n = x.len() as f64;
-        let mut value = 0.0;
-        for (i, (x, g)) in x.iter().zip(g).enumerate() {
-            let weight = powf(condition, i as f64 / (n - 1.0));
-            value += weight * x.abs();
-            *g = weight * x.signum();
-        }
-        value
-    }
+    weighted(condition, |x| (x.abs(), x.signum()))
 }
 
 /// max x_i²
