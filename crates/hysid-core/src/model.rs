@@ -268,7 +268,6 @@ pub struct Found {
 }
 
 impl Found {
-    /// The provenance, with the errors on the data.
     fn on(self, data: &Dataset, train: Errors, train_after_warm_up: Option<Errors>) -> Provenance {
         let Self { options, chosen_start, termination, validation, penalties, runs, selection } = self;
         Provenance {

@@ -313,7 +313,6 @@ impl PeakOriented {
     }
 }
 
-/// A force of one side.
 fn signed(side: usize, force: f64) -> [f64; 2] {
     if side == 0 { [force, 0.0] } else { [0.0, -force] }
 }

@@ -23,7 +23,6 @@ const MOST_READ: usize = 200;
 /// Largest drift of a temperature, in kelvins, that drives nothing.
 const MOST_DRIFT: f64 = 15.0;
 
-/// What is to be guessed, and from what.
 pub struct Guess<'t> {
     pub table: &'t Table,
     /// The column with the names of records.

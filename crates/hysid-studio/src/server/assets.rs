@@ -153,7 +153,6 @@ mod tests {
 
     use super::*;
 
-    /// All files in a folder, by their paths in it.
     fn files_in(folder: &Path, within: &str) -> BTreeSet<String> {
         let mut found = BTreeSet::new();
         for entry in fs::read_dir(folder).unwrap() {

@@ -57,7 +57,6 @@ pub fn bare(text: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// The cells of a line.
 pub fn split(line: &str, delimiter: Delimiter) -> Vec<Cell<'_>> {
     let mut cells = Vec::new();
     let is_end = |letter: char| match delimiter {

@@ -21,7 +21,6 @@ pub struct Run {
     pub width: usize,
     /// From the first to the last of its lines.
     pub lines: Range<usize>,
-    /// What each column has.
     pub columns: Vec<Column>,
     /// The first column counts the rows.
     pub counts: bool,

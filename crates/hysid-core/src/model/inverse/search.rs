@@ -61,7 +61,6 @@ pub struct Point {
     pub value: f64,
 }
 
-/// What is wanted.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted {
     /// Value of the function.
