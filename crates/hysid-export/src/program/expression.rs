@@ -105,46 +105,55 @@ pub(crate) enum Truth {
     Not(Box<Truth>),
 }
 
-impl From<f64> for Real {
-    fn from(value: f64) -> Self {
-        Self::Constant(value)
+/// An expression of any kind.
+#[derive(Clone, Copy)]
+pub(crate) enum Part<'e> {
+    Real(&'e Real),
+    Whole(&'e Whole),
+    Truth(&'e Truth),
+}
+
+impl<'e> Part<'e> {
+    /// The expressions that it is made of, without those in them.
+    pub fn parts(self) -> Vec<Part<'e>> {
+        match self {
+            Self::Real(Real::Constant(_) | Real::Variable(_)) => Vec::new(),
+            Self::Whole(Whole::Constant(_) | Whole::Variable(_)) => Vec::new(),
+            Self::Real(Real::Element(_, index) | Real::OfWhole(index)) => vec![Self::Whole(index)],
+            Self::Real(Real::Unary(_, a)) | Self::Whole(Whole::OfReal(a)) => vec![Self::Real(a)],
+            Self::Real(Real::Binary(_, a, b)) | Self::Truth(Truth::Real(_, a, b)) => {
+                vec![Self::Real(a), Self::Real(b)]
+            }
+            Self::Real(Real::Fused(a, b, c)) => vec![Self::Real(a), Self::Real(b), Self::Real(c)],
+            Self::Real(Real::Choice(condition, a, b)) => {
+                vec![Self::Truth(condition), Self::Real(a), Self::Real(b)]
+            }
+            Self::Whole(Whole::Sum(a, b) | Whole::Difference(a, b) | Whole::Product(a, b))
+            | Self::Truth(Truth::Whole(_, a, b)) => vec![Self::Whole(a), Self::Whole(b)],
+            Self::Truth(Truth::And(a, b) | Truth::Or(a, b)) => vec![Self::Truth(a), Self::Truth(b)],
+            Self::Truth(Truth::Not(a)) => vec![Self::Truth(a)],
+        }
     }
 }
 
-impl From<RealVariable> for Real {
-    fn from(variable: RealVariable) -> Self {
-        Self::Variable(variable)
-    }
+macro_rules! from {
+    ($($given:ty => $made:ident: $value:ident => $of_it:expr;)*) => {$(
+        impl From<$given> for $made {
+            fn from($value: $given) -> Self {
+                $of_it
+            }
+        }
+    )*};
 }
 
-impl From<&Real> for Real {
-    fn from(value: &Real) -> Self {
-        value.clone()
-    }
-}
-
-impl From<i32> for Whole {
-    fn from(value: i32) -> Self {
-        Self::Constant(value.into())
-    }
-}
-
-impl From<usize> for Whole {
-    fn from(value: usize) -> Self {
-        Self::Constant(i64::try_from(value).unwrap_or(i64::MAX))
-    }
-}
-
-impl From<WholeVariable> for Whole {
-    fn from(variable: WholeVariable) -> Self {
-        Self::Variable(variable)
-    }
-}
-
-impl From<&Whole> for Whole {
-    fn from(value: &Whole) -> Self {
-        value.clone()
-    }
+from! {
+    f64 => Real: value => Self::Constant(value);
+    RealVariable => Real: variable => Self::Variable(variable);
+    &Real => Real: value => value.clone();
+    i32 => Whole: value => Self::Constant(value.into());
+    usize => Whole: value => Self::Constant(i64::try_from(value).unwrap_or(i64::MAX));
+    WholeVariable => Whole: variable => Self::Variable(variable);
+    &Whole => Whole: value => value.clone();
 }
 
 macro_rules! real_operator {
@@ -225,90 +234,68 @@ pub(crate) fn fused(a: impl Into<Real>, b: impl Into<Real>, c: impl Into<Real>) 
     Real::Fused(Box::new(a.into()), Box::new(b.into()), Box::new(c.into()))
 }
 
+macro_rules! functions {
+    ($($(#[$comment:meta])* $name:ident: $function:ident,)*) => {
+        impl Real {$(
+            $(#[$comment])*
+            pub fn $name(&self) -> Self {
+                self.clone().apply(Unary::$function)
+            }
+        )*}
+    };
+}
+
+functions! {
+    abs: Magnitude,
+    exp: Exp,
+    exp_m1: ExpMinusOne,
+    ln: Ln,
+    ln_1p: LnOnePlus,
+    sqrt: SquareRoot,
+    /// Hyperbolic tangent of `hysid_core::elementary`. Networks have one of their own.
+    tanh: Tanh,
+    asinh: InverseSinh,
+    ceil: Ceiling,
+    power_of_two: PowerOfTwo,
+    detached: Detached,
+}
+
+macro_rules! of_two {
+    ($($of:ident::$name:ident = $made:ident::$kind:ident($which:expr);)*) => {$(
+        impl $of {
+            pub fn $name(&self, other: impl Into<$of>) -> $made {
+                $made::$kind($which, Box::new(self.clone()), Box::new(other.into()))
+            }
+        }
+    )*};
+}
+
+of_two! {
+    Real::powf = Real::Binary(Binary::Power);
+    Real::copysign = Real::Binary(Binary::CopySign);
+    Real::hypot = Real::Binary(Binary::Hypotenuse);
+    Real::below = Truth::Real(Comparison::Below);
+    Real::at_most = Truth::Real(Comparison::AtMost);
+    Real::equals = Truth::Real(Comparison::Equal);
+    Whole::below = Truth::Whole(Comparison::Below);
+    Whole::equals = Truth::Whole(Comparison::Equal);
+}
+
 impl Real {
     pub fn apply(self, function: Unary) -> Self {
         Self::Unary(function, Box::new(self))
-    }
-
-    pub fn abs(&self) -> Self {
-        self.clone().apply(Unary::Magnitude)
-    }
-
-    pub fn exp(&self) -> Self {
-        self.clone().apply(Unary::Exp)
-    }
-
-    pub fn exp_m1(&self) -> Self {
-        self.clone().apply(Unary::ExpMinusOne)
-    }
-
-    pub fn ln(&self) -> Self {
-        self.clone().apply(Unary::Ln)
-    }
-
-    pub fn ln_1p(&self) -> Self {
-        self.clone().apply(Unary::LnOnePlus)
-    }
-
-    pub fn sqrt(&self) -> Self {
-        self.clone().apply(Unary::SquareRoot)
-    }
-
-    /// Hyperbolic tangent of `hysid_core::elementary`. Networks have one of their own.
-    pub fn tanh(&self) -> Self {
-        self.clone().apply(Unary::Tanh)
-    }
-
-    pub fn asinh(&self) -> Self {
-        self.clone().apply(Unary::InverseSinh)
-    }
-
-    pub fn ceil(&self) -> Self {
-        self.clone().apply(Unary::Ceiling)
-    }
-
-    pub fn power_of_two(&self) -> Self {
-        self.clone().apply(Unary::PowerOfTwo)
-    }
-
-    pub fn detached(&self) -> Self {
-        self.clone().apply(Unary::Detached)
-    }
-
-    pub fn powf(&self, exponent: impl Into<Real>) -> Self {
-        Self::Binary(Binary::Power, Box::new(self.clone()), Box::new(exponent.into()))
-    }
-
-    pub fn copysign(&self, sign: impl Into<Real>) -> Self {
-        Self::Binary(Binary::CopySign, Box::new(self.clone()), Box::new(sign.into()))
-    }
-
-    pub fn hypot(&self, other: impl Into<Real>) -> Self {
-        Self::Binary(Binary::Hypotenuse, Box::new(self.clone()), Box::new(other.into()))
     }
 
     pub fn signum(&self) -> Self {
         Self::Constant(1.0).copysign(self)
     }
 
-    pub fn below(&self, other: impl Into<Real>) -> Truth {
-        Truth::Real(Comparison::Below, Box::new(self.clone()), Box::new(other.into()))
-    }
-
-    pub fn at_most(&self, other: impl Into<Real>) -> Truth {
-        Truth::Real(Comparison::AtMost, Box::new(self.clone()), Box::new(other.into()))
-    }
-
     pub fn above(&self, other: impl Into<Real>) -> Truth {
-        Truth::Real(Comparison::Below, Box::new(other.into()), Box::new(self.clone()))
+        other.into().below(self)
     }
 
     pub fn at_least(&self, other: impl Into<Real>) -> Truth {
-        Truth::Real(Comparison::AtMost, Box::new(other.into()), Box::new(self.clone()))
-    }
-
-    pub fn equals(&self, other: impl Into<Real>) -> Truth {
-        Truth::Real(Comparison::Equal, Box::new(self.clone()), Box::new(other.into()))
+        other.into().at_most(self)
     }
 
     /// The larger of two numbers; the first where they are equal.
@@ -339,16 +326,8 @@ impl Whole {
         Real::OfWhole(Box::new(self.clone()))
     }
 
-    pub fn below(&self, other: impl Into<Whole>) -> Truth {
-        Truth::Whole(Comparison::Below, Box::new(self.clone()), Box::new(other.into()))
-    }
-
     pub fn above(&self, other: impl Into<Whole>) -> Truth {
-        Truth::Whole(Comparison::Below, Box::new(other.into()), Box::new(self.clone()))
-    }
-
-    pub fn equals(&self, other: impl Into<Whole>) -> Truth {
-        Truth::Whole(Comparison::Equal, Box::new(self.clone()), Box::new(other.into()))
+        other.into().below(self)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::program::expression::{Binary, Real, RealVariable, Truth, Unary, Whole, WholeVariable};
+use crate::program::expression::{Binary, Part, Real, RealVariable, Unary, Whole, WholeVariable};
 use crate::program::{Array, Program, Statement, every};
 
 /// What the expressions of programs contain.
@@ -30,84 +30,40 @@ impl Uses {
 
     pub fn of_real(value: &Real) -> Self {
         let mut uses = Self::default();
-        uses.real(value);
+        uses.take(Part::Real(value));
         uses
     }
 
     fn statement(&mut self, statement: &Statement) {
         match statement {
             Statement::Remark(_) | Statement::ForSlope(_) => {}
-            Statement::Let(_, value) | Statement::Assign(_, value) => self.real(value),
-            Statement::LetWhole(_, value) | Statement::AssignWhole(_, value) => self.whole(value),
+            Statement::Let(_, value) | Statement::Assign(_, value) => self.take(Part::Real(value)),
+            Statement::LetWhole(_, value) | Statement::AssignWhole(_, value) => self.take(Part::Whole(value)),
             Statement::Set(_, index, value) => {
-                self.whole(index);
-                self.real(value);
+                self.take(Part::Whole(index));
+                self.take(Part::Real(value));
             }
             Statement::Each(_, first, last, _) => {
-                self.whole(first);
-                self.whole(last);
+                self.take(Part::Whole(first));
+                self.take(Part::Whole(last));
             }
-            Statement::While(condition, _) | Statement::If(condition, ..) => self.truth(condition),
-        }
-    }
-
-    fn real(&mut self, value: &Real) {
-        match value {
-            Real::Constant(value) => self.infinity |= value.is_infinite(),
-            Real::Variable(variable) => drop(self.reals.insert(*variable)),
-            Real::Element(array, index) => {
-                self.arrays.insert(*array);
-                self.whole(index);
-            }
-            Real::OfWhole(value) => self.whole(value),
-            Real::Unary(function, a) => {
-                self.unary.insert(*function);
-                self.real(a);
-            }
-            Real::Binary(function, a, b) => {
-                self.binary.insert(*function);
-                self.real(a);
-                self.real(b);
-            }
-            Real::Fused(a, b, c) => {
-                self.fused = true;
-                [a, b, c].into_iter().for_each(|part| self.real(part));
-            }
-            Real::Choice(condition, yes, no) => {
-                self.truth(condition);
-                self.real(yes);
-                self.real(no);
+            Statement::While(condition, _) | Statement::If(condition, ..) => {
+                self.take(Part::Truth(condition));
             }
         }
     }
 
-    fn whole(&mut self, value: &Whole) {
-        match value {
-            Whole::Constant(_) => {}
-            Whole::Variable(variable) => drop(self.wholes.insert(*variable)),
-            Whole::Sum(a, b) | Whole::Difference(a, b) | Whole::Product(a, b) => {
-                self.whole(a);
-                self.whole(b);
-            }
-            Whole::OfReal(value) => self.real(value),
+    fn take(&mut self, part: Part<'_>) {
+        match part {
+            Part::Real(Real::Constant(value)) => self.infinity |= value.is_infinite(),
+            Part::Real(Real::Variable(variable)) => drop(self.reals.insert(*variable)),
+            Part::Real(Real::Element(array, _)) => drop(self.arrays.insert(*array)),
+            Part::Real(Real::Unary(function, _)) => drop(self.unary.insert(*function)),
+            Part::Real(Real::Binary(function, ..)) => drop(self.binary.insert(*function)),
+            Part::Real(Real::Fused(..)) => self.fused = true,
+            Part::Whole(Whole::Variable(variable)) => drop(self.wholes.insert(*variable)),
+            _ => {}
         }
-    }
-
-    fn truth(&mut self, condition: &Truth) {
-        match condition {
-            Truth::Real(_, a, b) => {
-                self.real(a);
-                self.real(b);
-            }
-            Truth::Whole(_, a, b) => {
-                self.whole(a);
-                self.whole(b);
-            }
-            Truth::And(a, b) | Truth::Or(a, b) => {
-                self.truth(a);
-                self.truth(b);
-            }
-            Truth::Not(a) => self.truth(a),
-        }
+        part.parts().into_iter().for_each(|part| self.take(part));
     }
 }

@@ -1,6 +1,6 @@
 //! Which loops can be computed for all numbers at once.
 
-use crate::program::expression::{Binary, Real, RealVariable, Truth, Whole, WholeVariable};
+use crate::program::expression::{Binary, Part, Real, RealVariable, Whole, WholeVariable};
 use crate::program::uses::Uses;
 use crate::program::{Array, Statement};
 
@@ -121,32 +121,21 @@ impl Lanes {
     fn reads_only_its_own(&self, statement: &Statement) -> bool {
         match statement {
             Statement::Let(_, value) | Statement::Assign(_, value) | Statement::Set(_, _, value) => {
-                self.real(value)
+                self.reads_own(Part::Real(value))
             }
             _ => true,
         }
     }
 
-    fn real(&self, value: &Real) -> bool {
-        match value {
-            Real::Constant(_) | Real::Variable(_) | Real::OfWhole(_) => true,
-            Real::Element(array, index) => {
+    /// True if each element of an array that a pass writes is the one that this pass writes.
+    fn reads_own(&self, part: Part<'_>) -> bool {
+        let is_own = match part {
+            Part::Real(Real::Element(array, index)) => {
                 self.written.iter().all(|(written, place)| written != array || place == &**index)
             }
-            Real::Unary(_, a) => self.real(a),
-            Real::Binary(_, a, b) => self.real(a) && self.real(b),
-            Real::Fused(a, b, c) => [a, b, c].into_iter().all(|part| self.real(part)),
-            Real::Choice(condition, a, b) => self.truth(condition) && self.real(a) && self.real(b),
-        }
-    }
-
-    fn truth(&self, condition: &Truth) -> bool {
-        match condition {
-            Truth::Real(_, a, b) => self.real(a) && self.real(b),
-            Truth::Whole(..) => true,
-            Truth::And(a, b) | Truth::Or(a, b) => self.truth(a) && self.truth(b),
-            Truth::Not(a) => self.truth(a),
-        }
+            _ => true,
+        };
+        is_own && part.parts().into_iter().all(|part| self.reads_own(part))
     }
 }
 
