@@ -420,16 +420,7 @@ mod tests {
             pinch_place: 0.6,
             pinch_height: 0.25,
             pinch_weight: 1.5,
-            degradation: Some(Degradation {
-                cap: 4.0,
-                softening: 1.5,
-                residual: 0.3,
-                endurance: 30.0,
-                pace: 1.2,
-                strength_loss: 0.4,
-                target_growth: 0.3,
-                pinching_growth: 0.5,
-            }),
+            degradation: Some(Degradation::from_values([4.0, 1.5, 0.3, 30.0, 1.2, 0.4, 0.3, 0.5])),
         }
     }
 
@@ -507,16 +498,7 @@ mod tests {
     /// By hand: up to 20 mm and back to 10 mm the work is 1000 kN mm, one yield force times the yield displacement.
     #[test]
     fn strength_and_target_deteriorate_with_work() {
-        let degradation = Degradation {
-            cap: 1e6,
-            softening: 1e3,
-            residual: 1.0,
-            endurance: 2.0,
-            pace: 1.0,
-            strength_loss: 0.5,
-            target_growth: 1.0,
-            pinching_growth: 0.0,
-        };
+        let degradation = Degradation::from_values([1e6, 1e3, 1.0, 2.0, 1.0, 0.5, 1.0, 0.0]);
         let law = PeakOriented { degradation: Some(degradation), ..PeakOriented::new(100.0, 10.0).unwrap() };
         let mut state = law.virgin();
         for x in [20.0, 9.0] {

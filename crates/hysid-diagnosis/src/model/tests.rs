@@ -157,17 +157,7 @@ fn bouc_wen_does_not_wipe_out() {
     assert_eq!(diagnosis.verdict(Property::OddSymmetry), Verdict::Yes);
     assert_eq!(diagnosis.verdict(Property::Deterioration), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::Yes);
-    let weakening = Degradation {
-        delta_a: 0.0,
-        delta_nu: 0.02,
-        delta_eta: 0.0,
-        zeta_s: 0.0,
-        p: 1.0,
-        q: 0.0,
-        psi_0: 0.1,
-        delta_psi: 0.0,
-        lambda: 0.1,
-    };
+    let weakening = Degradation::from_values([0.0, 0.02, 0.0, 0.0, 1.0, 0.0, 0.1, 0.0, 0.1]);
     let diagnosis = law(BoucWen { degradation: Some(weakening), ..plain }, ClassicalModel::BoucWen, false);
     assert_eq!(diagnosis.verdict(Property::Deterioration), Verdict::Yes);
 }

@@ -50,17 +50,7 @@ fn bouc_wen(n: f64) -> BoucWen {
 }
 
 fn degrading_bouc_wen() -> BoucWen {
-    let degradation = Degradation {
-        delta_a: 1e-4,
-        delta_nu: 0.01,
-        delta_eta: 0.02,
-        zeta_s: 0.8,
-        p: 0.05,
-        q: 0.1,
-        psi_0: 0.2,
-        delta_psi: 0.001,
-        lambda: 0.4,
-    };
+    let degradation = Degradation::from_values([1e-4, 0.01, 0.02, 0.8, 0.05, 0.1, 0.2, 0.001, 0.4]);
     BoucWen { degradation: Some(degradation), ..bouc_wen(1.3) }
 }
 
@@ -226,7 +216,6 @@ fn degradation_is_that_of_small_steps() {
             log(1e-4, 0.05),
             log(0.1, 1.0),
         ];
-        let [delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda] = values;
         let law = BoucWen {
             offset: 0.0,
             elastic_stiffness: 0.0,
@@ -234,17 +223,7 @@ fn degradation_is_that_of_small_steps() {
             yield_displacement: 1.0,
             b: log(0.3, 1.2),
             n: log(1.0, 6.0),
-            degradation: Some(Degradation {
-                delta_a,
-                delta_nu,
-                delta_eta,
-                zeta_s,
-                p,
-                q,
-                psi_0,
-                delta_psi,
-                lambda,
-            }),
+            degradation: Some(Degradation::from_values(values)),
             ..bouc_wen(1.0)
         };
         let path = through(&[0.0, 4.0, -9.0, 17.0, -25.0, 30.0, 3.0, 8.0, -40.0], 1);

@@ -82,16 +82,7 @@ fn different_sides_are_found_again() {
 
 #[test]
 fn a_degrading_member_is_predicted_beyond_its_data() {
-    let degradation = Degradation {
-        cap: 3.0,
-        softening: 1.5,
-        residual: 0.3,
-        endurance: 60.0,
-        pace: 1.0,
-        strength_loss: 0.5,
-        target_growth: 0.2,
-        pinching_growth: 0.4,
-    };
+    let degradation = Degradation::from_values([3.0, 1.5, 0.3, 60.0, 1.0, 0.5, 0.2, 0.4]);
     let law = Classical::from(PeakOriented { degradation: Some(degradation), ..member() });
     let x = cycles(&[3.0, 8.0, 15.0, 25.0, 40.0], 24);
     let model = fitted(&law, &x, &["degradation"]);

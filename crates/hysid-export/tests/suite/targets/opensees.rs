@@ -88,17 +88,7 @@ fn native_materials_approach_the_model_with_small_steps() {
         return;
     };
     let plain = BoucWen { b: 0.6, n: 1.8, offset: 100.0, ..BoucWen::new(2.0, 30.0, 1.5).unwrap() };
-    let none = Degradation {
-        delta_a: 0.0,
-        delta_nu: 0.0,
-        delta_eta: 0.0,
-        zeta_s: 0.0,
-        p: 1.0,
-        q: 0.1,
-        psi_0: 0.4,
-        delta_psi: 0.01,
-        lambda: 0.5,
-    };
+    let none = Degradation::from_values([0.0, 0.0, 0.0, 0.0, 1.0, 0.1, 0.4, 0.01, 0.5]);
     let degrading = Degradation { delta_a: 0.002, delta_nu: 0.004, delta_eta: 0.003, ..none };
     let pinched = Degradation { zeta_s: 0.8, p: 0.2, ..none };
     for (command, law) in [
