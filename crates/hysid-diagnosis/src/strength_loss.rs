@@ -173,11 +173,7 @@ pub(crate) mod tests {
         y.iter_mut()
             .enumerate()
             .for_each(|(row, y)| *y += 2.0 * largest * noise * 12f64.sqrt() * uniform(row));
-        let names = ColumnNames {
-            inputs: vec!["Displacement (mm)".into()],
-            output: "Force (kN)".into(),
-            ..ColumnNames::plain(1)
-        };
+        let names = ColumnNames::of(Some("t"), &["Displacement (mm)"], "Force (kN)");
         Dataset::new(names, vec![Record::new("member", vec![x], y).unwrap()]).unwrap()
     }
 
@@ -250,11 +246,7 @@ pub(crate) mod tests {
                 }
             }
         }
-        let names = ColumnNames {
-            inputs: vec!["disp_mm".into()],
-            output: "force_kN".into(),
-            ..ColumnNames::plain(1)
-        };
+        let names = ColumnNames::of(Some("t"), &["disp_mm"], "force_kN");
         let data = Dataset::new(names, vec![Record::new("coarse", vec![x], y).unwrap()]).unwrap();
         let diagnosis = diagnosed(&data);
         let finding = diagnosis.finding(Property::StrengthLoss);

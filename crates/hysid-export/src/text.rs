@@ -98,12 +98,7 @@ mod tests {
 
     #[test]
     fn names_without_a_letter_get_one_and_markdown_shows_letters() {
-        let names = ColumnNames {
-            time: None,
-            inputs: vec![String::new(), " ".into()],
-            rate: None,
-            output: "".into(),
-        };
+        let names = ColumnNames::of(None, &["", " "], "");
         let named = harmless_names(&names);
         assert_eq!((named.inputs, named.output), (vec!["input 1".into(), "input 2".into()], "output".into()));
         assert_eq!(in_markdown("<script>|a`b"), "\\<script\\>\\|a\\`b");

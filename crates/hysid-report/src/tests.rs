@@ -28,12 +28,7 @@ fn data(time: bool) -> Dataset {
         let seconds: Vec<f64> = (0..300).map(f64::from).collect();
         if time { record.with_time(seconds).unwrap() } else { record }
     };
-    let names = ColumnNames {
-        time: time.then(|| "t_s".into()),
-        inputs: vec!["<script>x</script>_mm".into()],
-        rate: None,
-        output: "force_kN".into(),
-    };
+    let names = ColumnNames::of(time.then_some("t_s"), &["<script>x</script>_mm"], "force_kN");
     Dataset::new(names, vec![record("a <b> & \"c\"", 1.0), record("second", 2.0)]).unwrap()
 }
 
@@ -147,12 +142,7 @@ fn vibration(names: ColumnNames) -> Dataset {
 #[test]
 fn frequency_responses_are_drawn_and_their_resonances_told() {
     for (time, hertz) in [("t_s", "Hz"), ("t_ms", "cycles per ms"), ("t", "cycles per unit of time")] {
-        let names = ColumnNames {
-            time: Some(time.into()),
-            inputs: vec!["F_kN".into()],
-            rate: None,
-            output: "y_mm".into(),
-        };
+        let names = ColumnNames::of(Some(time), &["F_kN"], "y_mm");
         let data = vibration(names);
         // A network has no inertia: what is told of it is that it does not follow.
         let model = model(&data);

@@ -49,12 +49,7 @@ pub(super) struct Columns {
 impl Specimen {
     /// Names of its columns, with their units.
     pub fn columns(&self) -> ColumnNames {
-        ColumnNames {
-            time: self.columns.time.map(str::to_owned),
-            inputs: vec![self.columns.input.to_owned()],
-            rate: None,
-            output: self.columns.output.to_owned(),
-        }
+        ColumnNames::of(self.columns.time, &[self.columns.input], self.columns.output)
     }
 
     /// The training records of seed 1. Only a published benchmark whose training data contain noise has noise here;

@@ -235,6 +235,12 @@ pub struct ColumnNames {
 }
 
 impl ColumnNames {
+    /// Names of these columns, without a given rate.
+    pub fn of(time: Option<&str>, inputs: &[&str], output: &str) -> Self {
+        let inputs = inputs.iter().copied().map(String::from).collect();
+        Self { time: time.map(String::from), inputs, rate: None, output: output.into() }
+    }
+
     /// Default names: `t`, `x` (or `x1`, `x2`, ...), `y`.
     pub fn plain(inputs: usize) -> Self {
         let name = |index| {
@@ -294,12 +300,8 @@ impl Dataset {
         if let Some((_, time)) = time {
             record = record.with_time(time.to_vec())?;
         }
-        let names = ColumnNames {
-            time: time.map(|(name, _)| name.to_string()),
-            inputs: inputs.iter().map(|(name, _)| (*name).to_string()).collect(),
-            rate: None,
-            output: output.0.to_string(),
-        };
+        let inputs: Vec<&str> = inputs.iter().map(|(name, _)| *name).collect();
+        let names = ColumnNames::of(time.map(|(name, _)| name), &inputs, output.0);
         Self::new(names, vec![record])
     }
 

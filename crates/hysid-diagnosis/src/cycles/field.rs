@@ -127,8 +127,7 @@ mod tests {
             ("x", "y", Field::General),
             ("force_N", "x_mm", Field::General),
         ] {
-            let names =
-                ColumnNames { time: None, inputs: vec![input.into()], rate: None, output: output.into() };
+            let names = ColumnNames::of(None, &[input], output);
             assert_eq!(Field::of(&names), field, "{input} {output}");
         }
         assert_eq!("magnet".parse::<Field>().unwrap(), Field::Magnet);

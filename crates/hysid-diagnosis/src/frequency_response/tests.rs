@@ -110,12 +110,7 @@ fn multisine(rows: usize) -> Vec<f64> {
 }
 
 fn dataset(records: Vec<(Vec<f64>, Vec<f64>)>) -> Dataset {
-    let names = ColumnNames {
-        time: Some("t_s".into()),
-        inputs: vec!["F_N".into()],
-        rate: None,
-        output: "y_m".into(),
-    };
+    let names = ColumnNames::of(Some("t_s"), &["F_N"], "y_m");
     let record = |(number, (input, output)): (usize, (Vec<f64>, Vec<f64>))| {
         let time = (0..input.len()).map(|row| 3.0 + STEP * row as f64).collect();
         Record::new(format!("r{number}"), vec![input], output).unwrap().with_time(time).unwrap()

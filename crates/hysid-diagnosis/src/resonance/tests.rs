@@ -75,8 +75,7 @@ fn linear() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
 }
 
 fn named(time: &str, records: Vec<Record>) -> Dataset {
-    let names =
-        ColumnNames { time: Some(time.into()), inputs: vec!["F_N".into()], rate: None, output: "y_m".into() };
+    let names = ColumnNames::of(Some(time), &["F_N"], "y_m");
     Dataset::new(names, records).unwrap()
 }
 

@@ -11,7 +11,7 @@ use hysid::validation::folds;
 use crate::noisy_record::{noisy, waved};
 
 fn names() -> ColumnNames {
-    ColumnNames { time: Some("t_s".into()), inputs: vec!["x_mm".into()], rate: None, output: "f_kN".into() }
+    ColumnNames::of(Some("t_s"), &["x_mm"], "f_kN")
 }
 
 /// Records of a law: a stop and a line, with noise.

@@ -62,12 +62,7 @@ fn delayed(law: Law, wave: Wave, frequency: f64, step: f64, delay: f64, periods:
 }
 
 fn dataset(records: Vec<Record>) -> Dataset {
-    let names = ColumnNames {
-        time: Some("t_s".into()),
-        inputs: vec!["x_mm".into()],
-        rate: None,
-        output: "F_N".into(),
-    };
+    let names = ColumnNames::of(Some("t_s"), &["x_mm"], "F_N");
     Dataset::new(names, records).unwrap()
 }
 

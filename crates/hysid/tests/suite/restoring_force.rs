@@ -181,12 +181,7 @@ fn a_model_of_the_force_has_the_error_of_the_law_on_unseen_motion() {
     let [train, test] = [(1, 60.0), (2, 55.0)].map(|(seed, size)| sampled(oscillator, seed, size));
     let data = |columns: &[Vec<f64>; 4], force: Vec<f64>| {
         let record = Record::new("r", vec![columns[1].clone()], force).unwrap();
-        let names = ColumnNames {
-            time: Some("t_s".into()),
-            inputs: vec!["y_m".into()],
-            rate: None,
-            output: "restoring_force_N".into(),
-        };
+        let names = ColumnNames::of(Some("t_s"), &["y_m"], "restoring_force_N");
         Dataset::new(names, vec![record.with_time(columns[0].clone()).unwrap()]).unwrap()
     };
     let found = of_oscillator(&train);

@@ -9,12 +9,7 @@ use hysid::law::series::samples;
 use hysid::model::Predictor;
 
 fn data() -> Dataset {
-    let names = ColumnNames {
-        time: Some("t_s".into()),
-        inputs: vec!["current_A".into()],
-        rate: None,
-        output: "displacement_um".into(),
-    };
+    let names = ColumnNames::of(Some("t_s"), &["current_A"], "displacement_um");
     Dataset::new(names, vec![record(180, "a"), record(120, "b")]).unwrap()
 }
 

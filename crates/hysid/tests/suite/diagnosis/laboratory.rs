@@ -9,8 +9,7 @@ use hysid::elementary::{cos, exp, ln, sin};
 /// A record of the protocol's law, with what happens to each output.
 fn record_of(x: &[f64], y: Vec<f64>, dt: f64) -> Dataset {
     let time = (0..x.len()).map(|row| row as f64 * dt).collect();
-    let names =
-        ColumnNames { time: Some("t".into()), inputs: vec!["x".into()], rate: None, output: "y".into() };
+    let names = ColumnNames::of(Some("t"), &["x"], "y");
     let record = Record::new("r", vec![x.to_vec()], y).unwrap().with_time(time).unwrap();
     Dataset::new(names, vec![record]).unwrap()
 }
