@@ -7,6 +7,7 @@ pub mod pictures;
 mod table;
 mod text;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
@@ -15,10 +16,9 @@ use hysid::data::record::Dataset;
 use hysid::diagnosis::cycles::{Correction, CycleOptions, CycleTable, FIGURES, Figure, corrected};
 use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
-use hysid_document::count;
+use hysid_document::{count, object};
 use hysid_records::Data;
 use hysid_report::quantities::Quantities;
-use serde::Serialize;
 
 pub use curves::{BEGINNING as BEGINNING_OF_CURVES, csv as curves_csv};
 pub use page::page;
@@ -104,14 +104,17 @@ impl<'a> Cycles<'a> {
             let named = self.quantities.as_figure(figure.name, figure.quantity);
             (figure.name, hysid::data::unit::of_column(&named))
         };
-        Ok(terminal::json(&Printed {
+        Ok(terminal::json(&object! {
             input: &self.quantities.input,
             output: &self.quantities.output,
+            /// True for cycles of a model that was driven.
             of_model: self.of_model,
             table: files.table.as_deref(),
             page: files.page.as_deref(),
             curves: files.curves.as_deref(),
-            units: self.figures().map(named).collect(),
+            /// Unit of each figure of the field, where the units of the columns are known.
+            units: self.figures().map(named).collect::<BTreeMap<_, _>>(),
+            #[serde(flatten)]
             cycles: &self.table,
             reversal_curves: self.curves.as_ref(),
         })?)
@@ -182,21 +185,4 @@ fn understood(file: &str, model: &Model, driven: &ModelCycles) -> Vec<(String, S
     }
     lines.extend(driven.probing.outside.clone().map(|outside| ("outside".to_string(), outside)));
     lines
-}
-
-/// The object that `--json` prints.
-#[derive(Serialize)]
-struct Printed<'a> {
-    input: &'a str,
-    output: &'a str,
-    /// True for cycles of a model that was driven.
-    of_model: bool,
-    table: Option<&'a Path>,
-    page: Option<&'a Path>,
-    curves: Option<&'a Path>,
-    /// Unit of each figure of the field, where the units of the columns are known.
-    units: std::collections::BTreeMap<&'static str, Option<String>>,
-    #[serde(flatten)]
-    cycles: &'a CycleTable,
-    reversal_curves: Option<&'a ReversalCurves>,
 }

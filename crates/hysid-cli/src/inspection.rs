@@ -4,15 +4,12 @@ use std::path::Path;
 
 use anyhow::Result;
 use hysid::data::metrics::Errors;
-use hysid::data::rate::RateMethod;
-use hysid::data::record::ColumnNames;
 use hysid::data::unit;
-use hysid::model::selection::Selection;
+use hysid::law::Parameter;
 use hysid::model::{Model, ParameterInUnits, Predictor, Provenance, Weights};
-use hysid::options::FitSpec;
 use hysid::significant::Significant;
 use hysid_document::plain::rendered;
-use hysid_document::{Cell, Part, Table, count};
+use hysid_document::{Cell, Part, Table, count, object};
 use hysid_report::{initial_state, parameters, provenance};
 use serde::{Deserialize, Serialize};
 
@@ -171,11 +168,11 @@ impl<'m> Inspected<'m> {
     }
 
     /// The object that `--json` prints.
-    pub fn printed(&self) -> Printed<'_> {
+    pub fn printed(&self) -> impl Serialize {
         let (model, names, provenance) = (self.model, self.model.names(), self.model.provenance());
         let ranges = model.trained_ranges();
         let unit = |name: &String| unit::of_column(name);
-        Printed {
+        object! {
             file: &self.file,
             bytes: self.bytes,
             written_by: &self.header.written_by,
@@ -184,14 +181,15 @@ impl<'m> Inspected<'m> {
             parameters: model.parameters(),
             needs_time: model.needs_time(),
             columns: names,
-            units: Units {
+            units: object! {
                 time: names.time.as_ref().and_then(unit),
-                inputs: names.inputs.iter().map(unit).collect(),
+                inputs: names.inputs.iter().map(unit).collect::<Vec<_>>(),
                 output: unit(&names.output),
             },
             rate: model.rate(),
-            trained_ranges: Trained { inputs: &ranges.inputs, rate: ranges.rate, output: ranges.output },
+            trained_ranges: object! { inputs: &ranges.inputs, rate: ranges.rate, output: ranges.output },
             initial_state: initial_state(model).unwrap_or_else(|| "virgin".into()),
+            /// Rows with an output that it was trained on.
             samples: provenance.samples,
             records: provenance.records,
             termination: provenance.termination.to_string(),
@@ -201,7 +199,9 @@ impl<'m> Inspected<'m> {
             validation: provenance.validation.as_ref(),
             selection: provenance.selection.as_ref(),
             has_band: model.band().is_some(),
+            /// Empty unless it is an ensemble.
             members: members(model),
+            /// Empty unless it is a law.
             law_parameters: law_parameters(model),
             notes: model.notes(),
         }
@@ -227,67 +227,11 @@ fn members(model: &Model) -> Vec<Member> {
     members
 }
 
-#[derive(Serialize)]
-struct LawParameter {
-    symbol: String,
-    meaning: &'static str,
-    value: f64,
-    unit: String,
-}
-
-fn law_parameters(model: &Model) -> Vec<LawParameter> {
+fn law_parameters(model: &Model) -> Vec<impl Serialize> {
     let all = model.law_parameters().into_iter().flatten();
-    all.map(|ParameterInUnits { parameter, unit, .. }| LawParameter {
-        symbol: parameter.symbol,
-        meaning: parameter.meaning,
-        value: parameter.value,
-        unit,
-    })
-    .collect()
-}
-
-/// What `--json` prints of a model file.
-#[derive(Serialize)]
-pub struct Printed<'i> {
-    file: &'i str,
-    bytes: usize,
-    written_by: &'i str,
-    format_version: u64,
-    model: &'static str,
-    parameters: usize,
-    needs_time: bool,
-    columns: &'i ColumnNames,
-    units: Units,
-    rate: Option<RateMethod>,
-    trained_ranges: Trained<'i>,
-    initial_state: String,
-    /// Rows with an output that it was trained on.
-    samples: usize,
-    records: usize,
-    termination: String,
-    options: &'i FitSpec,
-    train: &'i Errors,
-    train_after_warm_up: Option<&'i Errors>,
-    validation: Option<&'i Errors>,
-    selection: Option<&'i Selection>,
-    has_band: bool,
-    /// Empty unless it is an ensemble.
-    members: Vec<Member>,
-    /// Empty unless it is a law.
-    law_parameters: Vec<LawParameter>,
-    notes: Vec<String>,
-}
-
-#[derive(Serialize)]
-struct Units {
-    time: Option<String>,
-    inputs: Vec<Option<String>>,
-    output: Option<String>,
-}
-
-#[derive(Serialize)]
-struct Trained<'i> {
-    inputs: &'i [(f64, f64)],
-    rate: Option<(f64, f64)>,
-    output: (f64, f64),
+    let printed = |ParameterInUnits { parameter, unit, .. }| {
+        let Parameter { symbol, meaning, value, .. } = parameter;
+        object! { symbol: symbol, meaning: meaning, value: value, unit: unit }
+    };
+    all.map(printed).collect()
 }

@@ -6,8 +6,8 @@ mod text;
 use std::path::Path;
 
 use hysid::data::unit;
-use hysid::plan::{Gap, Limits, Plan, Segment, Wave};
-use hysid_document::{Cell, Table, number};
+use hysid::plan::Plan;
+use hysid_document::{Cell, Table, number, object};
 use hysid_tables::{DecimalSign, push_shortest};
 use serde::Serialize;
 
@@ -39,32 +39,17 @@ pub fn rows(plan: &Plan) -> Vec<u8> {
 }
 
 /// The object that `--json` prints; the drive is in its file.
-#[derive(Serialize)]
-pub struct Printed<'a> {
-    drive: String,
-    page: Option<String>,
-    rows: usize,
-    duration: Option<f64>,
-    wave: Wave,
-    limits: Limits,
-    segments: &'a [Segment],
-    gaps: &'a [Gap],
-    sources: &'a [&'static str],
-}
-
-impl<'a> Printed<'a> {
-    pub fn of(plan: &'a Plan, drive: &Path, page: Option<&Path>) -> Self {
-        Self {
-            drive: drive.display().to_string(),
-            page: page.map(|page| page.display().to_string()),
-            rows: plan.rows(),
-            duration: duration(plan),
-            wave: plan.wave,
-            limits: plan.limits,
-            segments: &plan.segments,
-            gaps: &plan.gaps,
-            sources: &plan.sources,
-        }
+pub fn printed(plan: &Plan, drive: &Path, page: Option<&Path>) -> impl Serialize {
+    object! {
+        drive: drive.display().to_string(),
+        page: page.map(|page| page.display().to_string()),
+        rows: plan.rows(),
+        duration: duration(plan),
+        wave: plan.wave,
+        limits: plan.limits,
+        segments: &plan.segments,
+        gaps: &plan.gaps,
+        sources: &plan.sources,
     }
 }
 

@@ -4,6 +4,21 @@ use serde::Serialize;
 
 use crate::visible::is_hidden;
 
+/// An object of JSON: fields with their values, in their order. The crate needs `serde`.
+#[macro_export]
+macro_rules! object {
+    ($($(#[$attribute:meta])* $field:ident: $value:expr),* $(,)?) => {{
+        #[allow(non_camel_case_types)]
+        mod object {
+            #[derive(serde::Serialize)]
+            pub struct Object<$($field),*> {
+                $($(#[$attribute])* pub $field: $field),*
+            }
+        }
+        object::Object { $($field: $value),* }
+    }};
+}
+
 /// JSON that a terminal can show: characters that serde leaves as they are, such as those that turn the direction of
 /// the text, are escaped too.
 pub fn json(value: &impl Serialize) -> serde_json::Result<String> {

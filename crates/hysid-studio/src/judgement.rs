@@ -6,12 +6,12 @@ use std::sync::{Arc, Mutex};
 use anyhow::{Context, Result};
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
-use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualOptions, Residuals};
+use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualFinding, ResidualOptions, Residuals};
 use hysid::model::{Model, Prediction};
 use hysid_records::summarised;
 use hysid_report::residual_words::{name, p_value, verdict};
 use hysid_report::{BAND, BandCoverage, ReportSet};
-use serde::Serialize;
+use serde_json::{Value, json};
 
 const MOST_KEPT: usize = 8;
 
@@ -24,31 +24,6 @@ pub struct Run {
     /// Output, and the band if the model has one, of each record.
     pub predicted: Vec<Prediction>,
     errors: Errors,
-}
-
-#[derive(Debug, Serialize)]
-pub struct Judgement {
-    errors: Errors,
-    inside_band_percent: Option<f64>,
-    is_training: bool,
-    warnings: Vec<String>,
-    records: Vec<RecordErrors>,
-    residuals: Vec<ResidualTest>,
-}
-
-#[derive(Debug, Serialize)]
-struct RecordErrors {
-    name: String,
-    errors: Option<Errors>,
-}
-
-#[derive(Debug, Serialize)]
-struct ResidualTest {
-    test: String,
-    verdict: &'static str,
-    p: String,
-    statement: String,
-    advice: Option<String>,
 }
 
 impl Run {
@@ -66,31 +41,31 @@ impl Run {
         Ok(Self { data, is_training, predicted, errors })
     }
 
-    pub fn judgement(&self, model: &Model) -> Result<Judgement> {
+    pub fn judgement(&self, model: &Model) -> Result<Value> {
         let pairs = || self.data.records().iter().zip(&self.predicted);
         let has_band = self.predicted.iter().all(|run| !run.low.is_empty());
         let coverage = has_band.then(|| BandCoverage::counted(&self.predicted, &self.data, BAND));
         let of_record = |(record, run): (&Record, &Prediction)| {
             let mut sums = ErrorSums::default();
             sums.add(record.output(), &run.output);
-            RecordErrors { name: record.name().into(), errors: sums.errors(&self.data.names().output) }
+            json!({"name": record.name(), "errors": sums.errors(&self.data.names().output)})
         };
         let mut warnings = summarised(&model.range_warnings(&self.data)?);
         if !self.is_training {
             warnings.extend(summarised(&model.known_records(&self.data)));
         }
-        Ok(Judgement {
-            errors: self.errors.clone(),
-            inside_band_percent: coverage.map(|coverage| coverage.coverage_percent),
-            is_training: self.is_training,
-            warnings,
-            records: pairs().map(of_record).collect(),
-            residuals: self.residuals(model)?,
-        })
+        Ok(json!({
+            "errors": self.errors,
+            "inside_band_percent": coverage.map(|coverage| coverage.coverage_percent),
+            "is_training": self.is_training,
+            "warnings": warnings,
+            "records": pairs().map(of_record).collect::<Vec<_>>(),
+            "residuals": self.residuals(model)?,
+        }))
     }
 
     /// Tests of the residual; none for too few rows.
-    fn residuals(&self, model: &Model) -> Result<Vec<ResidualTest>> {
+    fn residuals(&self, model: &Model) -> Result<Vec<Value>> {
         if self.data.scored() < FEWEST_ROWS {
             return Ok(Vec::new());
         }
@@ -101,14 +76,16 @@ impl Run {
             ..ResidualOptions::default()
         };
         let residuals = Residuals::of(&self.data, &simulated, &options)?;
-        let told = residuals.findings.iter().map(|finding| ResidualTest {
-            test: name(finding),
-            verdict: verdict(finding.verdict),
-            p: p_value(finding),
-            statement: finding.statement.clone(),
-            advice: finding.advice.clone(),
-        });
-        Ok(told.collect())
+        let told = |finding: &ResidualFinding| {
+            json!({
+                "test": name(finding),
+                "verdict": verdict(finding.verdict),
+                "p": p_value(finding),
+                "statement": finding.statement,
+                "advice": finding.advice,
+            })
+        };
+        Ok(residuals.findings.iter().map(told).collect())
     }
 }
 

@@ -10,13 +10,14 @@ mod tests;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
 
 use anyhow::Result;
+use serde_json::Value;
 use tokio::sync::watch;
 
 use crate::fitting::Fits;
 use crate::folder::Folder;
 use crate::judgement::Runs;
 use crate::project::{Project, ProjectModel};
-use crate::shown::Shown;
+use crate::shown::shown;
 use crate::view::{AtHand, View};
 use fits::Found;
 use models::Models;
@@ -135,10 +136,10 @@ impl Studio {
     }
 
     /// The whole state, as the page shows it.
-    pub fn shown(&self) -> Shown {
+    pub fn shown(&self) -> Value {
         let project = self.project().clone();
         let model = |stored: &ProjectModel| self.model(stored.begun.id);
-        Shown::of(&project, &self.folder, &self.view(), self.fits.state(), model, self.news.borrow().project)
+        shown(&project, &self.folder, &self.view(), self.fits.state(), model, self.news.borrow().project)
     }
 
     /// Holds up the reading of files.

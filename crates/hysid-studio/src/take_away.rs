@@ -10,8 +10,7 @@ use hysid::termination::Termination;
 use hysid_document::shell::{flag, option, shown};
 use hysid_export::{Options, Target};
 use hysid_records::ReadingChoice;
-use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 use zip::write::{SimpleFileOptions, ZipWriter};
 
 use crate::project::{Begun, ProjectModel};
@@ -42,32 +41,21 @@ fn identifier(file: &str) -> String {
     format!("model_{letters}")
 }
 
-/// Lines that make the very same model.
-#[derive(Debug, Serialize)]
-pub struct Lines {
-    /// For a shell, in the folder of the project.
-    shell: String,
-    /// For Python, in the folder of the project; `null` where Python has no option for what was chosen.
-    python: Option<String>,
-    /// Why they make another model, if they do.
-    note: Option<&'static str>,
-}
-
-impl Lines {
-    /// Of a model. What was guessed is said, so that the lines do not depend on the guess.
-    pub fn of(stored: &ProjectModel, model: &Model, folder: &Path) -> Self {
-        let is_cut_short = stored.was_interrupted || model.provenance().termination == Termination::Stopped;
-        let note = match (is_cut_short, stored.begun.request.time_limit) {
-            (false, _) => None,
-            (true, Some(_)) => {
-                Some("The time limit ended this fit: the result depends on the speed of the machine.")
-            }
-            (true, None) => {
-                Some("This fit was stopped early. The commands run it to its end, and give another model.")
-            }
-        };
-        Self { shell: shell(stored, folder), python: python(&stored.begun, &stored.file), note }
-    }
+/// Lines that make the very same model: for a shell, and for Python, in the folder of the project; `null` where Python has
+/// no option for what was chosen. What was guessed is said, so that the lines do not depend on the guess. A note says why
+/// they make another model, if they do.
+pub fn lines(stored: &ProjectModel, model: &Model, folder: &Path) -> Value {
+    let is_cut_short = stored.was_interrupted || model.provenance().termination == Termination::Stopped;
+    let note = match (is_cut_short, stored.begun.request.time_limit) {
+        (false, _) => None,
+        (true, Some(_)) => {
+            Some("The time limit ended this fit: the result depends on the speed of the machine.")
+        }
+        (true, None) => {
+            Some("This fit was stopped early. The commands run it to its end, and give another model.")
+        }
+    };
+    json!({"shell": shell(stored, folder), "python": python(&stored.begun, &stored.file), "note": note})
 }
 
 fn shell(stored: &ProjectModel, folder: &Path) -> String {

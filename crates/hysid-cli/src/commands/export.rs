@@ -1,10 +1,10 @@
 //! `hysid export`: a model as source code for other programs.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Result, anyhow};
-use hysid_document::count;
+use hysid_document::{count, object};
 use hysid_export::description::RateSource;
 use hysid_export::{
     Error, Export as Exported, FmiVersion, InverseOptions, MANIFEST, Options, Precision, Target, files_of,
@@ -74,7 +74,7 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
     };
     let kept = destination.write(&exported.contents()).map_err(files::explained_folder)?;
     match arguments.json {
-        true => json_results(&Printed::of(&folder, arguments, &options, &exported))?,
+        true => json_results(&printed(&folder, arguments, &options, &exported))?,
         false => {
             for kept in &kept {
                 note(format_args!("a file that was replaced is kept as {}", files::shown(kept)));
@@ -110,25 +110,13 @@ fn source(path: &Path) -> Vec<(String, String)> {
 }
 
 /// The object that `--json` prints.
-#[derive(Serialize)]
-struct Printed<'a> {
-    folder: PathBuf,
-    target: &'static str,
-    name: &'a str,
-    precision: &'static str,
-    files: Vec<&'a str>,
-    note: Option<&'a str>,
-}
-
-impl<'a> Printed<'a> {
-    fn of(folder: &Path, arguments: &Export, options: &'a Options, exported: &'a Exported) -> Self {
-        Self {
-            folder: folder.to_path_buf(),
-            target: arguments.to.name(),
-            name: &options.name,
-            precision: options.precision.name(),
-            files: exported.files.iter().map(|file| file.path.as_str()).collect(),
-            note: exported.note.as_deref(),
-        }
+fn printed(folder: &Path, arguments: &Export, options: &Options, exported: &Exported) -> impl Serialize {
+    object! {
+        folder: folder,
+        target: arguments.to.name(),
+        name: &options.name,
+        precision: options.precision.name(),
+        files: exported.files.iter().map(|file| &file.path).collect::<Vec<_>>(),
+        note: &exported.note,
     }
 }

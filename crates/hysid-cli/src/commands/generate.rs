@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use anyhow::Result;
-use hysid::data::record::{ColumnNames, Dataset};
+use hysid::data::record::Dataset;
 use hysid::specimens::{Specimen, with_noise};
-use hysid_document::count;
 use hysid_document::plain::indented;
+use hysid_document::{count, object};
 use hysid_files::{Destination, Kind};
 use hysid_records::csv_text;
+use serde::Serialize;
 
 use crate::Outcome;
 use crate::arguments::Generate;
@@ -98,7 +99,7 @@ fn next(train: Option<&Path>, test: Option<&Path>) -> String {
 
 fn list(json: bool) -> Result<()> {
     let specimens = Specimen::all().iter().copied();
-    let described = || Ok(specimens.clone().map(Described::of).collect::<Vec<_>>());
+    let described = || Ok(specimens.clone().map(described).collect::<Vec<_>>());
     told(json, described, || specimens.clone().map(description).collect::<Vec<_>>().join("\n"))
 }
 
@@ -127,29 +128,15 @@ fn description(specimen: &Specimen) -> String {
 }
 
 /// The object that `--list --json` prints of a specimen.
-#[derive(serde::Serialize)]
-struct Described {
-    name: &'static str,
-    example: Option<&'static str>,
-    summary: &'static str,
-    published: &'static str,
-    designed: &'static str,
-    training: &'static str,
-    testing: &'static str,
-    columns: ColumnNames,
-}
-
-impl Described {
-    fn of(specimen: &'static Specimen) -> Self {
-        Self {
-            name: specimen.name,
-            example: specimen.example,
-            summary: specimen.summary,
-            published: specimen.published,
-            designed: specimen.designed,
-            training: specimen.training,
-            testing: specimen.testing,
-            columns: specimen.columns(),
-        }
+fn described(specimen: &Specimen) -> impl Serialize {
+    object! {
+        name: specimen.name,
+        example: specimen.example,
+        summary: specimen.summary,
+        published: specimen.published,
+        designed: specimen.designed,
+        training: specimen.training,
+        testing: specimen.testing,
+        columns: specimen.columns(),
     }
 }

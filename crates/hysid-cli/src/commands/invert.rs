@@ -1,14 +1,13 @@
 //! `hysid invert`: the input that drives a model along a wanted output.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Result, ensure};
 use hysid::Model;
 use hysid::data::metrics::Errors;
 use hysid::data::unit;
 use hysid::significant::Significant;
-use hysid_document::count;
+use hysid_document::{count, object};
 use hysid_files::{Destination, Kind};
 use hysid_records::Roles;
 use hysid_records::header_line;
@@ -62,7 +61,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
         None => raw_results(&String::from_utf8(text)?)?,
         Some(drive) => {
             files::write(drive, &text)?;
-            let printed = || Ok(Printed::of(&model, drive.path(), page_path.as_deref(), &inverted));
+            let printed = || Ok(printed(&model, drive.path(), page_path.as_deref(), &inverted));
             told(arguments.json, printed, || summary(&model, &inverted))?;
         }
     }
@@ -250,41 +249,24 @@ fn summary(model: &Model, inverted: &Inverted) -> String {
 }
 
 /// The object that `--json` prints.
-#[derive(Serialize)]
-struct Printed<'a> {
-    drive: PathBuf,
-    report: Option<&'a Path>,
-    rows: usize,
-    records: usize,
-    /// Rows that reach the wanted output.
-    reached: usize,
-    /// Rows by why they do not.
-    not_reached: BTreeMap<&'static str, usize>,
-    extrapolated: usize,
-    /// Lowest and highest input.
-    drive_range: (f64, f64),
-    /// How far the search looked ahead, for each record.
-    previews: &'a [f64],
-    /// The expected deviation of the specimen: RMSE of the model on held-out rows, or else in training.
-    expected_rmse: f64,
-    /// The output of the driven model against the wanted one.
-    errors: &'a Errors,
-}
-
-impl<'a> Printed<'a> {
-    fn of(model: &Model, drive: &Path, report: Option<&'a Path>, inverted: &'a Inverted) -> Self {
-        Self {
-            drive: drive.to_path_buf(),
-            report,
-            rows: inverted.rows(),
-            records: inverted.records.len(),
-            reached: inverted.reached(),
-            not_reached: inverted.not_reached(),
-            extrapolated: inverted.extrapolated(),
-            drive_range: inverted.range(),
-            previews: &inverted.previews,
-            expected_rmse: expected(model).0.rmse,
-            errors: &inverted.errors,
-        }
+fn printed(model: &Model, drive: &Path, report: Option<&Path>, inverted: &Inverted) -> impl Serialize {
+    object! {
+        drive: drive,
+        report: report,
+        rows: inverted.rows(),
+        records: inverted.records.len(),
+        /// Rows that reach the wanted output.
+        reached: inverted.reached(),
+        /// Rows by why they do not.
+        not_reached: inverted.not_reached(),
+        extrapolated: inverted.extrapolated(),
+        /// Lowest and highest input.
+        drive_range: inverted.range(),
+        /// How far the search looked ahead, for each record.
+        previews: &inverted.previews,
+        /// The expected deviation of the specimen: RMSE of the model on held-out rows, or else in training.
+        expected_rmse: expected(model).0.rmse,
+        /// The output of the driven model against the wanted one.
+        errors: &inverted.errors,
     }
 }

@@ -147,7 +147,7 @@ fn tell(arguments: &arguments::Plan, outputs: &Outputs, planned: &Planned<'_>) -
         files::write_page(page, planning::page(planned), &arguments.like)?;
     }
     let page = outputs.page.as_ref().map(Destination::path);
-    let printed = || Ok(planning::Printed::of(planned.plan, destination.path(), page));
+    let printed = || Ok(planning::printed(planned.plan, destination.path(), page));
     told(arguments.json, printed, || planning::text(planned))?;
     files::say_written([("drive", Some(destination.path())), ("page", page)]);
     Ok(Outcome::Done)

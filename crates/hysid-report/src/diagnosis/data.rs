@@ -3,9 +3,8 @@
 use anyhow::Result;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
 use hysid::significant::Significant;
-use hysid_document::{Page, Part, count};
+use hysid_document::{Page, Part, count, object};
 use hysid_records::Data;
-use serde::Serialize;
 
 use super::cards::{EXPLANATION, cards, verdicts};
 use super::overview::Overview;
@@ -69,11 +68,12 @@ impl<'a> DataDiagnosis<'a> {
     }
 
     pub fn json(&self) -> Result<String> {
-        let printed = Printed {
+        let printed = object! {
             input: &self.quantities.input,
             output: &self.quantities.output,
             samples: self.data.set.scored(),
             records: self.data.set.records().len(),
+            #[serde(flatten)]
             diagnosis: &self.diagnosis,
         };
         Ok(hysid_document::json(&printed)?)
@@ -98,15 +98,4 @@ impl<'a> DataDiagnosis<'a> {
         parts.push(Part::section("How the data were read", understood));
         Page { title: format!("Diagnosis: {}", data.source.tables[0].file), parts }
     }
-}
-
-/// The object that `--json` prints of data.
-#[derive(Serialize)]
-struct Printed<'a> {
-    input: &'a str,
-    output: &'a str,
-    samples: usize,
-    records: usize,
-    #[serde(flatten)]
-    diagnosis: &'a Diagnosis,
 }

@@ -10,8 +10,7 @@ use hysid::model::Model;
 use hysid::significant::Significant;
 use hysid_document::plain::columns;
 use hysid_document::unit::label as unit_label;
-use hysid_document::{Cell, Page, Part, Table};
-use serde::Serialize;
+use hysid_document::{Cell, Page, Part, Table, object};
 
 use super::cards::{EXPLANATION, cards, sentence, verdicts};
 use super::{findings, invertibility, paragraph};
@@ -96,10 +95,11 @@ impl<'a> DiagnosedModel<'a> {
     }
 
     pub fn json(&self) -> Result<String> {
-        let printed = Printed {
+        let printed = object! {
             input: &self.quantities.input,
             output: &self.quantities.output,
             parameters: self.model.parameters(),
+            #[serde(flatten)]
             diagnosis: &self.diagnosis,
         };
         Ok(hysid_document::json(&printed)?)
@@ -165,14 +165,4 @@ impl<'a> DiagnosedModel<'a> {
             Table::new(headings.map(|name| label(&name))).with_rows(widths.dynamic.iter().map(at_speed));
         (!widths.dynamic.is_empty()).then_some(table)
     }
-}
-
-/// The object that `--json` prints of a model.
-#[derive(Serialize)]
-struct Printed<'a> {
-    input: &'a str,
-    output: &'a str,
-    parameters: usize,
-    #[serde(flatten)]
-    diagnosis: &'a ModelDiagnosis,
 }

@@ -10,7 +10,7 @@ use axum::routing::{delete, get, post};
 use super::answer::{Answer, Problem, at_once, value};
 use super::guard::{self, Guard};
 use super::{Shared, assets, events, files, models};
-use crate::choices::Choices;
+use crate::choices;
 
 /// Largest body of a request that is no file: a path of some inputs.
 const MOST_BODY_BYTES: usize = 8 << 20;
@@ -45,7 +45,7 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
         .route("/models/{id}/export/{target}", get(models::export))
         .route("/models/{id}/commands", get(models::lines));
     let api = Router::new()
-        .route("/choices", get(async || value(Choices::all())))
+        .route("/choices", get(async || value(choices::all())))
         .route("/project", get(project))
         .route("/events", get(events::events))
         .merge(of_files)

@@ -7,14 +7,14 @@ use std::sync::Arc;
 use anyhow::{Result, anyhow, bail};
 use hysid::data::record::Dataset;
 use hysid::data::summary::Summary;
-use hysid::diagnosis::{DataIssue, Diagnosis, DiagnosisOptions, before_a_fit};
+use hysid::diagnosis::{Diagnosis, DiagnosisOptions, before_a_fit};
 use hysid::specimens::{Specimen, with_noise};
 use hysid_document::html;
 use hysid_document::visible::clipped;
 use hysid_records::{Data, ReadingChoice, Roles, csv_text, summarised, understanding};
 use hysid_report::diagnosis::DataDiagnosis;
 use hysid_tables::Table;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::Studio;
 use crate::folder::{Inner, UPLOAD, cannot_read};
@@ -23,14 +23,6 @@ use crate::view::read;
 use crate::words::said;
 
 const MOST_FILES: usize = 200;
-
-/// What may be wrong with data.
-#[derive(Debug, Serialize)]
-pub struct Findings {
-    warnings: Vec<String>,
-    /// What the diagnosis finds, with the rows that show it.
-    issues: Vec<DataIssue>,
-}
 
 /// Refuses one more file in a full project.
 fn check_room(project: &Project) -> Result<()> {
@@ -223,7 +215,7 @@ impl Studio {
     }
 
     /// What may be wrong with the training data: what a fit warns of, and what the diagnosis finds.
-    pub fn findings(&self) -> Result<Findings> {
+    pub fn findings(&self) -> Result<Value> {
         let data = self.training_data()?;
         let warnings = summarised(&Summary::of(&data.set).warnings(&data.set));
         // Data that cannot be diagnosed may still be fitted to.
@@ -231,7 +223,8 @@ impl Studio {
             Ok(diagnosis) => diagnosis.doctor,
             Err(_) => before_a_fit(&data.set).unwrap_or_default(),
         };
-        Ok(Findings { warnings, issues })
+        // The issues with the rows that show them.
+        Ok(json!({"warnings": warnings, "issues": issues}))
     }
 
     /// The diagnosis of the training data, as HTML. It is made once, also if who asked for it does not wait.

@@ -12,11 +12,12 @@ use hysid::model::Model;
 use hysid_document::{Page, html};
 use hysid_records::{ColumnChoice, Data};
 use hysid_report::diagnosis::DiagnosedModel;
+use serde_json::Value;
 
 use super::Studio;
 use crate::judgement::Run;
 use crate::project::ProjectModel;
-use crate::take_away::Lines;
+use crate::take_away;
 use crate::view::read;
 
 /// Models that are kept in memory.
@@ -154,7 +155,7 @@ impl Studio {
     }
 
     /// The lines that make a model without the studio.
-    pub fn lines(&self, id: u64) -> Result<Lines> {
-        Ok(Lines::of(&self.stored_model(id)?, &*self.model(id)?, self.folder.root()))
+    pub fn lines(&self, id: u64) -> Result<Value> {
+        Ok(take_away::lines(&self.stored_model(id)?, &*self.model(id)?, self.folder.root()))
     }
 }
