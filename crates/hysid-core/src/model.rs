@@ -268,6 +268,12 @@ pub struct Found {
 }
 
 impl Found {
+    /// Of a fit from one start, without more that is known of it.
+    pub fn of(options: FitSpec, termination: Termination) -> Self {
+        let (validation, penalties, runs, selection) = Default::default();
+        Self { options, chosen_start: 0, termination, validation, penalties, runs, selection }
+    }
+
     fn on(self, data: &Dataset, train: Errors, train_after_warm_up: Option<Errors>) -> Provenance {
         let Self { options, chosen_start, termination, validation, penalties, runs, selection } = self;
         Provenance {

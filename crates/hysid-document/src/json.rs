@@ -19,6 +19,13 @@ macro_rules! object {
     }};
 }
 
+/// True for `null` and an empty list, which an [`object!`](crate::object) leaves out of a field with
+/// `#[serde(skip_serializing_if = "hysid_document::is_nothing")]`.
+pub fn is_nothing(value: &impl Serialize) -> bool {
+    let is_empty = |value: serde_json::Value| value.is_null() || value == serde_json::json!([]);
+    serde_json::to_value(value).is_ok_and(is_empty)
+}
+
 /// JSON that a terminal can show: characters that serde leaves as they are, such as those that turn the direction of
 /// the text, are escaped too.
 pub fn json(value: &impl Serialize) -> serde_json::Result<String> {

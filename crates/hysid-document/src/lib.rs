@@ -20,6 +20,7 @@
 
 pub mod chart;
 pub mod convergence;
+mod conversions;
 mod escape;
 pub mod html;
 mod json;
@@ -38,7 +39,7 @@ pub mod visible;
 mod balance;
 
 pub use chart::{Axis, Chart, Colour, Curve, Label};
-pub use json::json;
+pub use json::{is_nothing, json};
 pub use number::{capitalised, count, number, span};
 pub use part::{Card, Item, Page, Part};
 pub use table::{Cell, Table};

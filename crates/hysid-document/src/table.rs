@@ -1,5 +1,6 @@
 //! Tables of typed cells.
 
+use crate::conversions::from;
 use crate::number::number;
 
 /// Significant digits of a number for which none are named.
@@ -91,34 +92,12 @@ impl Cell {
     }
 }
 
-impl From<f64> for Cell {
-    fn from(value: f64) -> Self {
-        Cell::number(value, DIGITS)
-    }
-}
-
-impl From<Option<f64>> for Cell {
-    fn from(value: Option<f64>) -> Self {
-        Cell::number(value, DIGITS)
-    }
-}
-
-impl From<usize> for Cell {
-    fn from(count: usize) -> Self {
-        Cell::Text(count.to_string())
-    }
-}
-
-impl From<&str> for Cell {
-    fn from(text: &str) -> Self {
-        Cell::Text(text.into())
-    }
-}
-
-impl From<String> for Cell {
-    fn from(text: String) -> Self {
-        Cell::Text(text)
-    }
+from! {
+    f64 => Cell: value => Cell::number(value, DIGITS);
+    Option<f64> => Cell: value => Cell::number(value, DIGITS);
+    usize => Cell: count => Cell::Text(count.to_string());
+    &str => Cell: text => Cell::Text(text.into());
+    String => Cell: text => Cell::Text(text);
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Text with emphasis, code and links.
 
+use crate::conversions::from;
+
 /// A line or a paragraph.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Text(pub Vec<Piece>);
@@ -57,20 +59,8 @@ impl Piece {
     }
 }
 
-impl From<Piece> for Text {
-    fn from(piece: Piece) -> Self {
-        Text(vec![piece])
-    }
-}
-
-impl From<String> for Text {
-    fn from(text: String) -> Self {
-        Piece::Plain(text).into()
-    }
-}
-
-impl From<&str> for Text {
-    fn from(text: &str) -> Self {
-        text.to_string().into()
-    }
+from! {
+    Piece => Text: piece => Text(vec![piece]);
+    String => Text: text => Piece::Plain(text).into();
+    &str => Text: text => text.to_string().into();
 }

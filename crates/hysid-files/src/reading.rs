@@ -36,10 +36,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, String> {
 pub fn read_from(name: &str, from: impl Read) -> Result<Vec<u8>, String> {
     let mut content = Vec::new();
     from.take(LARGEST + 1).read_to_end(&mut content).map_err(|error| unreadable(name, &error))?;
-    match content.len() as u64 > LARGEST {
-        true => Err(too_large(name)),
-        false => Ok(content),
-    }
+    if content.len() as u64 > LARGEST { Err(too_large(name)) } else { Ok(content) }
 }
 
 fn too_large(name: &str) -> String {

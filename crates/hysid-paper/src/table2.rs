@@ -57,10 +57,7 @@ pub fn chapter(settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
                 fitting::ARCHITECTURE.hidden
             )),
             Part::heading("Where our verdict differs from the paper"),
-            Part::paragraph(match differences.is_empty() {
-                true => "Nowhere.".into(),
-                false => differences.join(" "),
-            }),
+            Part::paragraph(if differences.is_empty() { "Nowhere.".into() } else { differences.join(" ") }),
             Part::paragraph(WHY),
             Part::paragraph(COUNT),
             Part::Table(incongruency),

@@ -54,8 +54,5 @@ pub fn interruptible_if_long<T: Send + 'static>(
     operations: f64,
     work: impl FnOnce() -> hysid::Result<T> + Send + 'static,
 ) -> PyResult<T> {
-    match operations < SHORT {
-        true => py.detach(work).map_err(refused),
-        false => interruptible(py, work),
-    }
+    if operations < SHORT { py.detach(work).map_err(refused) } else { interruptible(py, work) }
 }

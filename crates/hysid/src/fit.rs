@@ -149,15 +149,7 @@ fn finished(
     runs: Vec<Run>,
 ) -> Result<Fitted> {
     let request = FitSpec::Classical(ClassicalOptions { near: Vec::new(), ..options.clone() });
-    let found = Found {
-        options: request,
-        chosen_start: 0,
-        termination,
-        validation: None,
-        penalties: None,
-        runs,
-        selection: None,
-    };
+    let found = Found { runs, ..Found::of(request, termination) };
     let model = Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?;
     Ok(Fitted::of(model, evaluations))
 }

@@ -100,9 +100,10 @@ fn tell(arguments: &arguments::Cycles, outputs: &Outputs, cycles: &Cycles) -> Re
         page: outputs.page.as_ref().map(path),
         curves: curves.map(|(_, destination)| path(destination)),
     };
-    match arguments.json {
-        true => raw_results(&cycles.json(&written)?)?,
-        false => results(&cycles::text(cycles))?,
+    if arguments.json {
+        raw_results(&cycles.json(&written)?)?
+    } else {
+        results(&cycles::text(cycles))?
     }
     let written = [("table", &written.table), ("FORC", &written.curves), ("page", &written.page)];
     files::say_written(written.map(|(what, path)| (what, path.as_deref())));

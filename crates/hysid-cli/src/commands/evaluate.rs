@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 
 use anyhow::{Context, Result};
-use hysid::data::metrics::{ErrorSums, Errors};
-use hysid::diagnosis::residuals::Residuals;
+use hysid::data::metrics::ErrorSums;
 use hysid::error::{Channel, DataError, DataProblem};
+use hysid_document::object;
 use hysid_records::{Roles, explained};
 use hysid_report::BandCoverage;
 use hysid_tables::Rows;
@@ -70,7 +70,18 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     let band = level.map(|level| BandCoverage::of(covered, level));
     let after_warm_up = (warm_up > 0).then(|| sums_behind.errors(output)).flatten();
     match arguments.json {
-        true => json_results(&Printed { errors: &errors, after_warm_up, band, residuals })?,
+        true => json_results(&object! {
+            #[serde(flatten)]
+            errors: errors,
+            /// Errors without the rows of a warm-up, for a model that has one.
+            #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+            after_warm_up: after_warm_up,
+            #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+            band: band,
+            /// Tests of the residual, if they are wanted.
+            #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+            residuals: residuals,
+        })?,
         false => {
             let mut sets = vec![("free run", &errors)];
             sets.extend(after_warm_up.as_ref().map(|errors| (AFTER_WARM_UP, errors)));
@@ -85,19 +96,4 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
         }
     }
     Ok(Outcome::Done)
-}
-
-/// The object that `--json` prints.
-#[derive(serde::Serialize)]
-struct Printed<'a> {
-    #[serde(flatten)]
-    errors: &'a Errors,
-    /// Errors without the rows of a warm-up, for a model that has one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    after_warm_up: Option<Errors>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    band: Option<BandCoverage>,
-    /// Tests of the residual, if they are wanted.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    residuals: Option<Residuals>,
 }

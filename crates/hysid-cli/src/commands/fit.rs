@@ -3,23 +3,20 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use hysid::data::metrics::Errors;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
 use hysid::diagnosis::residuals::Residuals;
-use hysid::fit::intervals::ParameterIntervals;
 use hysid::fit::network::Checkpoint;
-use hysid::model::selection::Selection;
-use hysid::model::{Model, RecordLeadIn};
-use hysid::network::Architecture;
+use hysid::model::Model;
+use hysid::options::FitSpec;
 use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};
 use hysid::options::network::FitOptions;
-use hysid::options::{FitSpec, ModelName};
-use hysid::termination::Termination;
+use hysid_document::object;
 use hysid_document::shell::flag;
 use hysid_files::{Destination, Kind};
 use hysid_records::Roles;
 use hysid_report::{Identified, initial_state};
+use serde::Serialize;
 
 use crate::Outcome;
 use crate::arguments::{Fit, RateOption};
@@ -72,7 +69,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let mut written = vec![("model", out)];
     written.extend(report.iter().filter(|_| reported.is_ok()).map(|page| ("report", page.path())));
     let text = || identification::printed(&identified, None, &written) + &next(out);
-    told(arguments.json, || Printed::of(&identified, out, &trained), text)?;
+    told(arguments.json, || printed(&identified, out, &trained), text)?;
     reported?;
     if interrupt::requested() {
         identification::note_interrupted(out);
@@ -151,97 +148,61 @@ fn next(model: &Path) -> String {
     format!("\nnext:\n  hysid evaluate {model} DATA.csv\n  hysid simulate {model} DATA.csv -o OUT.csv\n")
 }
 
+fn architecture(model: &Model) -> impl Serialize + use<> {
+    object! {
+        family: model.name(),
+        #[serde(flatten)]
+        parts: model.network().map(|network| *network.architecture()),
+    }
+}
+
 /// The object that `--json` prints.
-#[derive(serde::Serialize)]
-struct Printed<'a> {
-    model: String,
-    architecture: PrintedArchitecture,
-    parameters: usize,
-    /// Those that answer together; `null` for a single model.
-    members: Option<Vec<PrintedMember>>,
-    /// What was tried and how it did; `null` where there was no choice.
-    selection: Option<&'a Selection>,
-    train: &'a Errors,
-    /// Without the rows of a warm-up; left out for a model without one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    train_after_warm_up: Option<&'a Errors>,
-    validation: Option<&'a Errors>,
-    /// In which state data to come begin; left out for the virgin state.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    initial_state: Option<String>,
-    /// Turning points of the first input before each training record; left out where all begin in one state.
-    #[serde(skip_serializing_if = "<[RecordLeadIn]>::is_empty")]
-    lead_ins: &'a [RecordLeadIn],
-    /// Confidence intervals of the parameters; left out for a model that has none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    intervals: Option<ParameterIntervals>,
-    /// Tests of the residual by the data, training first; left out for too few rows.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    residuals: Vec<PrintedResiduals>,
-    /// What to know before relying on the model.
-    notes: Vec<String>,
-    seconds: f64,
-    evaluations: usize,
-    termination: Termination,
-}
-
-#[derive(serde::Serialize)]
-struct PrintedResiduals {
-    /// What the data are: `training` or `held-out`.
-    data: String,
-    #[serde(flatten)]
-    tests: Residuals,
-}
-
-#[derive(serde::Serialize)]
-struct PrintedArchitecture {
-    family: ModelName,
-    #[serde(flatten)]
-    parts: Option<Architecture>,
-}
-
-#[derive(serde::Serialize)]
-struct PrintedMember {
-    #[serde(flatten)]
-    architecture: PrintedArchitecture,
-    parameters: usize,
-}
-
-impl PrintedArchitecture {
-    fn of(model: &Model) -> Self {
-        Self { family: model.name(), parts: model.network().map(|network| *network.architecture()) }
-    }
-}
-
-impl PrintedMember {
-    fn of(model: &Model) -> Self {
-        Self { architecture: PrintedArchitecture::of(model), parameters: model.parameters() }
-    }
-}
-
-impl<'a> Printed<'a> {
-    fn of(identified: &'a Identified, out: &Path, trained: &Dataset) -> Result<Self> {
-        let residuals = identified.residuals(trained)?.into_iter();
-        let (model, provenance) = (&identified.model, identified.model.provenance());
-        Ok(Self {
-            model: out.display().to_string(),
-            architecture: PrintedArchitecture::of(model),
+fn printed(identified: &Identified, out: &Path, trained: &Dataset) -> Result<impl Serialize> {
+    let (model, provenance) = (&identified.model, identified.model.provenance());
+    let member = |model: &Model| {
+        object! {
+            #[serde(flatten)]
+            architecture: architecture(model),
             parameters: model.parameters(),
-            members: model
-                .ensemble()
-                .map(|ensemble| ensemble.members().iter().map(PrintedMember::of).collect()),
-            selection: provenance.selection.as_ref(),
-            train: &provenance.train,
-            train_after_warm_up: provenance.train_after_warm_up.as_ref(),
-            initial_state: initial_state(model),
-            lead_ins: &provenance.lead_ins,
-            intervals: identified.intervals(trained)?,
-            residuals: residuals.map(|(data, tests)| PrintedResiduals { data, tests }).collect(),
-            notes: model.notes(),
-            validation: provenance.validation.as_ref(),
-            seconds: identified.seconds,
-            evaluations: identified.evaluations,
-            termination: provenance.termination,
-        })
-    }
+        }
+    };
+    let tested = |(data, tests): (String, Residuals)| {
+        object! {
+            /// What the data are: `training` or `held-out`.
+            data: data,
+            #[serde(flatten)]
+            tests: tests,
+        }
+    };
+    Ok(object! {
+        model: out.display().to_string(),
+        architecture: architecture(model),
+        parameters: model.parameters(),
+        /// Those that answer together; `null` for a single model.
+        members: model.ensemble().map(|ensemble| ensemble.members().iter().map(member).collect::<Vec<_>>()),
+        /// What was tried and how it did; `null` where there was no choice.
+        selection: provenance.selection.as_ref(),
+        train: &provenance.train,
+        /// Without the rows of a warm-up; left out for a model without one.
+        #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+        train_after_warm_up: provenance.train_after_warm_up.as_ref(),
+        validation: provenance.validation.as_ref(),
+        /// In which state data to come begin; left out for the virgin state.
+        #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+        initial_state: initial_state(model),
+        /// Turning points of the first input before each training record; left out where all begin in one state.
+        #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+        lead_ins: &provenance.lead_ins,
+        /// Confidence intervals of the parameters; left out for a model that has none.
+        #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+        intervals: identified.intervals(trained)?,
+        /// Tests of the residual by the data, training first; left out for too few rows.
+        #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+        residuals: identified.residuals(trained)?.into_iter().map(tested).collect::<Vec<_>>(),
+        /// What to know before relying on the model.
+        notes: model.notes(),
+        seconds: identified.seconds,
+        evaluations: identified.evaluations,
+        termination: provenance.termination,
+    })
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use hysid::data::summary::Summary;
+use hysid_document::object;
 use hysid_files::{Destination, Kind};
 use hysid_records::csv_text;
 use hysid_records::{Data, Looked, Roles, understanding};
@@ -36,7 +37,7 @@ pub fn run(arguments: &Look) -> Result<Outcome> {
         Err(_) => Default::default(),
     };
     match (arguments.json, to_stdout) {
-        (true, _) => json_results(&Printed::of(&looked, &data, &warnings))?,
+        (true, _) => json_results(&printed(&looked, &data, &warnings))?,
         (false, true) => text(&looked, &understood).lines().for_each(|line| note(format_args!("{line}"))),
         (false, false) => results(&text(&looked, &understood))?,
     }
@@ -51,34 +52,18 @@ pub fn run(arguments: &Look) -> Result<Outcome> {
 }
 
 /// The object that `--json` prints.
-#[derive(Serialize)]
-struct Printed<'l> {
-    files: &'l [Looked],
-    #[serde(skip_serializing_if = "Option::is_none")]
-    records: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    guessed: Option<&'static str>,
-    /// What is doubtful about the data.
-    warnings: &'l [String],
-    /// Why the data cannot be used as they are.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    problem: Option<String>,
-}
-
-impl<'l> Printed<'l> {
-    fn of(files: &'l [Looked], data: &Result<Data>, warnings: &'l [String]) -> Self {
-        match data {
-            Ok(data) => Self {
-                files,
-                records: Some(data.set.records().len()),
-                guessed: data.roles.guessed,
-                warnings,
-                problem: None,
-            },
-            Err(problem) => {
-                Self { files, records: None, guessed: None, warnings, problem: Some(format!("{problem:#}")) }
-            }
-        }
+fn printed(files: &[Looked], data: &Result<Data>, warnings: &[String]) -> impl Serialize {
+    object! {
+        files: files,
+        #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+        records: data.as_ref().ok().map(|data| data.set.records().len()),
+        #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+        guessed: data.as_ref().ok().and_then(|data| data.roles.guessed),
+        /// What is doubtful about the data.
+        warnings: warnings,
+        /// Why the data cannot be used as they are.
+        #[serde(skip_serializing_if = "hysid_document::is_nothing")]
+        problem: data.as_ref().err().map(|problem| format!("{problem:#}")),
     }
 }
 

@@ -143,10 +143,7 @@ fn coarse_resolution(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
         return None;
     }
     let units = Units::of(survey);
-    let (name, shown) = match of_output {
-        true => ("output", units.output(step)),
-        false => ("input", units.input(step)),
-    };
+    let (name, shown) = if of_output { ("output", units.output(step)) } else { ("input", units.input(step)) };
     let statement = format!(
         "the {name} comes in steps of {shown}, {:.1} % of its range: smaller differences, and turning \
          points, are not reliable; measure in a smaller range of the instrument",

@@ -82,10 +82,7 @@ impl ModelCycles {
         Ok(Self {
             probing: probe.description(),
             table: CycleTable::of(&data, &options)?,
-            reversal_curves: match has_loops {
-                true => ReversalCurves::of(&curves, &options_of_curves)?,
-                false => None,
-            },
+            reversal_curves: if has_loops { ReversalCurves::of(&curves, &options_of_curves)? } else { None },
             data,
         })
     }

@@ -30,15 +30,7 @@ fn model(body: Predictor, request: FitSpec, rate: Option<RateMethod>) -> Model {
     let time = (0..x.len()).map(|k| k as f64 * X / RATE).collect();
     let record = Record::new("r", vec![x.clone()], x).unwrap().with_time(time).unwrap();
     let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
-    let found = Found {
-        options: request,
-        chosen_start: 0,
-        termination: Termination::Converged,
-        validation: None,
-        penalties: None,
-        runs: Vec::new(),
-        selection: None,
-    };
+    let found = Found::of(request, Termination::Converged);
     Model::new(body, InputTransform::default(), rate, &data, found).unwrap()
 }
 

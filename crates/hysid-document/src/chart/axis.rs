@@ -132,10 +132,7 @@ impl Ranged for Axis {
     }
 
     fn range(&self) -> Range<f64> {
-        match self.logarithmic {
-            true => powf(10.0, self.low)..powf(10.0, self.high),
-            false => self.low..self.high,
-        }
+        if self.logarithmic { powf(10.0, self.low)..powf(10.0, self.high) } else { self.low..self.high }
     }
 }
 

@@ -39,10 +39,7 @@ fn extremes(bucket: &[Point]) -> Vec<Point> {
     let mut kept: Vec<usize> = kept.into_iter().flatten().collect();
     kept.sort_unstable();
     kept.dedup();
-    match kept.is_empty() {
-        true => vec![(f64::NAN, f64::NAN)],
-        false => kept.into_iter().map(|i| bucket[i]).collect(),
-    }
+    if kept.is_empty() { vec![(f64::NAN, f64::NAN)] } else { kept.into_iter().map(|i| bucket[i]).collect() }
 }
 
 /// Stretches drawn of a path that is too long to be drawn whole.

@@ -37,6 +37,7 @@ fn legend(lines: &[Line]) -> Vec<(Colour, String)> {
 }
 
 /// Inputs, outputs of the specimen and of the models, in the rows that have an output, record after record.
+#[derive(Default)]
 struct Scored {
     input: Vec<f64>,
     output: Vec<f64>,
@@ -47,12 +48,7 @@ struct Scored {
 
 impl Scored {
     fn of(data: &Dataset, lines: &[Line]) -> Self {
-        let mut scored = Self {
-            input: Vec::new(),
-            output: Vec::new(),
-            simulated: vec![Vec::new(); lines.len()],
-            begins: Vec::new(),
-        };
+        let mut scored = Self { simulated: vec![Vec::new(); lines.len()], ..Self::default() };
         for (index, record) in data.records().iter().enumerate() {
             let mut after_blank = true;
             for (row, &output) in record.output().iter().enumerate() {

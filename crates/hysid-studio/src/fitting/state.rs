@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::words::said;
 
 /// What is known of a fit. Errors are in percent of the standard deviation of the output.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct FitState {
     /// Its number.
     pub id: u64,
@@ -91,23 +91,12 @@ impl FitState {
             id,
             model: request.model().name(),
             is_running: true,
-            seconds: 0.0,
-            done: 0.0,
-            remaining_seconds: None,
-            remaining: None,
             part: "starting".into(),
-            error_percent: None,
-            curve: Vec::new(),
             curve_is: match request {
                 FitSpec::Auto(_) => "cross-validation error",
                 FitSpec::Network(_) | FitSpec::Classical(_) => "training error",
             },
-            candidates: Vec::new(),
-            preview: 0,
-            problem: None,
-            made: None,
-            is_unsaved: false,
-            was_interrupted: false,
+            ..Self::default()
         }
     }
 

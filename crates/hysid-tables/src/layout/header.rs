@@ -19,7 +19,7 @@ const MOST_LINES: usize = 4;
 const REMARKS: [&str; 6] = ["comment", "comments", "remark", "remarks", "kommentar", "bemerkung"];
 
 /// Names of columns, and where they stand.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Header {
     /// A name for each column.
     pub names: Vec<String>,
@@ -40,12 +40,7 @@ struct Row {
 impl Header {
     /// That of a table without names: `c1`, `c2` and so on.
     pub fn none(width: usize) -> Self {
-        Self {
-            names: distinct(vec![String::new(); width]),
-            lines: Vec::new(),
-            units_line: None,
-            names_last: false,
-        }
+        Self { names: distinct(vec![String::new(); width]), ..Self::default() }
     }
 
     /// The names and units above a run of rows.

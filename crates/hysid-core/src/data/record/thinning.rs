@@ -33,10 +33,7 @@ impl Thinning {
     pub fn blank<'y>(&self, outputs: impl Iterator<Item = &'y mut f64>) -> usize {
         let mut kept = 0;
         for (place, y) in outputs.filter(|y| !y.is_nan()).enumerate() {
-            match self.keeps(place) {
-                true => kept += 1,
-                false => *y = f64::NAN,
-            }
+            if self.keeps(place) { kept += 1 } else { *y = f64::NAN }
         }
         kept
     }

@@ -138,10 +138,7 @@ impl Wanted {
         second: Point,
         at: &mut impl FnMut(f64) -> Result<Point, E>,
     ) -> Result<Found, E> {
-        let (mut below, mut above) = match self.excess(first) < 0.0 {
-            true => (first, second),
-            false => (second, first),
-        };
+        let (mut below, mut above) = if self.excess(first) < 0.0 { (first, second) } else { (second, first) };
         // The last two points on the side of the last one.
         let (mut before, mut last) = (first, second);
         let width = |below: Point, above: Point| (above.argument - below.argument).abs();

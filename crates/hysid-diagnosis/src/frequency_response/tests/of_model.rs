@@ -29,15 +29,7 @@ fn linear() -> Dynamics {
 fn model(dynamics: Dynamics, data: &Dataset) -> Model {
     let law = HystereticOscillator(dynamics).validated().unwrap();
     let options = ClassicalOptions::of(ClassicalModel::HystereticOscillator);
-    let found = Found {
-        options: FitSpec::Classical(options),
-        chosen_start: 0,
-        termination: Termination::Converged,
-        validation: None,
-        penalties: None,
-        runs: Vec::new(),
-        selection: None,
-    };
+    let found = Found::of(FitSpec::Classical(options), Termination::Converged);
     let body = Predictor::Law(Classical::HystereticOscillator(law));
     Model::new(body, Default::default(), None, data, found).unwrap()
 }

@@ -9,6 +9,7 @@ use hysid_core::model::BandLevel;
 use hysid_export::description::{Argument, Description, RateSource};
 use hysid_export::{Error, InverseOptions, Options, Precision, Target, export};
 use serde_json::json;
+use tempfile::TempDir;
 
 use super::case::{Case, MODELS, NAME, written};
 use super::tools::{gcc, succeeds, tool};
@@ -154,6 +155,17 @@ fn soak(kinds: &[Argument]) -> String {
         .replace("@given@", &given)
 }
 
+/// Runs so many steps of a program with all sanitizers.
+pub fn must_survive(name: &str, compiler: &str, folder: &TempDir, sources: &[&str], steps: &str) {
+    let sanitizers = ["-O1", "-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
+    let mut command = Command::new(compiler);
+    succeeds(
+        command.current_dir(folder).args(STRICT).args(sanitizers).args(sources).args(["-lm", "-o", "soak"]),
+    );
+    let output = succeeds(Command::new(folder.path().join("soak")).arg(steps));
+    assert!(output.stderr.is_empty(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
 /// `HYSID_SOAK_STEPS=100000000 cargo test --release -p hysid-export --test targets survive` is the long one.
 #[test]
 fn random_steps_survive_the_sanitizers() {
@@ -162,11 +174,7 @@ fn random_steps_survive_the_sanitizers() {
     for (name, model) in MODELS.iter() {
         let folder = written(model, Target::C, &Options::named(NAME));
         fs::write(folder.path().join("soak.c"), soak(&Case::of(model, 1).arguments)).unwrap();
-        let sanitizers = ["-O1", "-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
-        let files = ["actuator.c", "soak.c", "-lm", "-o", "soak"];
-        succeeds(Command::new(&compiler).current_dir(&folder).args(STRICT).args(sanitizers).args(files));
-        let output = succeeds(Command::new(folder.path().join("soak")).arg(&steps));
-        assert!(output.stderr.is_empty(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        must_survive(name, &compiler, &folder, &["actuator.c", "soak.c"], &steps);
         println!("{name}: {steps} steps");
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use std::sync::LazyLock;
 
 use hysid::Model;
@@ -10,6 +11,7 @@ use hysid_export::program::Precision;
 use hysid_export::{Options, Target, export};
 use tempfile::TempDir;
 
+use super::tools::succeeds;
 use crate::models::{all, path, time_step};
 
 pub static MODELS: LazyLock<Vec<(String, Model)>> = LazyLock::new(all);
@@ -72,6 +74,16 @@ impl Case {
         assert!(found.iter().all(|value| value.is_finite()), "{name}");
         differences.fold(0.0, f64::max) / largest
     }
+}
+
+/// Runs a program that reads the rows of a case in a folder and writes outputs there, which must be the library's but for
+/// roundings.
+pub fn must_agree(name: &str, case: &Case, folder: &TempDir, program: &mut Command) {
+    fs::write(folder.path().join("rows"), case.bytes()).unwrap();
+    succeeds(program.current_dir(folder));
+    let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());
+    println!("{name}: {difference:.1e}");
+    assert!(difference <= 1e-12, "{name}: {difference:e}");
 }
 
 fn numbers(bytes: &[u8]) -> Vec<f64> {

@@ -1,11 +1,10 @@
 //! Exports as Functional Mock-up Units, run by FMPy.
 
-use std::fs;
 use std::process::Command;
 
 use hysid_export::{FmiVersion, Options, Target};
 
-use super::case::{Case, MODELS, NAME, written};
+use super::case::{Case, MODELS, NAME, must_agree, written};
 use super::tools::{python, succeeds, tool};
 
 /// Validates a unit, and reads rows of arguments in binary.
@@ -30,13 +29,9 @@ fn importers_find_nothing_wrong_and_outputs_equal_those_of_the_library() {
         assert!(text.starts_with("0 of "), "{name}, {fmi:?}: {text}");
 
         let case = Case::of(model, ROWS);
-        fs::write(folder.path().join("rows"), case.bytes()).unwrap();
         let driver = format!("{OPENED}{DRIVER}");
         let arguments = ["-c", &driver, &case.arguments.len().to_string(), &case.has_time().to_string()];
-        succeeds(Command::new(&python).current_dir(&folder).args(arguments));
         // The importer adds up the time steps, whose roundings reach rates.
-        let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());
-        println!("{name}: {difference:.1e}");
-        assert!(difference <= 1e-12, "{name}, {fmi:?}: {difference:e}");
+        must_agree(&format!("{name}, {fmi:?}"), &case, &folder, Command::new(&python).args(arguments));
     }
 }

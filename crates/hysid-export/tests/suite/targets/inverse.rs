@@ -9,7 +9,7 @@ use hysid::model::MOST_TRIALS;
 use hysid_export::description::{Argument, RateSource};
 use hysid_export::{Error, InverseOptions, Options, Precision, Target, export};
 
-use super::c::{STRICT, UNIT, compilers, random_others};
+use super::c::{STRICT, UNIT, compilers, must_survive, random_others};
 use super::case::{MODELS, NAME, written};
 use super::inverse_case::{InverseCase, code, tight};
 use super::tools::{gcc, succeeds};
@@ -105,11 +105,7 @@ fn inverses_survive_the_sanitizers() {
         let folder = written(model, Target::C, &with_inverse(inverse));
         let kinds = InverseCase::of(model, inverse, 1, false).arguments;
         fs::write(folder.path().join("soak.c"), soak(&kinds, model.trained_ranges().output)).unwrap();
-        let sanitizers = ["-O1", "-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
-        let files = ["actuator.c", "actuator_inverse.c", "soak.c", "-lm", "-o", "soak"];
-        succeeds(Command::new(&compiler).current_dir(&folder).args(STRICT).args(sanitizers).args(files));
-        let output = succeeds(Command::new(folder.path().join("soak")).arg(&steps));
-        assert!(output.stderr.is_empty(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        must_survive(name, &compiler, &folder, &["actuator.c", "actuator_inverse.c", "soak.c"], &steps);
     }
 }
 

@@ -5,8 +5,8 @@ use std::process::Command;
 
 use hysid_export::{Options, Target};
 
-use super::case::{Case, MODELS, NAME, written};
-use super::tools::{succeeds, tool};
+use super::case::{Case, MODELS, NAME, must_agree, written};
+use super::tools::tool;
 
 /// Simulates rows of arguments in binary, and writes outputs in binary.
 fn driver(arguments: usize) -> String {
@@ -33,12 +33,8 @@ fn outputs_are_those_of_the_library() {
     for (name, model) in MODELS.iter() {
         let folder = written(model, Target::Matlab, &Options::named(NAME));
         let case = Case::of(model, ROWS);
-        fs::write(folder.path().join("rows"), case.bytes()).unwrap();
         fs::write(folder.path().join("driver.m"), driver(case.arguments.len())).unwrap();
         let arguments = ["--no-gui", "--norc", "--quiet", "driver.m"];
-        succeeds(Command::new(&octave).current_dir(&folder).args(arguments));
-        let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());
-        println!("{name}: {difference:.1e}");
-        assert!(difference <= 1e-12, "{name}: {difference:e}");
+        must_agree(name, &case, &folder, Command::new(&octave).args(arguments));
     }
 }

@@ -1,11 +1,10 @@
 //! Exports to ONNX, run by onnxruntime.
 
-use std::fs;
 use std::process::Command;
 
 use hysid_export::{Options, Target};
 
-use super::case::{Case, MODELS, NAME, written};
+use super::case::{Case, MODELS, NAME, must_agree, written};
 use super::tools::{python, succeeds};
 
 /// Checks the models, simulates rows of arguments in binary, and writes outputs in binary.
@@ -29,12 +28,8 @@ fn outputs_are_those_of_the_library() {
     for (name, model) in MODELS.iter() {
         let folder = written(model, Target::Onnx, &Options::named(NAME));
         let case = Case::of(model, ROWS);
-        fs::write(folder.path().join("rows"), case.bytes()).unwrap();
         let arguments = ["-c", DRIVER, &case.arguments.len().to_string()];
-        succeeds(Command::new(&python).current_dir(&folder).args(arguments));
-        let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());
-        println!("{name}: {difference:.1e}");
-        assert!(difference <= 1e-12, "{name}: {difference:e}");
+        must_agree(name, &case, &folder, Command::new(&python).args(arguments));
         succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));
     }
 }

@@ -1,11 +1,10 @@
 //! Exports to Python.
 
-use std::fs;
 use std::process::Command;
 
 use hysid_export::{Error, Options, Precision, Target, export};
 
-use super::case::{Case, MODELS, NAME, written};
+use super::case::{Case, MODELS, NAME, must_agree, written};
 use super::tools::{python, succeeds};
 
 /// Simulates rows of arguments in binary, and writes outputs in binary.
@@ -26,13 +25,9 @@ fn outputs_are_those_of_the_library() {
         let folder = written(model, Target::Python, &Options::named(NAME));
         succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));
         let case = Case::of(model, ROWS);
-        fs::write(folder.path().join("rows"), case.bytes()).unwrap();
         let arguments = ["-c", DRIVER, &case.arguments.len().to_string()];
-        succeeds(Command::new(&python).current_dir(&folder).args(arguments));
         // Python rounds products and sums one by one, and has its own `exp` and its like.
-        let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());
-        println!("{name}: {difference:.1e}");
-        assert!(difference <= 1e-12, "{name}: {difference:e}");
+        must_agree(name, &case, &folder, Command::new(&python).args(arguments));
     }
 }
 

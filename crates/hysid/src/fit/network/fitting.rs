@@ -203,12 +203,9 @@ impl<'a> Fitting<'a> {
     fn found(&self, run: &TrainingRun, penalties: Regularisation) -> Found {
         Found {
             chosen_start: run.start(),
-            termination: run.termination(),
             runs: run.runs().to_vec(),
-            validation: None,
             penalties: Some(penalties),
-            selection: None,
-            options: FitSpec::Network(self.asked.clone()),
+            ..Found::of(FitSpec::Network(self.asked.clone()), run.termination())
         }
     }
 
