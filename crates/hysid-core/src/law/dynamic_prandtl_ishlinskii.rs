@@ -2,11 +2,11 @@
 //! resonance, or in parallel with relaxation.
 //!
 //! ```text
-//! u = x - σ_0[x]   or   u = x                                                 theory.md (8.52)
-//! m = c + w_0 u + Σ_i w_i p_{r_i}[u] + Σ_j s_j S_{d_j}(u)                     theory.md (8.53)
-//! f = m + Σ_k b_k σ_k[m]                                                      theory.md (8.54)
-//! q'' = ω² (f - q) - 2 ζ ω q'   or   q = f                                    theory.md (8.55)
-//! y = q + e_0 x + Σ_k e_k σ_k[x]                                              theory.md (8.56)
+//! u = x - σ_0[x]   or   u = x                                                 theory.md (8.53)
+//! m = c + w_0 u + Σ_i w_i p_{r_i}[u] + Σ_j s_j S_{d_j}(u)                     theory.md (8.54)
+//! f = m + Σ_k b_k σ_k[m]                                                      theory.md (8.55)
+//! q'' = ω² (f - q) - 2 ζ ω q'   or   q = f                                    theory.md (8.56)
+//! y = q + e_0 x + Σ_k e_k σ_k[x]                                              theory.md (8.57)
 //! S_d(u) = max(u - d, 0) for d > 0,   min(u - d, 0) for d < 0
 //! ```
 //!
@@ -75,7 +75,7 @@ pub struct Resonance {
     pub damping: f64,
 }
 
-/// A dynamic Prandtl-Ishlinskii model in the user's units (theory.md (8.52) to (8.56)).
+/// A dynamic Prandtl-Ishlinskii model in the user's units (theory.md (8.53) to (8.57)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DynamicPrandtlIshlinskii {

@@ -9,7 +9,7 @@ use crate::description::{Sample, limited};
 use crate::program::Builder;
 use crate::program::expression::{Real, Whole};
 
-/// theory.md (8.52) to (8.56)
+/// theory.md (8.53) to (8.57)
 pub(super) fn step(
     builder: &mut Builder,
     name: &str,
@@ -84,7 +84,7 @@ fn decay(builder: &mut Builder, time_step: &Real, time_constant: &Real) -> (Real
     (kept, gain)
 }
 
-/// The displacement `q` under a force that went from one value to the other (theory.md (8.55)).
+/// The displacement `q` under a force that went from one value to the other (theory.md (8.56)).
 fn moved(
     builder: &mut Builder,
     name: &str,

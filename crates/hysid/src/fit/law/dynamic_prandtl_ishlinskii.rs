@@ -1,5 +1,5 @@
 //! Identification of a dynamic Prandtl-Ishlinskii model: time constants, shares and resonance are found by search, and
-//! for each of their values the weights by least squares (theory.md (8.57)).
+//! for each of their values the weights by least squares (theory.md (8.58)).
 //!
 //! All dynamics are linear, so they are applied to each play and dead zone by itself, and the weights stay linear.
 
