@@ -290,6 +290,7 @@ fn few_candidates() -> FitSpec {
         companding: Some(false),
         history: Some(false),
         deterioration: Some(false),
+        operators: None,
         ..options
     })
 }
@@ -304,7 +305,8 @@ fn auto_finds_states_where_they_matter_and_says_so() {
     assert!(found.found_percent < 0.8 * found.virgin_percent);
     assert_eq!(selection.warm_up, None);
     assert_eq!(model.lead_in(), [train.input_range(0).1]);
-    assert!(model.ensemble().unwrap().members().iter().all(|member| member.lead_in().is_empty()));
+    let members = model.ensemble().into_iter().flat_map(|ensemble| ensemble.members());
+    assert!(members.into_iter().all(|member| member.lead_in().is_empty()));
     assert!(model.notes().iter().any(|note| note.contains("initial state")), "{:?}", model.notes());
     let virgin = model_of(&train, &auto.with_initial_state(Some(InitialState::Virgin)));
     let error = |model: &Model| model.evaluate(&test).unwrap().rmse;
