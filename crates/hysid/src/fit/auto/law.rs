@@ -23,6 +23,10 @@ const ABOUT_THE_LOWEST_OF_PREISACH: f64 = 2.0;
 /// not those of relays. Designed.
 const LEFT_BY_PREISACH: f64 = 0.05;
 
+/// Least error of such a Preisach model on the folds, relative to its training error: the folds ask for more than the data
+/// show. Where they do not, they can tell candidates apart by themselves. Designed.
+const ASKS_FOR_MORE: f64 = 3.0;
+
 /// Scores of laws, relative to the lowest, that tell nothing apart: the law with the fewest numbers is taken. Designed.
 const ALIKE: f64 = 1.05;
 
@@ -53,7 +57,9 @@ impl Chosen<'_, '_, '_> {
         let few = judged.iter().filter(|one| one.is_law && one.numbers <= FEW_NUMBERS);
         let mut laws: Vec<&Judged> = few.filter(is_about(ABOUT_THE_LOWEST)).collect();
         if laws.is_empty() {
+            let asks_for_more = |one: &&Judged| 0.01 * one.score >= ASKS_FOR_MORE * one.training;
             let preisach = judged.iter().filter(|one| one.is_preisach && one.training <= LEFT_BY_PREISACH);
+            let preisach = preisach.filter(asks_for_more);
             laws = preisach.filter(is_about(ABOUT_THE_LOWEST_OF_PREISACH)).collect();
         }
         let best = laws.iter().map(|law| law.score).fold(f64::INFINITY, f64::min);
