@@ -362,13 +362,13 @@ fn loops_of_relays(amplitudes: &[f64]) -> Dataset {
 }
 
 #[test]
-fn a_preisach_model_takes_the_place_of_an_ensemble_on_loops_of_a_magnet() {
-    let data = loops_of_relays(&[0.3, 0.5, 0.7, 1.0]);
+fn a_preisach_model_takes_the_place_of_an_ensemble_on_few_loops_of_a_magnet() {
+    let data = loops_of_relays(&[0.4, 1.0]);
     let model = fitted(&data, AutoOptions { operators: None, ..options(None) });
     assert_eq!(model.name(), ModelName::Classical(ClassicalModel::Preisach));
     assert!(model.provenance().selection.as_ref().unwrap().single.as_ref().unwrap().is_law);
-    let unseen = error_percent(&model, &loops_of_relays(&[0.4, 0.85]));
-    assert!(unseen < 5.0, "{unseen}");
+    let unseen = error_percent(&model, &loops_of_relays(&[0.7]));
+    assert!(unseen < 10.0, "{unseen}");
 }
 
 /// Closed loops of electrical steel of high loss, far below saturation: each asks for what the other does not show.
