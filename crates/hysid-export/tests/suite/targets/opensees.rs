@@ -31,7 +31,7 @@ const DRIVER: &str = include_str!("opensees/driver.cpp.txt");
 
 /// True for laws with a resonance of their own.
 fn has_inertia(name: &str) -> bool {
-    name.starts_with("hysteretic-")
+    name.starts_with("hysteretic-") || name.contains("resonance=true")
 }
 
 #[test]
