@@ -11,6 +11,7 @@
 //!
 //! `theory.md (1.5)` on these pages is the number of an equation in `docs/theory.md` of the repository.
 
+mod conversions;
 pub mod data;
 pub mod elementary;
 pub mod error;

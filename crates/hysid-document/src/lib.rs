@@ -20,7 +20,6 @@
 
 pub mod chart;
 pub mod convergence;
-mod conversions;
 mod escape;
 pub mod html;
 mod json;

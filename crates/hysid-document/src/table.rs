@@ -1,7 +1,7 @@
 //! Tables of typed cells.
 
-use crate::conversions::from;
 use crate::number::number;
+use hysid_core::from;
 
 /// Significant digits of a number for which none are named.
 const DIGITS: u8 = 3;

@@ -1,6 +1,6 @@
 //! Text with emphasis, code and links.
 
-use crate::conversions::from;
+use hysid_core::from;
 
 /// A line or a paragraph.
 #[derive(Debug, Clone, Default, PartialEq)]

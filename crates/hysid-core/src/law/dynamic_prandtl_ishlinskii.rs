@@ -23,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{LARGEST_VALUE, Result};
 use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::hysteretic_dynamics::{DAMPING_RATIOS, Propagation};
+use crate::law::modified_prandtl_ishlinskii::dead_zone;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -43,14 +44,6 @@ pub struct DeadZone {
     pub threshold: f64,
     /// `s`, in the unit of the output divided by that of the input.
     pub weight: f64,
-}
-
-impl DeadZone {
-    /// `S_d(u)`, in the unit of the input.
-    #[inline(always)]
-    pub fn value(threshold: f64, u: f64) -> f64 {
-        if threshold > 0.0 { (u - threshold).max(0.0) } else { (u - threshold).min(0.0) }
-    }
 }
 
 /// A relaxation element behind the plays and beside them.
@@ -152,7 +145,7 @@ impl Law for DynamicPrandtlIshlinskii {
         }
         let mut m = self.plays.step(&mut state.plays, Sample { x: u, ..sample });
         for zone in &self.dead_zones {
-            m += zone.weight * DeadZone::value(zone.threshold, u);
+            m += zone.weight * dead_zone(u, zone.threshold);
         }
         let m_risen = if state.has_begun { m - m_before } else { 0.0 };
         let [of_plays, of_input] = &mut state.stresses;

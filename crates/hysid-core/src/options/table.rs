@@ -419,8 +419,8 @@ pub const OPTIONS: [FitOption; 34] = [
     FitOption {
         name: "lagged_input",
         group: Classical,
-        meaning: "Use dynamic-prandtl-ishlinskii with a lag before its plays, and the input beside them: for what depends \
-                  on a quantity that the input moves, such as the charge of a cell",
+        meaning: "Use dynamic-prandtl-ishlinskii with a lag before its plays and the input beside them, for an output that \
+                  follows the integral of the input, as the voltage of a cell follows its charge",
         values: Values::Flag,
         default: |_, _| Preset::Off,
         used_by: of_none,

@@ -2,6 +2,8 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use hysid_core::from;
+
 use crate::program::Array;
 
 /// Name of a variable: its number.
@@ -134,16 +136,6 @@ impl<'e> Part<'e> {
             Self::Truth(Truth::Not(a)) => vec![Self::Truth(a)],
         }
     }
-}
-
-macro_rules! from {
-    ($($given:ty => $made:ident: $value:ident => $of_it:expr;)*) => {$(
-        impl From<$given> for $made {
-            fn from($value: $given) -> Self {
-                $of_it
-            }
-        }
-    )*};
 }
 
 from! {

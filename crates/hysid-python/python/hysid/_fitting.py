@@ -206,8 +206,8 @@ def fit(
     resonance : bool, optional
         Use dynamic-prandtl-ishlinskii with a resonance behind its plays. Default: off.
     lagged_input : bool, optional
-        Use dynamic-prandtl-ishlinskii with a lag before its plays, and the input beside them: for what depends
-        on a quantity that the input moves, such as the charge of a cell. Default: off.
+        Use dynamic-prandtl-ishlinskii with a lag before its plays and the input beside them, for an output that
+        follows the integral of the input, as the voltage of a cell follows its charge. Default: off.
     time_limit : float, optional
         Time in seconds after which to stop and keep the best model so far.
     threads : int, optional

@@ -1,9 +1,10 @@
 //! Dynamic Prandtl-Ishlinskii: plays between a lag, relaxation elements and a resonance.
 
-use hysid_core::law::dynamic_prandtl_ishlinskii::{DynamicPrandtlIshlinskii, Resonance};
+use hysid_core::law::dynamic_prandtl_ishlinskii::{DeadZone, DynamicPrandtlIshlinskii, Resonance};
 use hysid_core::law::hysteretic_dynamics::Mode;
 
 use super::hysteretic_dynamics::Factors;
+use super::modified_prandtl_ishlinskii::add_dead_zones;
 use super::prandtl_ishlinskii::sum_of_plays;
 use crate::description::{Sample, limited};
 use crate::program::Builder;
@@ -32,17 +33,8 @@ pub(super) fn step(
     let plays = &law.plays;
     let sum = sum_of_plays(builder, name, plays.thresholds(), plays.weights(), &u);
     let m = builder.variable(plays.constant() + plays.linear() * u.clone() + sum);
-    if !law.dead_zones.is_empty() {
-        let of = |pick: fn(&_) -> f64| law.dead_zones.iter().map(pick).collect::<Vec<f64>>();
-        let thresholds = builder.constants(&format!("{name}_dead_zone"), of(|zone| zone.threshold));
-        let weights = builder.constants(&format!("{name}_dead_zone_weight"), of(|zone| zone.weight));
-        builder.each(0_usize, law.dead_zones.len(), |builder, j| {
-            let d = builder.value(thresholds.at(&j));
-            let beyond = builder.value(&u - &d);
-            let zone = d.above(0.0).choose(beyond.max(0.0), beyond.min(0.0));
-            builder.assign(m, Real::from(m) + weights.at(&j) * zone);
-        });
-    }
+    let of = |pick: fn(&DeadZone) -> f64| law.dead_zones.iter().map(pick).collect::<Vec<f64>>();
+    add_dead_zones(builder, name, &of(|zone| zone.threshold), &of(|zone| zone.weight), &u, m);
     let m = Real::from(m);
     let f = builder.variable(&m);
     let beside = builder.variable(law.direct * x.clone());

@@ -77,15 +77,16 @@ impl Chosen<'_, '_, '_> {
 
     /// Leaves out candidates that do not fit the data, where the folds tell nothing.
     pub(super) fn drops_what_does_not_fit(&mut self) {
+        if self.options.only.is_some() {
+            return;
+        }
         let all: Vec<Option<Fitness>> = self.trials.iter().map(|trial| self.fitness(trial)).collect();
         let lowest =
             |figure: fn(&Fitness) -> f64| all.iter().flatten().map(figure).fold(f64::INFINITY, f64::min);
         let most = FITS * lowest(|one| one.training);
-        let tells = self.options.only.is_some() || lowest(|one| one.score) < TELLS_NOTHING;
-        if tells || !most.is_finite() {
-            return;
+        if most.is_finite() && lowest(|one| one.score) >= TELLS_NOTHING {
+            self.keep(all.iter().map(|one| one.is_some_and(|one| one.training <= most)).collect());
         }
-        self.keep(all.iter().map(|one| one.is_some_and(|one| one.training <= most)).collect());
     }
 
     fn keep(&mut self, keeps: Vec<bool>) {

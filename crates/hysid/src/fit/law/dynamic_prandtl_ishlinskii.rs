@@ -16,6 +16,7 @@ use crate::law::dynamic_prandtl_ishlinskii::{
     DeadZone, DynamicPrandtlIshlinskii, MOST_RELAXATIONS, Relaxation, Resonance,
 };
 use crate::law::hysteretic_dynamics::Propagation;
+use crate::law::modified_prandtl_ishlinskii::dead_zone;
 use crate::law::play_weights::MOST_PLAYS;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::series::{Series, work};
@@ -82,20 +83,24 @@ struct Frame {
     dead_zones: Vec<f64>,
 }
 
-/// The factors of a time step.
+/// The factors of a time step, without allocation: the rows of a thinned record have steps of many lengths.
 struct Factors {
     time_step: f64,
     lag: (f64, f64),
-    relaxations: Vec<(f64, f64)>,
+    relaxations: [(f64, f64); MOST_RELAXATIONS],
     resonance: Option<Propagation>,
 }
 
 impl Factors {
     fn of(frame: &Frame, time_step: f64) -> Self {
+        let mut relaxations = [(1.0, 1.0); MOST_RELAXATIONS];
+        for (factors, &(tau, _)) in relaxations.iter_mut().zip(&frame.relaxations) {
+            *factors = decay(time_step, tau);
+        }
         Self {
             time_step,
-            lag: decay(time_step, frame.lag.unwrap_or(f64::INFINITY)),
-            relaxations: frame.relaxations.iter().map(|&(tau, _)| decay(time_step, tau)).collect(),
+            lag: frame.lag.map_or((1.0, 1.0), |tau| decay(time_step, tau)),
+            relaxations,
             resonance: frame.resonance.map(|of| Propagation::new(of.frequency, of.damping, time_step)),
         }
     }
@@ -156,7 +161,7 @@ impl Dynamic {
         let lag = lag.first().copied();
         let range = self.range(lag);
         let spacing = range / (self.operators as f64 + BEYOND);
-        let dead_zone = |place: usize| range * place as f64 / (self.dead_zones + 1) as f64;
+        let bend = |place: usize| range * place as f64 / (self.dead_zones + 1) as f64;
         Frame {
             lag,
             relaxations: relaxations.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect(),
@@ -164,9 +169,7 @@ impl Dynamic {
                 .has_resonance
                 .then(|| Resonance { frequency: resonance[0], damping: resonance[1] }),
             plays: (1..=self.operators).map(|place| spacing * place as f64).collect(),
-            dead_zones: (1..=self.dead_zones)
-                .flat_map(|place| [dead_zone(place), -dead_zone(place)])
-                .collect(),
+            dead_zones: (1..=self.dead_zones).flat_map(|place| [bend(place), -bend(place)]).collect(),
         }
     }
 
@@ -261,10 +264,10 @@ impl Family for Dynamic {
         let of_memory = 1 + frame.dead_zones.len() + frame.plays.len();
         let operations = of_memory * (4 + 4 * self.relaxations + if self.has_resonance { 16 } else { 0 });
         let mut plays = vec![0.0; frame.plays.len()];
-        // The memory's features at this sample and the one before, with and without relaxation.
+        // The memory's features at this sample and the one before, and what drove the resonance before.
         let mut features = vec![0.0; of_memory];
         let mut before = features.clone();
-        let mut relaxed = features.clone();
+        let mut forces_before = features.clone();
         let mut stresses = vec![vec![0.0; of_memory]; self.relaxations];
         let mut motions = vec![[0.0; 2]; if self.has_resonance { of_memory } else { 0 }];
         let (mut lag, mut x_before, mut input_stresses) = (0.0, 0.0, vec![0.0; self.relaxations]);
@@ -288,7 +291,7 @@ impl Family for Dynamic {
             features[0] = u;
             let (curve, of_plays) = features[1..].split_at_mut(frame.dead_zones.len());
             for (feature, &threshold) in curve.iter_mut().zip(&frame.dead_zones) {
-                *feature = DeadZone::value(threshold, u);
+                *feature = dead_zone(u, threshold);
             }
             for ((feature, play), &r) in of_plays.iter_mut().zip(&mut plays).zip(&frame.plays) {
                 *play = play::follow(*play, u, r);
@@ -310,11 +313,11 @@ impl Family for Dynamic {
                 }
             }
             if let Some(step) = &factors.resonance {
-                for ((motion, relaxed), force) in motions.iter_mut().zip(&mut relaxed).zip(of_row) {
-                    let of_now = *force;
-                    *motion = if index > 0 { step.moved(*motion, [*relaxed, of_now]) } else { [of_now, 0.0] };
-                    *relaxed = of_now;
-                    *force = motion[0];
+                for ((motion, before), feature) in motions.iter_mut().zip(&mut forces_before).zip(of_row) {
+                    let force = *feature;
+                    *motion = if index > 0 { step.moved(*motion, [*before, force]) } else { [force, 0.0] };
+                    *before = force;
+                    *feature = motion[0];
                 }
             }
             if self.has_lag {

@@ -1,5 +1,8 @@
 //! Conversions that are an expression each.
 
+/// Makes `From` of rows `given => made: value => expression;`.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! from {
     ($($given:ty => $made:ident: $value:ident => $of_it:expr;)*) => {$(
         impl From<$given> for $made {
@@ -9,4 +12,3 @@ macro_rules! from {
         }
     )*};
 }
-pub(crate) use from;
