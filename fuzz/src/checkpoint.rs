@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 
 use hysid::data::rate::RateMethod;
-use hysid::fit::network::{Checkpoint, fit, resume};
+use hysid::fit::network::{fit, resume};
+use hysid::fit::progress::Checkpoint;
 use hysid::network::{Family, Sizes};
 use hysid::options::network::{FitOptions, Trainer};
 

@@ -4,7 +4,8 @@
 use std::ops::ControlFlow;
 
 use hysid::data::record::Record;
-use hysid::fit::network::{Checkpoint, fit, resume};
+use hysid::fit::network::{fit, resume};
+use hysid::fit::progress::Checkpoint;
 use hysid::model::Model;
 use hysid::network::{Architecture, Drive, Family, Layout, Network, Sizes};
 use hysid::options::network::{FitOptions, Trainer};

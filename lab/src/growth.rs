@@ -20,7 +20,7 @@ use hysid::model::input_transform::InputTransform;
 use hysid::model::{Ensemble, Found, Group, Model, Node, NodeKind, Predictor, Weights};
 use hysid::network::scaling::Scaling;
 use hysid::options::FitSpec;
-use hysid::options::auto::AutoOptions;
+use hysid::options::fit_spec::AutoOptions;
 use hysid::options::network::FitOptions;
 use hysid::termination::Termination;
 use hysid_core::elementary::{ln, square};

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow};
-use hysid::fit::network::{Checkpoint, Progress};
+use hysid::fit::progress::{Checkpoint, Progress};
 use hysid_files::{Destination, Failure, Lock};
 
 use crate::files;

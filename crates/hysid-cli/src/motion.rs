@@ -1,5 +1,6 @@
 //! The measured motion of a mass in a table, and the restoring force that follows from it.
 
+mod acceleration;
 mod columns;
 mod table;
 mod text;

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use hysid::fit::network::Progress;
+use hysid::fit::progress::Progress;
 use hysid::significant::Significant;
 use hysid_document::plain::WIDTH;
 use hysid_document::progress::{Line, Remaining, in_words, share_done};

@@ -4,7 +4,8 @@ use std::mem;
 use std::ops::ControlFlow;
 
 use anyhow::{Result, anyhow, bail};
-use hysid::data::record::{Fingerprint, Likeness, Record};
+use hysid::data::likeness::Likeness;
+use hysid::data::record::{Fingerprint, Record};
 use hysid::data::warning::Warning;
 use hysid::model::{BandLevel, Model, Prediction, Simulation};
 use hysid_records::{

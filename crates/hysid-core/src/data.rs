@@ -2,7 +2,9 @@
 
 pub mod column;
 pub mod initial_state;
+pub mod likeness;
 pub mod metrics;
+pub mod part;
 pub mod polyline;
 pub mod rate;
 pub mod record;

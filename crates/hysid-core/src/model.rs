@@ -29,9 +29,10 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use crate::data::initial_state::InitialState;
+use crate::data::likeness::Likeness;
 use crate::data::metrics::{ErrorSums, Errors};
 use crate::data::rate::RateMethod;
-use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, Likeness, Record};
+use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, Record};
 use crate::data::unit::{of_column, pure_quotient};
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, OptionError, Result};

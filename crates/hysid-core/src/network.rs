@@ -45,6 +45,7 @@
 //! direct path and the constant are ours.
 
 mod architecture;
+mod block;
 #[doc(hidden)]
 pub mod decay;
 pub mod free_run;

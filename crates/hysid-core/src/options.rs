@@ -1,9 +1,11 @@
 //! Options of a fit: models by their names, and the options of each. A model file contains those of its fit.
 
-pub mod auto;
 mod cautions;
+mod checks;
 pub mod chosen;
 pub mod classical;
+pub(crate) mod default_words;
+pub mod effort;
 pub mod fit_spec;
 pub mod input_options;
 pub mod model_name;

@@ -28,7 +28,8 @@ mod stretches;
 use std::fmt;
 
 pub use of_model::{AtAmplitude, ModelResponses};
-pub use segments::{Segments, Window, resolution};
+pub use segments::{Segments, resolution};
+pub use spectra::Window;
 
 use hysid_core::elementary::{atan2, hypot};
 

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use hysid::fit;
 use hysid::fit::cross_validate;
-use hysid::fit::network::{Observer, Progress};
+use hysid::fit::progress::{Observer, Progress};
 use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};
 use hysid::options::table::OPTIONS;
 use hysid::options::{self, ModelName};

@@ -5,7 +5,7 @@ use hysid_core::data::record::{Difference, Protocol, Speeds, protocols};
 use hysid_core::data::summary::Summary;
 use hysid_core::network::Architecture;
 use hysid_core::options::FitSpec;
-use hysid_core::options::auto::AutoOptions;
+use hysid_core::options::fit_spec::AutoOptions;
 use hysid_core::significant::Significant;
 
 use crate::data::Data;

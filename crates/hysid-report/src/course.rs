@@ -1,6 +1,6 @@
 //! The course of a fit: the error so far, and what is being done, in words.
 
-use hysid::fit::network::Progress;
+use hysid::fit::progress::Progress;
 use hysid::model::history::Phase;
 use hysid::options::network::Method;
 

@@ -3,8 +3,8 @@
 use hysid::data::rate::RateMethod;
 use hysid::model::Model;
 use hysid::options::FitSpec;
-use hysid::options::auto::AutoOptions;
 use hysid::options::classical::ClassicalOptions;
+use hysid::options::fit_spec::AutoOptions;
 use hysid::options::network::FitOptions;
 use hysid_document::{Part, count, number};
 

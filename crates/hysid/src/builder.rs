@@ -10,7 +10,7 @@ use crate::data::metrics::Errors;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::network::Progress;
+use crate::fit::progress::Progress;
 use crate::fit::{cross_validate, identify};
 use crate::model::Model;
 use crate::options::chosen::{NamedOptions, RateChoice};

@@ -1,34 +1,23 @@
 //! Identification of any model by its name: a network, a classical model, or `auto`.
 
 pub mod auto;
-mod held_out;
 pub(crate) mod initial_state;
 pub mod intervals;
 pub mod law;
 mod memory_need;
 pub mod network;
+mod one_model;
+pub mod progress;
+mod random_start;
+pub(crate) mod sums;
 mod validate;
-
-use std::borrow::Cow;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Channel, DataProblem, Result};
-use crate::fit::initial_state::Wanted;
-use crate::fit::law::search::SearchProgress;
-use crate::fit::network::random_stops::fit_random_stops;
-use crate::fit::network::{Fitted, Observer, Present, Progress, SharedObserver};
-use crate::law::facts::Origin;
-use crate::model::history::{HistoryPoint, Phase, Run};
-use crate::model::input_transform::Transformed;
-use crate::model::{Found, Model, Predictor};
+use crate::fit::progress::{Fitted, Observer};
 use crate::options::FitSpec;
-use crate::options::classical::{ClassicalModel, ClassicalOptions};
-use crate::options::network::Method;
-use crate::stop_check::StopCheck;
-use crate::termination::Termination;
 
-pub use held_out::HeldOutRows;
 pub use memory_need::{MemoryNeed, memory_need};
 pub use validate::cross_validate;
 
@@ -40,12 +29,8 @@ pub use validate::cross_validate;
 pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
     check_warm_up(data, request)?;
     match request {
-        FitSpec::Network(options) => network::fit(data, options, observer),
         FitSpec::Auto(options) => auto::fit(data, options, observer),
-        FitSpec::Classical(options) if options.model == ClassicalModel::RandomStops => {
-            random_stops(data, options, observer)
-        }
-        FitSpec::Classical(options) => of_law(data, options, observer),
+        FitSpec::Network(_) | FitSpec::Classical(_) => one_model::identify(data, request, observer),
     }
 }
 
@@ -66,90 +51,4 @@ fn check_warm_up(data: &Dataset, request: &FitSpec) -> Result<()> {
         true => Err(data.records()[0].defect(None, Some(Channel::Output), problem)),
         false => Ok(()),
     }
-}
-
-fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
-    let begun = begun(data, options, Origin::OfData, observer)?;
-    let data = begun.as_ref();
-    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
-    let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
-    let is_to_stop = || observer.is_to_stop();
-    let stop = StopCheck::new(&is_to_stop);
-    let wanted = ClassicalOptions { rate: seen.rate, ..options.clone() };
-    let found = fit_random_stops(&seen.data, &wanted, stop)?;
-    let body = Predictor::Network { network: found.network, scaling: found.scaling };
-    finished(data, options, &seen, body, 1, observer.termination(Termination::Converged), Vec::new())
-}
-
-fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
-    let mut history = Vec::new();
-    let origin = options.model.facts().origin;
-    let begun = begun(data, options, origin, observer)?;
-    let data = begun.as_ref();
-    let seen = Transformed::of(data, &options.shaping, options.rate, origin)?;
-    let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
-    let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
-    let is_to_stop = || observer.is_to_stop();
-    let stop = StopCheck::new(&is_to_stop);
-    let mut of_round = |progress: SearchProgress| {
-        if !progress.train_nrmse_percent.is_nan() {
-            history.push(HistoryPoint {
-                epoch: progress.round,
-                evaluations: progress.evaluations,
-                train_nrmse_percent: progress.train_nrmse_percent,
-            });
-        }
-        let so_far = || {
-            let body = Predictor::Law(progress.law_so_far()?);
-            let runs = vec![run_of_law(history.clone(), Termination::Stopped)];
-            let evaluations = progress.evaluations;
-            let fitted = finished(data, options, &seen, body, evaluations, Termination::Stopped, runs);
-            Some(fitted.ok()?.model)
-        };
-        observer.tell(&Progress::of_search(options.model, &progress).with_state(Present::Law(&so_far)))
-    };
-    let found = law::fit(&seen.data, &of_seen, &mut of_round, stop)?;
-    let termination = observer.termination(found.termination);
-    let runs = if history.is_empty() { Vec::new() } else { vec![run_of_law(history, termination)] };
-    let body = Predictor::Law(found.law);
-    let fitted = finished(data, options, &seen, body, found.evaluations, termination, runs)?;
-    Ok(Fitted { searched: found.searched, ..fitted })
-}
-
-fn run_of_law(history: Vec<HistoryPoint>, termination: Termination) -> Run {
-    Run {
-        phase: Phase::AllData,
-        start: 0,
-        method: Method::LeastSquares,
-        history,
-        termination,
-        fold: None,
-        validation_nrmse_percent: None,
-    }
-}
-
-/// The data in the initial state that is asked for.
-fn begun<'d>(
-    data: &'d Dataset,
-    options: &ClassicalOptions,
-    origin: Origin,
-    observer: &mut Observer<'_>,
-) -> Result<Cow<'d, Dataset>> {
-    let ClassicalOptions { shaping, rate, seed, .. } = *options;
-    Wanted { state: shaping.initial_state, origin, rate, seed }.of(data, observer)
-}
-
-fn finished(
-    data: &Dataset,
-    options: &ClassicalOptions,
-    seen: &Transformed,
-    body: Predictor,
-    evaluations: usize,
-    termination: Termination,
-    runs: Vec<Run>,
-) -> Result<Fitted> {
-    let request = FitSpec::Classical(ClassicalOptions { near: Vec::new(), ..options.clone() });
-    let found = Found { runs, ..Found::of(request, termination) };
-    let model = Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?;
-    Ok(Fitted::of(model, evaluations))
 }

@@ -47,7 +47,7 @@ mod time_limit;
 pub mod validation;
 
 pub use builder::{Compared, Fit, compare};
-pub use fit::network::Progress;
+pub use fit::progress::Progress;
 pub use hysid_core::data::metrics::Errors;
 pub use hysid_core::data::record::{ColumnNames, Dataset, Record};
 pub(crate) use hysid_core::linear_algebra;

@@ -1,7 +1,6 @@
 //! The undisturbed run as branches between turning points, with the turning points that enclose each of them.
 
-use super::disturbances::range;
-use super::paths::SUBSTEPS;
+use super::paths::{SUBSTEPS, range};
 
 /// Reversals below this share of the input's range are none.
 const SMALLEST: f64 = 0.02;

@@ -3,7 +3,7 @@
 use hysid_core::elementary::{exp, powi, sin};
 
 use super::chance::Chance;
-use super::paths::{Path, SUBSTEPS};
+use super::paths::{Path, SUBSTEPS, range};
 use super::run::Run;
 
 /// What is measured: rows with input and output, most with time.
@@ -179,11 +179,6 @@ impl Disturbance {
             }
         }
     }
-}
-
-/// Smallest and largest value.
-pub fn range(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
 }
 
 fn add(values: &mut [f64], size: f64, mut noise: impl FnMut() -> f64) {

@@ -204,7 +204,7 @@ fn congruency(run: &Branches) -> Option<f64> {
 
 fn height(values: impl Iterator<Item = f64>) -> f64 {
     let values: Vec<f64> = values.collect();
-    let (low, high) = super::disturbances::range(&values);
+    let (low, high) = super::paths::range(&values);
     high - low
 }
 
@@ -272,7 +272,7 @@ fn odd_symmetry(run: &Branches) -> Option<f64> {
 
 /// Slope of the last tenth over the largest of a tenth, mean of the branches to either end, the smaller of both ends.
 fn saturation(run: &Branches) -> Option<f64> {
-    let (low, high) = super::disturbances::range(run.inputs);
+    let (low, high) = super::paths::range(run.inputs);
     let end = |rising: bool| {
         let edge = if rising { high } else { low };
         let reaches = |b: &&Branch| {

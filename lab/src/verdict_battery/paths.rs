@@ -221,6 +221,11 @@ pub fn all() -> Vec<Path> {
     ]
 }
 
+/// Smallest and largest value.
+pub fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,5 +1,5 @@
-//! Circles among the rooms of a crate (its top-level modules) and among the files of the Python package, found from
-//! the source. Tests may look upwards; everything else may not.
+//! Circles among the rooms of a crate (its top-level modules), among the parts of a room (its modules), and among the
+//! files of the Python package, found from the source. Tests may look upwards; everything else may not.
 
 mod python;
 mod rust;
@@ -29,6 +29,13 @@ impl Uses {
         let first = self.0.entry(from.into()).or_default().entry(to.into()).or_insert_with(|| place.clone());
         if place < *first {
             *first = place;
+        }
+    }
+
+    /// Leaves out uses of what is no room.
+    fn keep(&mut self, rooms: &BTreeSet<String>) {
+        for of_room in self.0.values_mut() {
+            of_room.retain(|to, _| rooms.contains(to));
         }
     }
 
@@ -84,7 +91,7 @@ impl Uses {
 pub fn found(files: &[SourceFile]) -> Result<Vec<Violation>> {
     let mut found = Vec::new();
     for root in files.iter().filter_map(|file| rust::source_folder(&file.path)).collect::<BTreeSet<_>>() {
-        found.extend(rust::uses(&root, files)?.violations());
+        found.extend(rust::uses(&root, files)?.iter().flat_map(Uses::violations));
     }
     for root in files.iter().filter_map(|file| python::package_folder(&file.path)).collect::<BTreeSet<_>>() {
         found.extend(python::uses(&root, files).violations());
@@ -124,6 +131,26 @@ mod tests {
             let expected = "a/src/lower/inner.rs:1: a circle, lower -> upper -> lower: \
                             a/src/lower/inner.rs:1 uses upper, a/src/upper.rs:2 uses lower";
             assert_eq!(found, [expected], "{back}");
+        }
+    }
+
+    #[test]
+    fn a_circle_of_the_parts_of_a_room_is_found() {
+        for back in [
+            "use crate::room::upper::Thing;",
+            "use crate::{other::X, room::{lower::Y, upper::Thing}};",
+            "use super::super::upper::Thing;",
+            "fn f() { let a = vec![1, crate::room::upper::f()]; }",
+        ] {
+            let found = circles(&[
+                ("a/src/lib.rs", "mod room; mod other;"),
+                ("a/src/room.rs", "mod upper; mod lower;"),
+                ("a/src/room/upper.rs", "use super::lower::X;"),
+                ("a/src/room/lower.rs", "mod inner;"),
+                ("a/src/room/lower/inner.rs", back),
+            ]);
+            assert_eq!(found.len(), 1, "{back}: {found:?}");
+            assert!(found[0].contains("a circle, lower -> upper -> lower"), "{back}: {found:?}");
         }
     }
 

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
 use hysid::diagnosis::residuals::Residuals;
-use hysid::fit::network::Checkpoint;
+use hysid::fit::progress::Checkpoint;
 use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, anyhow};
 use hysid::data::unit;
 use hysid::fit::identify;
-use hysid::fit::network::Progress;
+use hysid::fit::progress::Progress;
 use hysid::model::Model;
 use hysid::significant::Significant;
 use hysid::termination::Termination;

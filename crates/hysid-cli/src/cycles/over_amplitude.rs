@@ -5,8 +5,10 @@ use hysid_document::chart::thin::Point;
 use hysid_document::{Axis, Chart, Colour, Curve, number, unit};
 
 use super::Cycles;
-use super::pictures::MOST_CURVES;
-use super::text::present;
+use super::table::present;
+
+/// Records and reversal curves that are drawn at most.
+pub(super) const MOST_CURVES: usize = 60;
 
 const MOST_DOTS: usize = 600;
 

@@ -2,8 +2,8 @@
 
 use hysid_document::{Colour, Page, Part, Text, number, unit};
 
-use super::table::{has_backbone, notes, shown};
-use super::text::{begin, both_ends, present};
+use super::table::{has_backbone, notes, present, shown};
+use super::text::{begin, both_ends};
 use super::{Cycles, curves, over_amplitude, pictures};
 
 /// Rows of a long table at each end.

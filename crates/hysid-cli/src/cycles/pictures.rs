@@ -6,12 +6,9 @@ use hysid_document::chart::{HeatCell, heat_map};
 use hysid_document::{Chart, Colour, Curve, unit};
 
 use super::Cycles;
-use super::over_amplitude::backbone;
+use super::over_amplitude::{MOST_CURVES, backbone};
 
 const LOOP_POINTS: usize = 6000;
-
-/// Records and reversal curves that are drawn at most.
-pub(super) const MOST_CURVES: usize = 60;
 
 /// All loops, the last complete cycle, and the backbone.
 pub fn loops(cycles: &Cycles) -> Chart {

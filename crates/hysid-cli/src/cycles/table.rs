@@ -108,3 +108,10 @@ pub fn notes(cycles: &Cycles) -> Vec<String> {
     };
     all.into_iter().map(said).chain(cycles.table.notes.iter().cloned()).collect()
 }
+
+/// Figures of the field that any cycle has, in the order of the list.
+pub fn present(cycles: &Cycles, names: &[&str]) -> Vec<&'static Figure> {
+    let has = |figure: &&Figure| cycles.table.cycles.iter().any(|row| (figure.of)(row).is_some());
+    let find = |name: &&str| hysid::diagnosis::cycles::FIGURES.iter().find(|figure| figure.name == *name);
+    names.iter().filter_map(find).filter(has).collect()
+}

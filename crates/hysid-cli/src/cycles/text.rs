@@ -1,12 +1,12 @@
 //! The cycles on a terminal: the main figures, both ends of a long table, and what to know of them.
 
-use hysid::diagnosis::cycles::{Field, Figure};
+use hysid::diagnosis::cycles::Field;
 use hysid::significant::Significant;
 use hysid_document::plain::{WIDTH, indented, rendered, wrapped};
 use hysid_document::{Cell, Part, Table, count};
 
 use super::Cycles;
-use super::table::{notes, shown};
+use super::table::{notes, present, shown};
 use hysid_report::quantities::text_label;
 
 /// Rows shown at each end of a long table.
@@ -68,13 +68,6 @@ pub fn begin(cycles: &Cycles) -> &'static str {
         Division::Reversals => "at turning points",
         Division::Start => "where the input passes its first value",
     }
-}
-
-/// Figures of the field that any cycle has, in the order of the list.
-pub fn present(cycles: &Cycles, names: &[&str]) -> Vec<&'static Figure> {
-    let has = |figure: &&Figure| cycles.table.cycles.iter().any(|row| (figure.of)(row).is_some());
-    let find = |name: &&str| hysid::diagnosis::cycles::FIGURES.iter().find(|figure| figure.name == *name);
-    names.iter().filter_map(find).filter(has).collect()
 }
 
 pub fn both_ends(rows: usize, at_each_end: usize) -> impl Iterator<Item = usize> {

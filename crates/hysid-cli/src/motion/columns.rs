@@ -2,14 +2,14 @@
 //! name and unit, accelerations never: only their user knows what they are relative to.
 
 use anyhow::{Result, anyhow, bail, ensure};
-use hysid::data::column::{Domain, Part};
+use hysid::data::part::{Domain, Part};
 use hysid::data::unit;
 use hysid::error::MotionColumn;
 use hysid_document::visible::{clipped, listed};
 use hysid_records::{Kind, Roles, Usage};
 use hysid_tables::{Table, is_record};
 
-use super::units;
+use super::acceleration::of_acceleration;
 use crate::arguments::MotionOptions;
 
 /// All columns of a motion, in the order in which records keep them.
@@ -259,5 +259,5 @@ fn may_be_acceleration(name: &str) -> bool {
     let (quantity, unit) = unit::split(name);
     let lower = quantity.to_lowercase();
     ACCELERATION.iter().any(|word| lower.contains(word))
-        || unit.is_some_and(|unit| unit != "g" && units::of_acceleration(&unit).is_some())
+        || unit.is_some_and(|unit| unit != "g" && of_acceleration(&unit).is_some())
 }

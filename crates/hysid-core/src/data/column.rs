@@ -3,6 +3,7 @@
 
 mod words;
 
+use crate::data::part::{Domain, Part};
 use crate::data::unit;
 
 /// Least number of values from which a course is found.
@@ -77,30 +78,6 @@ pub fn one_signal(a: &[f64], b: &[f64]) -> Option<f64> {
     (correlation.abs() >= ONE_SIGNAL).then_some(correlation)
 }
 
-/// The usual role of a physical quantity in hysteresis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
-    /// An input: displacement, strain, magnetic field, electric voltage.
-    Drives(Domain),
-    /// An output: force, stress, flux density, polarization.
-    Follows(Domain),
-    /// An input of any branch of physics, because its name says so: the excitation of an oscillator.
-    Excites,
-    /// A further input, and no output: temperature, humidity.
-    Accompanies,
-}
-
-/// The branch of physics of a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Domain {
-    /// Displacements and forces.
-    Mechanics,
-    /// Fields and flux densities.
-    Magnetism,
-    /// Voltages and charges.
-    Electricity,
-}
-
 impl Part {
     /// The role that the name and unit of a column indicate; `None` if they indicate none.
     pub fn of(name: &str) -> Option<Self> {
@@ -126,13 +103,6 @@ impl Part {
             }
             (Some(input), Some(Self::Drives(Domain::Magnetism))) => input.domain() == Some(Domain::Mechanics),
             _ => false,
-        }
-    }
-
-    fn domain(self) -> Option<Domain> {
-        match self {
-            Self::Drives(domain) | Self::Follows(domain) => Some(domain),
-            Self::Excites | Self::Accompanies => None,
         }
     }
 }

@@ -13,9 +13,9 @@ mod thinning;
 mod values;
 
 use crate::data::initial_state::lead_in_of_period;
+use crate::data::likeness::Likeness;
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, Result};
-pub use copies::Likeness;
 pub use copies::{Copy, copies, likeness};
 pub use excitation::Excitation;
 pub use fingerprint::Fingerprint;

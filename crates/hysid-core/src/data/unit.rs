@@ -3,7 +3,7 @@
 mod derived;
 mod quantity;
 
-use crate::data::column::Part;
+use crate::data::part::Part;
 use crate::elementary::{log10, powi};
 pub use derived::{energy, power, pure_quotient, quotient};
 use quantity::Quantity;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::data::record::Likeness;
+use crate::data::likeness::Likeness;
 use crate::significant::Significant;
 
 /// A warning, with its likely cause and a remedy.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::model::Weights;
-use crate::options::preset::listed;
+use crate::options::default_words::listed;
 use crate::significant::Significant;
 
 /// Cross-validation of candidates: the folds, and the error of each candidate.

@@ -14,9 +14,10 @@
 
 use pulp::{Simd, WithSimd};
 
+use crate::network::block::Block;
 use crate::network::memory::{BLOCK, Row};
 use crate::network::readout::{Backward, Readout};
-use crate::network::sweep::{Block, Drive, TakeBlock, Walk};
+use crate::network::sweep::{Drive, TakeBlock, Walk};
 use crate::network::{Architecture, Layout};
 use crate::simd::{self, LANES, multiply_add_lanes};
 use crate::stop_check::StopCheck;

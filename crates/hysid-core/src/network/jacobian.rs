@@ -25,9 +25,10 @@
 use pulp::{Simd, WithSimd};
 
 use crate::linear_algebra::{Batch, FewColumns, Gram};
+use crate::network::block::Block;
 use crate::network::memory::{BLOCK, Row};
 use crate::network::readout::{Backward, Readout};
-use crate::network::sweep::{Block, Drive, TakeBlock, Walk};
+use crate::network::sweep::{Drive, TakeBlock, Walk};
 use crate::network::{Architecture, Layout, Network};
 use crate::simd;
 use crate::stop_check::{Pace, StopCheck};

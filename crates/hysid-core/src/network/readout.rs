@@ -10,8 +10,8 @@
 
 use pulp::Simd;
 
+use crate::network::block::Block;
 use crate::network::memory::{BLOCK, LANES, Lanes, Row};
-use crate::network::sweep::Block;
 use crate::network::tanh::{tanh, tanh_of_row};
 use crate::network::{Architecture, Layout};
 use crate::simd::{multiply_add, multiply_add_lanes};

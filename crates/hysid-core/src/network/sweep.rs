@@ -11,7 +11,8 @@ use pulp::{Simd, WithSimd};
 
 use crate::data::polyline::steps_between;
 use crate::network::Architecture;
-use crate::network::memory::{BLOCK, MemoryLayer, MemorySlopes, MemoryState, Row, Sensitivity};
+use crate::network::block::Block;
+use crate::network::memory::{BLOCK, MemoryLayer, MemoryState, Row, Sensitivity};
 use crate::network::readout::Readout;
 use crate::stop_check::{Pace, StopCheck};
 
@@ -55,18 +56,6 @@ pub(crate) struct Walk<'a> {
     pub stop: StopCheck<'a>,
 }
 
-pub(crate) struct Block {
-    /// Scaled inputs by channel; of rows with slopes only.
-    pub u: Vec<Row>,
-    /// Outputs of the memory neurons.
-    pub z: Vec<Row>,
-    /// Outputs of the tanh neurons.
-    pub h: Vec<Row>,
-    /// Derivatives of the memory neurons' outputs by their own parameters, if wanted.
-    pub slopes: MemorySlopes,
-    pub target: Row,
-}
-
 /// Takes blocks. A closure would not be compiled for the instruction set of the calling kernel.
 pub(crate) trait TakeBlock {
     /// Takes the first `rows` rows of a block. What stands beyond them is finite and means nothing.
@@ -88,37 +77,6 @@ impl Walk<'_> {
             workspace.record(simd, drive, target.as_ref(), to);
         }
         workspace.flush(simd, to);
-    }
-}
-
-impl Block {
-    fn new(walk: &Walk) -> Self {
-        let a = walk.architecture;
-        Self {
-            u: vec![Row([0.0; BLOCK]); a.channels()],
-            z: vec![Row([0.0; BLOCK]); a.memory_neurons()],
-            h: vec![Row([0.0; BLOCK]); a.hidden],
-            slopes: if walk.with_slopes { MemorySlopes::new(a) } else { MemorySlopes::default() },
-            target: Row([0.0; BLOCK]),
-        }
-    }
-
-    /// Copies one row, as it is before the readout.
-    #[inline(always)]
-    fn copy_row(&mut self, to: usize, other: &Block, from: usize, with_slopes: bool) {
-        let copy = |to_rows: &mut [Row], from_rows: &[Row]| {
-            for (a, b) in to_rows.iter_mut().zip(from_rows) {
-                a[to] = b[from];
-            }
-        };
-        copy(&mut self.z, &other.z);
-        if with_slopes {
-            copy(&mut self.u, &other.u);
-            copy(&mut self.slopes.weights, &other.slopes.weights);
-            copy(&mut self.slopes.ln_beta, &other.slopes.ln_beta);
-            copy(&mut self.slopes.ln_tau, &other.slopes.ln_tau);
-        }
-        self.target[to] = other.target[from];
     }
 }
 
@@ -144,8 +102,8 @@ impl<'a> Workspace<'a> {
             with_slopes: walk.with_slopes,
             memory: MemoryLayer::new(a, walk.parameters),
             readout: Readout::new(a, walk.parameters),
-            block: Block::new(walk),
-            pending: Block::new(walk),
+            block: Block::new(walk.architecture, walk.with_slopes),
+            pending: Block::new(walk.architecture, walk.with_slopes),
             filled: 0,
         }
     }

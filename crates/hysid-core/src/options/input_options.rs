@@ -3,11 +3,8 @@
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 
 use crate::data::initial_state::InitialState;
-use crate::error::Result;
-use crate::options::table::check;
 
 /// Options of the [input transform](crate::model::input_transform), relative to the data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -45,10 +42,5 @@ impl InputOptions {
     /// True if the input is not transformed and there is no warm-up.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
-    }
-
-    pub(crate) fn check(&self) -> Result<()> {
-        let shares = [("companding", self.companding), ("rate_companding", self.rate_companding)];
-        check(shares.into_iter().filter_map(|(name, share)| Some((name, json!(share?)))))
     }
 }

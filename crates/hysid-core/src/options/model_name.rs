@@ -6,8 +6,16 @@ use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::network::Family;
-use crate::options::auto::Automatic;
 use crate::options::classical::ClassicalModel;
+
+/// The name of the automatic model.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Automatic {
+    /// `auto`
+    #[default]
+    Auto,
+}
 
 /// The name of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,15 +3,12 @@
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 
-use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::error::{Error, OptionError, Result};
+use crate::error::{Error, Result};
 use crate::network::{Architecture, Family, Sizes};
 use crate::options::input_options::{HISTORY_INPUTS, InputOptions};
-use crate::options::table::check;
 
 /// How networks are trained.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -202,26 +199,6 @@ impl FitOptions {
     pub fn deteriorates(&self) -> bool {
         !self.no_deterioration && self.model.deteriorates()
     }
-
-    /// Rejects invalid options.
-    pub fn check(&self) -> Result<()> {
-        check([
-            ("starts", json!(self.starts)),
-            ("epochs", json!(self.epochs)),
-            ("population", json!(self.population)),
-        ])?;
-        check(self.validation.map(|share| ("validation", json!(share))))?;
-        if self.thin < FEWEST_ROWS {
-            return Err(OptionError::value(
-                "thin",
-                self.thin,
-                format!("at least {FEWEST_ROWS} rows are needed"),
-            )
-            .into());
-        }
-        self.shaping.check()?;
-        self.penalties().check()
-    }
 }
 
 /// Default seed.
@@ -256,9 +233,3 @@ pub const ENSEMBLE_PENALTIES: Regularisation = Regularisation { ridge: 3e-4, dec
 
 /// Valid penalties.
 pub const PENALTIES: RangeInclusive<f64> = 0.0..=1e6;
-
-impl Regularisation {
-    pub(crate) fn check(&self) -> Result<()> {
-        check([("ridge", json!(self.ridge)), ("decay", json!(self.decay))])
-    }
-}

@@ -9,13 +9,14 @@ use crate::law::duhem_nn::MOST_STATES;
 use crate::law::hysteretic_dynamics::MOST_PARTS;
 use crate::network::{Family, Sizes};
 use crate::options::ModelName;
-use crate::options::auto::{AutoOptions, Effort, MOST_MEMBERS};
 use crate::options::classical::{ClassicalModel, Sign};
+use crate::options::effort::Effort;
+use crate::options::fit_spec::{AutoOptions, MOST_MEMBERS};
 use crate::options::input_options::SHARES;
 use crate::options::network::{
     FitOptions, MOST_EPOCHS, MOST_STARTS, PENALTIES, POPULATIONS, Regularisation, SEED, Trainer,
 };
-use crate::options::preset::{self, Preset, count_of};
+use crate::options::preset::{Preset, count_of};
 
 /// An option of a fit.
 #[derive(Debug, Clone, Copy)]
@@ -527,11 +528,6 @@ impl FitOption {
     /// Its default for a model; for a network, when it is trained by this trainer.
     pub fn default(&self, model: ModelName, trainer: Trainer) -> Preset {
         (self.default)(model, trainer)
-    }
-
-    /// Its defaults in words, with the models that have them.
-    pub fn default_in_words(&self) -> String {
-        preset::in_words(self)
     }
 
     /// The models that use it, by any trainer; in the order of [`ModelName::all`], after `auto`.

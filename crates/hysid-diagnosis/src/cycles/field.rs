@@ -1,6 +1,6 @@
 //! The field of engineering that data come from.
 
-use hysid_core::data::column::{Domain, Part};
+use hysid_core::data::part::{Domain, Part};
 use hysid_core::data::record::ColumnNames;
 use hysid_core::data::unit;
 use hysid_core::named;

@@ -4,7 +4,7 @@ use hysid_core::data::record::Dataset;
 use hysid_core::elementary::powf;
 
 use super::period::period;
-use super::spectra::{Line, Spectra, mean};
+use super::spectra::{Line, Spectra, Window, mean};
 use super::stretches::{FEWEST_ROWS, Stretch, stretches};
 use super::{FrequencyResponse, NoResponse, ResponsePoint};
 use crate::resonance::LinearOscillator;
@@ -35,15 +35,6 @@ const MOST_DAMPING: f64 = 0.2;
 /// bandwidth `2 ζ f`.
 pub fn resolution(oscillator: &LinearOscillator) -> f64 {
     2.0 * oscillator.damping_ratio.min(MOST_DAMPING) * oscillator.natural_frequency / RESOLUTION
-}
-
-/// How the rows of a segment are weighted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Window {
-    /// All alike: a segment is a period of the input.
-    WholePeriods,
-    /// Hann's window; segments overlap by half.
-    Hann,
 }
 
 /// The segments of data.

@@ -7,7 +7,14 @@ use hysid_core::elementary::cos;
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
-use super::Window;
+/// How the rows of a segment are weighted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Window {
+    /// All alike: a segment is a period of the input.
+    WholePeriods,
+    /// Hann's window; segments overlap by half.
+    Hann,
+}
 
 /// Power of input and output and their product at the multiples of `1/length`, each a sum over the segments so far.
 /// The constant and the highest frequency are left out.

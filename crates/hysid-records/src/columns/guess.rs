@@ -5,7 +5,8 @@
 use std::ops::Range;
 
 use anyhow::{Result, anyhow, bail};
-use hysid_core::data::column::{Course, Domain, one_signal};
+use hysid_core::data::column::{Course, one_signal};
+use hysid_core::data::part::Domain;
 use hysid_core::data::unit;
 use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};

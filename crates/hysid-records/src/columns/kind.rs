@@ -1,7 +1,7 @@
 //! Meaning of a column by its name and unit, as machines and loggers write them: what drives, what follows, and what
 //! only accompanies a test. Words are those of a name, lower case, cut at blanks, signs, digits and capitals.
 
-use hysid_core::data::column::{Domain, Part};
+use hysid_core::data::part::{Domain, Part};
 use hysid_core::data::unit;
 
 /// Meaning of a column by its name.

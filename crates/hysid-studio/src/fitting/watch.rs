@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use hysid::fit::auto::{Standing, Tried};
-use hysid::fit::network::Progress;
+use hysid::fit::progress::Progress;
+use hysid::fit::progress::{Standing, Tried};
 use hysid::model::Model;
 use hysid_document::progress::{Remaining, in_words, share_done};
 

@@ -36,7 +36,6 @@ mod selection;
 mod single;
 mod stages;
 mod trial;
-mod tried;
 mod warm_up;
 mod work;
 
@@ -46,15 +45,14 @@ use crate::data::FEWEST_ROWS;
 use crate::data::metrics::Errors;
 use crate::data::record::{Dataset, Record, Speeds};
 use crate::error::{Error, Result};
-use crate::fit::HeldOutRows;
-use crate::fit::network::{Fitted, Observer};
+use crate::fit::progress::{Fitted, HeldOutRows, Observer};
 use crate::model::input_transform::InputTransform;
 use crate::model::selection::{Beyond, FoundStates, Selection, WarmUp};
 use crate::model::{
     Band, Ensemble, Found, Group, HeldOutRow, Model, Node, NodeKind, Predictor, Provenance, Weights,
 };
 use crate::options::FitSpec;
-use crate::options::auto::AutoOptions;
+use crate::options::fit_spec::AutoOptions;
 use crate::options::table::check;
 use crate::termination::Termination;
 use crate::validation::{PooledErrors, folds_of_loop, folds_to_choose_by};
@@ -65,7 +63,6 @@ use prior::Evidence;
 use selection::selection;
 use stages::Stages;
 use trial::{Bench, HeldOut, Trial, fit_members};
-pub use tried::{Standing, Tried};
 use work::Work;
 
 const MOST_FOLDS: usize = 5;

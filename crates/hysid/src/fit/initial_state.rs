@@ -11,7 +11,7 @@ use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::network::{Observer, Progress, SharedObserver};
+use crate::fit::progress::{Observer, Progress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::model::input_transform::origin;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};

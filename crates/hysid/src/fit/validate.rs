@@ -3,7 +3,7 @@
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::identify;
-use crate::fit::network::{Observer, Progress};
+use crate::fit::progress::{Observer, Progress};
 use crate::options::FitSpec;
 use crate::validation::{CrossValidation, CrossValidator};
 

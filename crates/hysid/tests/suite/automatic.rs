@@ -4,7 +4,7 @@ use crate::scaffold::*;
 use std::sync::OnceLock;
 
 use hysid::elementary::exp;
-use hysid::fit::network::Observer;
+use hysid::fit::progress::Observer;
 use hysid::model::{Ensemble, Group, Node, NodeKind, Predictor, Weights};
 use hysid::validation::folds;
 

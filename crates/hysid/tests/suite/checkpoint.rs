@@ -3,7 +3,8 @@
 
 use crate::scaffold::*;
 use hysid::elementary::{powi, sin};
-use hysid::fit::network::{Checkpoint, fit, resume};
+use hysid::fit::network::{fit, resume};
+use hysid::fit::progress::Checkpoint;
 use hysid::options::network::{Method, Trainer};
 
 fn data() -> Dataset {

@@ -2,7 +2,7 @@
 //! and against the memory laws they must obey or break.
 
 use crate::scaffold::*;
-use hysid::fit::network::random_stops::fit_random_stops;
+use hysid::fit::law::random_stops::fit_random_stops;
 use hysid::law::masing::{Masing, MasingParts};
 use hysid::law::modified_prandtl_ishlinskii::{DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii};
 use hysid::law::prandtl_ishlinskii::PrandtlIshlinskii;

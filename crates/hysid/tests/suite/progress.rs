@@ -3,7 +3,7 @@
 use crate::scaffold::*;
 use std::collections::BTreeMap;
 
-use hysid::fit::auto::Standing;
+use hysid::fit::progress::Standing;
 use hysid::model::history::Phase;
 use serde_json::json;
 

@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 
 use hysid::Error;
 use hysid::elementary::sin;
-use hysid::fit::network::{Checkpoint, fit, resume};
+use hysid::fit::network::{fit, resume};
+use hysid::fit::progress::Checkpoint;
 use serde_json::json;
 
 /// After so long a fit is asked to stop.

@@ -1,4 +1,4 @@
-//! Which room of a crate uses which.
+//! Which room of a crate uses which, and which part of a room.
 
 use std::collections::BTreeMap;
 
@@ -17,10 +17,10 @@ pub fn source_folder(path: &str) -> Option<String> {
     folder.ends_with("src/").then(|| folder.to_owned())
 }
 
-/// What the rooms of the crate in a folder use of each other.
-pub fn uses(folder: &str, files: &[SourceFile]) -> Result<Uses> {
-    let mut uses = Uses::default();
+/// What the rooms of the crate in a folder use of each other, and what the parts of each room use of each other.
+pub fn uses(folder: &str, files: &[SourceFile]) -> Result<Vec<Uses>> {
     let mut re_exported = BTreeMap::new();
+    let mut by_rooms: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     let mut visitors = Vec::new();
     for file in files {
         let Some(inside) = file.path.strip_prefix(folder) else { continue };
@@ -31,27 +31,39 @@ pub fn uses(folder: &str, files: &[SourceFile]) -> Result<Uses> {
             re_exports(&syntax.items, &mut re_exported);
             continue;
         }
+        if !module.contains('/') {
+            re_exports(&syntax.items, by_rooms.entry(module.into()).or_default());
+        }
         let module = module.split('/').map(str::to_owned).collect();
         let mut visitor = Visitor { path: &file.path, module, used: Vec::new() };
         visitor.visit_file(&syntax);
         visitors.push(visitor);
     }
-    for visitor in &visitors {
-        for (name, line) in &visitor.used {
-            let to = re_exported.get(name).unwrap_or(name);
-            let place = Place { path: visitor.path.to_owned(), line: *line };
-            uses.add(&visitor.module[0], to, place);
+    let mut rooms = Uses::default();
+    let mut parts: BTreeMap<&str, Uses> = BTreeMap::new();
+    for Visitor { path, module, used } in &visitors {
+        for (names, line) in used {
+            let place = Place { path: (*path).to_owned(), line: *line };
+            let room = re_exported.get(&names[0]).unwrap_or(&names[0]);
+            rooms.add(&module[0], room, place.clone());
+            if let ([from, part, ..], [to, other, ..]) = (&module[..], &names[..])
+                && from == to
+            {
+                let other = by_rooms.get(to).and_then(|names| names.get(other)).unwrap_or(other);
+                parts.entry(from).or_default().add(part, other, place);
+            }
         }
     }
-    // What is no room is an item of the root itself.
-    let rooms: Vec<String> = visitors.iter().map(|visitor| visitor.module[0].clone()).collect();
-    for of_room in uses.0.values_mut() {
-        of_room.retain(|to, _| rooms.contains(to));
+    // What is no room, and no part of one, is an item of the file above.
+    rooms.keep(&visitors.iter().map(|visitor| visitor.module[0].clone()).collect());
+    for (room, uses) in &mut parts {
+        let of_room = visitors.iter().filter(|visitor| visitor.module[0] == *room);
+        uses.keep(&of_room.filter_map(|visitor| visitor.module.get(1).cloned()).collect());
     }
-    Ok(uses)
+    Ok(std::iter::once(rooms).chain(parts.into_values()).collect())
 }
 
-/// The room that each name comes from which the root gives on.
+/// The room that each name comes from which the root gives on, or the part that it comes from in a room.
 fn re_exports(items: &[Item], names: &mut BTreeMap<String, String>) {
     for item in items {
         if let Item::Use(ItemUse { tree, .. }) = item {
@@ -82,25 +94,28 @@ fn paths(tree: &UseTree) -> Vec<Vec<String>> {
     }
 }
 
-/// Collects the first names of paths from the root of the crate.
+/// Collects the first two names of paths from the root of the crate.
 struct Visitor<'f> {
     path: &'f str,
     /// The module that is visited, from the root.
     module: Vec<String>,
     /// Names, and the lines where they stand.
-    used: Vec<(String, usize)>,
+    used: Vec<(Vec<String>, usize)>,
 }
 
 impl Visitor<'_> {
-    /// Takes a path if it leads through the root.
+    /// Takes a path from the root, or from a module below it.
     fn take(&mut self, path: &[String], line: usize) {
         let climbs = path.iter().take_while(|part| *part == "super").count();
-        let start = match path.first().map(String::as_str) {
-            Some("crate") => 1,
-            Some("super") if climbs == self.module.len() => climbs,
+        let below = match path.first().map(String::as_str) {
+            Some("crate") => &[],
+            Some("super") => &self.module[..self.module.len().saturating_sub(climbs)],
             _ => return,
         };
-        self.used.extend(path.get(start).map(|name| (name.clone(), line)));
+        let names: Vec<String> = below.iter().chain(&path[climbs.max(1)..]).take(2).cloned().collect();
+        if !names.is_empty() {
+            self.used.push((names, line));
+        }
     }
 
     /// Paths inside the arguments of a macro, where the syntax is not known.
@@ -110,9 +125,12 @@ impl Visitor<'_> {
             match token {
                 TokenTree::Group(group) => self.take_tokens(group.stream()),
                 TokenTree::Ident(first) if first == "crate" => {
-                    if let Some(TokenTree::Ident(name)) = tokens.get(index + 3) {
-                        self.take(&["crate".into(), name.to_string()], first.span().start().line);
-                    }
+                    // Between names stand two colons.
+                    let names = tokens[index..].iter().step_by(3).map_while(|token| match token {
+                        TokenTree::Ident(name) => Some(name.to_string()),
+                        _ => None,
+                    });
+                    self.take(&names.take(3).collect::<Vec<_>>(), first.span().start().line);
                 }
                 _ => {}
             }

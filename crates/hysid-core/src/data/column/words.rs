@@ -1,8 +1,8 @@
 //! Names of quantities in several languages, and their usual role in hysteresis: English, German, French, Spanish, Russian,
 //! Chinese and Japanese. A word that means two quantities, such as `Spannung`, is not here: its unit decides.
 
-use super::Domain::{Electricity, Magnetism, Mechanics};
-use super::Part;
+use crate::data::part::Domain::{Electricity, Magnetism, Mechanics};
+use crate::data::part::Part;
 
 /// Lower-case words. Those in Chinese or Japanese may be part of a longer name.
 #[rustfmt::skip]

@@ -2,9 +2,9 @@
 //! out of a longer record. Held-out data are not unseen if a copy of them is in the training data.
 
 use std::collections::HashMap;
-use std::fmt;
 
 use super::Record;
+use crate::data::likeness::Likeness;
 use crate::elementary::square;
 
 /// Largest root mean square difference of two columns that count as one, as a share of the standard
@@ -29,30 +29,6 @@ const UNITS_OF_TIME: [f64; 5] = [1.0, 60.0, 3600.0, 1e3, 1e6];
 
 /// Most places at which records are searched for in others; beyond it only equal records are found.
 const MOST_PLACES: usize = 5_000_000;
-
-/// Similarity of a record to another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Likeness {
-    /// The same numbers.
-    Equal,
-    /// The same numbers except for rounding or little noise.
-    NearlyEqual,
-    /// Equal or nearly equal to some rows of the other.
-    Part,
-    /// The other is equal or nearly equal to some of its rows.
-    Contains,
-}
-
-impl fmt::Display for Likeness {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Equal => "equal to",
-            Self::NearlyEqual => "nearly equal to",
-            Self::Part => "a part of",
-            Self::Contains => "longer than, and contains,",
-        })
-    }
-}
 
 /// Two records that are one measurement, by their indices.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Units as multiples of base units, so that numbers can be converted from one to another.
 
-use crate::data::column::{Domain, Part};
+use crate::data::part::{Domain, Part};
 use crate::elementary::powi;
 
 /// Exponents of length, mass, time, electric current, temperature difference and angle.

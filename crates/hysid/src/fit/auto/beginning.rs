@@ -21,8 +21,8 @@ use crate::law::facts::Origin;
 use crate::model::selection::{FoundStates, WarmUp};
 use crate::optimise::parallel;
 use crate::options::FitSpec;
-use crate::options::auto::AutoOptions;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
+use crate::options::fit_spec::AutoOptions;
 use crate::stop_check::StopCheck;
 use crate::validation::Fold;
 

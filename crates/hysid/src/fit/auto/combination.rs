@@ -245,7 +245,7 @@ mod tests {
     use crate::data::record::{ColumnNames, Dataset, Record};
     use crate::fit::auto::candidates::Candidate;
     use crate::fit::auto::trial::OnFold;
-    use crate::fit::identify;
+    use crate::fit::one_model::identify;
     use crate::network::Family;
     use crate::options::FitSpec;
     use crate::options::classical::{ClassicalModel, ClassicalOptions};

@@ -6,7 +6,7 @@ use super::Chosen;
 use crate::error::Result;
 use crate::fit::auto::candidates::Kind;
 use crate::fit::auto::trial::Trial;
-use crate::fit::network::Fitted;
+use crate::fit::progress::Fitted;
 use crate::model::selection::SingleModel;
 use crate::options::ModelName;
 use crate::options::classical::ClassicalModel;

@@ -28,7 +28,7 @@ use crate::model::input_transform::{InputTransform, origin};
 use crate::model::selection::SingleModel;
 use crate::model::{HeldOutRow, Model, Predictor};
 use crate::optimise::parallel;
-use crate::options::auto::AutoOptions;
+use crate::options::fit_spec::AutoOptions;
 
 /// Starts from which a model is distilled, on everything and on each fold.
 const STARTS: usize = 12;

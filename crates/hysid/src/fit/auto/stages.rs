@@ -10,10 +10,10 @@ use crate::fit::auto::combination::Combination;
 use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::{Bench, Trial};
-use crate::fit::auto::tried::{Standing, Tried};
+use crate::fit::progress::{Standing, Tried};
 use crate::model::Model;
 use crate::optimise::parallel;
-use crate::options::auto::AutoOptions;
+use crate::options::fit_spec::AutoOptions;
 
 /// Candidates that are tried side by side. It does not depend on the number of threads, nor does the result.
 const SIDE_BY_SIDE: usize = 4;

@@ -7,9 +7,8 @@ use std::sync::Mutex;
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::auto::candidates::Candidate;
-use crate::fit::auto::tried::Tried;
-use crate::fit::identify;
-use crate::fit::network::{Fitted, Observer, Progress, SharedObserver};
+use crate::fit::one_model::identify;
+use crate::fit::progress::{Fitted, Observer, Progress, SharedObserver, Tried};
 use crate::model::Model;
 
 pub(super) struct Work<'o, 'a> {

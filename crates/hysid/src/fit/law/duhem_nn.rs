@@ -19,10 +19,9 @@ use crate::data::record::Dataset;
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::grids::spaced;
-use crate::fit::law::search::{
-    Identified, LawSoFar, Memory, SearchObserver, SearchProgress, check_effort, measured, spread, thinned_to,
-};
-use crate::fit::network::least_squares::{OutputProblem, OutputSolution};
+use crate::fit::law::search::{Identified, Memory, check_effort, measured, spread, thinned_to};
+use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
+use crate::fit::sums::output_weights::{OutputProblem, OutputSolution};
 use crate::law::Law;
 use crate::law::duhem_nn::{DuhemNn, Input, LARGEST_WEIGHT, Layout, Run, Shape};
 use crate::law::series::Series;

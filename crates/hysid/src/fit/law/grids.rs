@@ -3,7 +3,7 @@
 use hysid_core::elementary::powf;
 
 use crate::error::{Error, OptionError, Result};
-use crate::fit::law::linear::lowest;
+use crate::fit::sums::lowest;
 use crate::law::thresholds::check_thresholds;
 
 /// Thresholds `r_i = X (i/(n+1))^e` with the largest input `X` (theory.md (7.5)); an error for none or more than 1000.

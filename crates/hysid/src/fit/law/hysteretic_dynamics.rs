@@ -22,7 +22,8 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::grids::spaced;
-use crate::fit::law::search::{Identified, LawSoFar, SearchObserver, SearchProgress, check_effort};
+use crate::fit::law::search::{Identified, check_effort};
+use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
 use crate::law::Classical;
 use crate::law::hysteretic_dynamics::{Dynamics, Element, Form, LIMITS, Layout, Shape};
 use crate::optimise::levenberg_marquardt::LevenbergMarquardt;
@@ -347,7 +348,7 @@ macro_rules! identified_as {
             fn identify(
                 data: &$crate::data::record::Dataset,
                 options: &$crate::options::classical::ClassicalOptions,
-                observer: &mut $crate::fit::law::search::SearchObserver<'_>,
+                observer: &mut $crate::fit::progress::SearchObserver<'_>,
                 stop: $crate::stop_check::StopCheck<'_>,
             ) -> $crate::error::Result<$crate::fit::law::search::Identified<Self>> {
                 use $crate::fit::law::hysteretic_dynamics::{Asked, identify};

@@ -7,9 +7,8 @@ use crate::data::summary::Summary;
 use crate::error::{Channel, DataProblem, Error, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::linearised::{self, LawFamily, Linearised};
-use crate::fit::law::search::{
-    Columns, Family, Identified, Memory, SearchObserver, Unknowns, Variable, search, thinned,
-};
+use crate::fit::law::search::{Columns, Family, Identified, Memory, Unknowns, Variable, search, thinned};
+use crate::fit::progress::SearchObserver;
 use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
 use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;

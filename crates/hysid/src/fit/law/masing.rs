@@ -3,10 +3,11 @@
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::grids::best_on_grids;
-use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic};
 use crate::fit::law::linearised::{Linearised, WeightRows, in_stretches, unit_gradient};
-use crate::fit::law::search::{Identified, SearchObserver};
+use crate::fit::law::search::Identified;
 use crate::fit::law::{Identify, grids};
+use crate::fit::progress::SearchObserver;
+use crate::fit::sums::{FoldSums, Gatherer, TrainingRows, logarithmic};
 use crate::law::masing::{Masing, MasingParts};
 use crate::law::series::Series;
 use crate::operator::{play, stop};

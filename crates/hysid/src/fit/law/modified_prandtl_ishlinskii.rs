@@ -13,10 +13,11 @@ use hysid_core::elementary::{ln, square};
 
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
 use crate::fit::law::linearised::{FitVariable, Linearised, WeightRows, in_stretches, unit_gradient};
-use crate::fit::law::search::{Identified, SearchObserver};
+use crate::fit::law::search::Identified;
 use crate::fit::law::{Identify, grids};
+use crate::fit::progress::SearchObserver;
+use crate::fit::sums::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
 use crate::law::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
 };

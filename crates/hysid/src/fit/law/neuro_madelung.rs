@@ -20,9 +20,8 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::grids::check_count;
-use crate::fit::law::search::{
-    Identified, LawSoFar, Memory, SearchObserver, SearchProgress, check_effort, measured, spread, thinned,
-};
+use crate::fit::law::search::{Identified, Memory, check_effort, measured, spread, thinned};
+use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
 use crate::law::neuro_madelung::{Branch, LARGEST_WEIGHT, MOST_HIDDEN, NeuroMadelung, argument};
 use crate::law::series::Series;
 use crate::law::turning_point_stack::{TurningPoint, TurningPointStack};

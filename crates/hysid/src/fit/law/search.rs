@@ -19,7 +19,6 @@ mod descent;
 mod projection;
 mod rows;
 
-use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
@@ -29,6 +28,7 @@ use serde_json::json;
 
 use crate::error::{Error, Result};
 use crate::fit::law::linearised::LawFamily;
+use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
 use crate::law::series::Series;
 use crate::law::{Classical, Law};
 use crate::optimise::multi_start::{MultiStart, Plan};
@@ -115,42 +115,8 @@ pub(crate) trait Family: Sync {
     }
 }
 
-/// Progress of a search, after every round.
-#[derive(Debug, Clone, Copy)]
-pub struct SearchProgress<'a> {
-    /// Iterations of every remaining start.
-    pub round: usize,
-    /// Largest number of rounds.
-    pub rounds: usize,
-    /// Free runs of the law so far, all starts together.
-    pub evaluations: usize,
-    /// Error of the best start in free run, in percent of the standard deviation; NaN before there is one.
-    pub train_nrmse_percent: f64,
-    pub(crate) law: LawSoFar<'a>,
-}
-
-impl SearchProgress<'_> {
-    /// The law of the best start so far, which is made only on request; `None` before there is one.
-    pub fn law_so_far(&self) -> Option<Classical> {
-        self.law.0.and_then(|law| law())
-    }
-}
-
-/// How to make the law that a search has come to.
-#[derive(Clone, Copy)]
-pub(crate) struct LawSoFar<'a>(pub Option<&'a (dyn Fn() -> Option<Classical> + Sync)>);
-
-impl fmt::Debug for LawSoFar<'_> {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(if self.0.is_some() { "a law" } else { "no law" })
-    }
-}
-
 /// A function that makes a law of searched parameters and weights.
 type MakesLaw<'a> = dyn Fn(&[f64], &[f64]) -> Option<Classical> + Sync + 'a;
-
-/// A function that gets the progress of a search and can stop it.
-pub type SearchObserver<'a> = dyn FnMut(SearchProgress) -> ControlFlow<()> + 'a;
 
 /// An identified law with the result of its search.
 #[derive(Debug, Clone)]

@@ -10,7 +10,7 @@
 //! The second line (Woodbury) asks for a matrix as large as there are rows and features, in place of one as
 //! large as there are parameters: 50 rows of 99 inputs need 2 MB, not 500.
 
-use crate::fit::network::least_squares::OutputSolution;
+use crate::fit::sums::output_weights::OutputSolution;
 use crate::linear_algebra::{Batch, Gram, Symmetric, dot};
 use crate::optimise::levenberg_marquardt::damped_step;
 use crate::stop_check::{Pace, StopCheck};

@@ -15,11 +15,11 @@ use crate::data::metrics::Errors;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::fit::HeldOutRows;
 use crate::fit::network::objective::Objective;
 use crate::fit::network::run::{From, TrainingRun};
 use crate::fit::network::soundness::{Frame, require};
-use crate::fit::network::{Checkpoint, Fitted, Observer, Present, Progress, SharedObserver, wanted_of};
+use crate::fit::network::wanted_of;
+use crate::fit::progress::{Checkpoint, Fitted, HeldOutRows, Observer, Progress, SharedObserver, Unfinished};
 use crate::law::facts::Origin;
 use crate::linear_algebra::dilated_space::DilatedSpace;
 use crate::model::history::Phase;
@@ -29,8 +29,8 @@ use crate::network::free_run::FreeRun;
 use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Network};
 use crate::optimise::parallel;
+use crate::options::FitSpec;
 use crate::options::network::{FitOptions, Regularisation, Trainer};
-use crate::options::{FitSpec, ModelName};
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use crate::validation::{Fold, PooledErrors, folds};
@@ -213,21 +213,6 @@ impl<'a> Fitting<'a> {
         let Part { preprocessing, scaling, .. } = &self.whole;
         let body = Predictor::Network { network, scaling: scaling.clone() };
         Model::new(body, preprocessing.clone(), self.asked.rate, self.measured, found)
-    }
-
-    /// The state from which the fit can be resumed.
-    pub fn checkpoint(&self) -> Checkpoint {
-        Checkpoint::of(&self.asked, self.measured, &self.state)
-    }
-
-    /// The network with the lowest objective so far of the last stage on all data; `None` if there is none yet.
-    pub fn model_so_far(&self) -> Option<Model> {
-        let State { all_data, all_exact, all_rows, .. } = &self.state;
-        let run = [all_rows, all_exact, all_data].into_iter().find_map(|runs| best_of(runs))?;
-        let penalties = if all_exact.is_empty() { self.asked.penalties() } else { NO_PENALTIES };
-        let network = run.network_as_trained(self.architecture).ok()?;
-        let found = Found { termination: Termination::Stopped, ..self.found(run, penalties) };
-        self.model(network, found).ok()
     }
 
     /// All starts on everything, thinned if it is much.
@@ -501,8 +486,6 @@ impl<'a> Fitting<'a> {
         let done = self.done();
         let run = &(stage.runs)(&mut self.state)[index];
         let told = Progress {
-            model: ModelName::Network(self.asked.model),
-            is_part: false,
             phase: stage.phase,
             method: run.method_of_last_epoch(),
             start: run.start(),
@@ -510,10 +493,9 @@ impl<'a> Fitting<'a> {
             evaluations: run.evaluations(),
             train_nrmse_percent: run.last().train_nrmse_percent,
             done,
-            tried: None,
-            present: None,
+            ..Progress::of_beginning(&self.asked)
         };
-        told.with_state(Present::Network(self))
+        told.with_state(self)
     }
 
     /// Share of the work done, if every run takes all its epochs.
@@ -522,6 +504,22 @@ impl<'a> Fitting<'a> {
         let of_run = |run: &TrainingRun| if run.is_over() { epochs } else { run.epoch().min(epochs) };
         let done: usize = self.state.all_runs().map(of_run).sum();
         (done as f64 / self.epochs_expected.max(1) as f64).min(1.0)
+    }
+}
+
+impl Unfinished for Fitting<'_> {
+    fn checkpoint(&self) -> Option<Checkpoint> {
+        Some(Checkpoint::of(&self.asked, self.measured, &self.state))
+    }
+
+    /// The network with the lowest objective so far of the last stage on all data; `None` if there is none yet.
+    fn model_so_far(&self) -> Option<Model> {
+        let State { all_data, all_exact, all_rows, .. } = &self.state;
+        let run = [all_rows, all_exact, all_data].into_iter().find_map(|runs| best_of(runs))?;
+        let penalties = if all_exact.is_empty() { self.asked.penalties() } else { NO_PENALTIES };
+        let network = run.network_as_trained(self.architecture).ok()?;
+        let found = Found { termination: Termination::Stopped, ..self.found(run, penalties) };
+        self.model(network, found).ok()
     }
 }
 

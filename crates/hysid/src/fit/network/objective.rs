@@ -15,7 +15,7 @@ use crate::data::polyline::{Column, noise, polyline};
 use crate::data::record::{Dataset, Thinning};
 use crate::error::Result;
 use crate::fit::network::curvature::{self, Curvature, has_few_rows};
-use crate::fit::network::least_squares::{OutputProblem, OutputSolution};
+use crate::fit::sums::output_weights::{OutputProblem, OutputSolution};
 use crate::network::scaling::Scaling;
 use crate::network::{
     Architecture, Columns, Drive, GradientOverRecords, GramOverRecords, Layout, RowsOverRecords,
@@ -322,7 +322,7 @@ mod tests {
         let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
         let p = objective.layout().len();
         assert!(!has_few_rows(p, architecture.output_weights(), rows), "compare with the matrix");
-        let point = crate::fit::network::start::random(&objective, 1, 0);
+        let point = crate::fit::random_start::random(objective.architecture(), objective.time_scales(), 1, 0);
         let value = objective.value(&point);
         let by_matrix = Problem::slope(&objective, &point, &value).unwrap();
         let by_rows = objective.slope_of_few_rows(&point, &value).unwrap();
@@ -372,7 +372,7 @@ mod tests {
             let run: usize = thinned.drives.iter().map(Drive::len).sum();
             assert!(run < if noise == 0.0 { 12_000 } else { 30_000 }, "{run} rows");
             assert_eq!(thinned.time_scales(), whole.time_scales());
-            let point = crate::fit::network::start::random(&whole, 1, 0);
+            let point = crate::fit::random_start::random(whole.architecture(), whole.time_scales(), 1, 0);
             let error = |objective: &Objective| objective.value(&point).mean_square;
             let ratio = error(&thinned) / error(&whole);
             assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
@@ -395,7 +395,8 @@ mod tests {
                 let scaling = Scaling::of(&data, rate).unwrap();
                 let architecture = options.architecture(&data).unwrap();
                 let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
-                let point = crate::fit::network::start::random(&objective, 1, 0);
+                let point =
+                    crate::fit::random_start::random(objective.architecture(), objective.time_scales(), 1, 0);
                 let value = objective.value(&point);
                 let of_slope = Problem::slope(&objective, &point, &value).unwrap().gradient;
                 let size = of_slope.iter().fold(0.0, |size: f64, g| size.max(g.abs()));

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::fit::network::encoding::Encoding;
 use crate::fit::network::objective::{Objective, Value};
 use crate::fit::network::soundness::{Frame, are_finite, require};
-use crate::fit::network::start;
+use crate::fit::random_start::random;
 use crate::model::history::{HistoryPoint, Phase, Run};
 use crate::network::{Architecture, Layout, Network};
 use crate::optimise::MOST_COUNTED;
@@ -91,7 +91,9 @@ impl TrainingRun {
             (Method::Genetic, _) => begin_genetic(objective, options, start)?,
             (method, from) => {
                 let parameters = match from {
-                    From::Random => start::random(objective, options.seed, start),
+                    From::Random => {
+                        random(objective.architecture(), objective.time_scales(), options.seed, start)
+                    }
                     From::Parameters(parameters) => parameters,
                 };
                 begin(method, objective, options, parameters)?

@@ -5,8 +5,8 @@ use hysid::data::record::Record;
 use hysid::elementary::sin;
 use hysid::network::Sizes;
 use hysid::operator::{Operator, Stop};
-use hysid::options::auto::AutoOptions;
 use hysid::options::classical::ClassicalOptions;
+use hysid::options::fit_spec::AutoOptions;
 use hysid::options::network::FitOptions;
 use hysid::options::{FitSpec, ModelName};
 

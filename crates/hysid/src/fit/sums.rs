@@ -12,6 +12,8 @@
 //! next. The sums of each block are separate; the training sum of a fold is the total minus the held-out
 //! block. Rows with a blank output are not used.
 
+pub mod output_weights;
+
 use std::ops::Range;
 
 use hysid_core::elementary::{exp, ln};

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard};
 
-use crate::fit::network::{Observer, Progress};
+use crate::fit::progress::{Observer, Progress};
 use crate::termination::Termination;
 
 pub(crate) struct SharedObserver<'o, 'a> {

@@ -20,8 +20,8 @@ use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
-use crate::fit::law::linear::{FoldSums, Sums, logarithmic};
-use crate::fit::network::start::{self, Capacities};
+use crate::fit::random_start::{self, Capacities};
+use crate::fit::sums::{FoldSums, Sums, logarithmic};
 use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Columns, Drive, GramOverRecords, Layout, Network, RowsOverRecords};
 use crate::optimise::non_negative::Penalty;
@@ -143,7 +143,7 @@ fn architecture(
 fn drawn(architecture: &Architecture, seed: u64) -> Vec<f64> {
     let short = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
     let mut values: Vec<f64> =
-        start::draw(architecture, CAPACITIES, None, seed).into_iter().map(short).collect();
+        random_start::draw(architecture, CAPACITIES, None, seed).into_iter().map(short).collect();
     Layout::new(*architecture).clamp(&mut values);
     values
 }

@@ -4,7 +4,6 @@ use hysid_core::elementary::{ln, powf};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::fit::network::objective::Objective;
 use crate::network::{Architecture, Layout};
 use crate::optimise::random::{normal, seed_of};
 
@@ -25,9 +24,14 @@ pub(crate) struct Capacities {
 
 const CAPACITIES: Capacities = Capacities { typical: 1000.0, spread: 1.0 };
 
-pub(crate) fn random(objective: &Objective, seed: u64, start: usize) -> Vec<f64> {
-    let seed = seed_of(seed, start as u64);
-    draw(objective.architecture(), CAPACITIES, objective.time_scales(), seed)
+/// The parameters of one of the starts of a network.
+pub(crate) fn random(
+    architecture: &Architecture,
+    time_scales: Option<(f64, f64)>,
+    seed: u64,
+    start: usize,
+) -> Vec<f64> {
+    draw(architecture, CAPACITIES, time_scales, seed_of(seed, start as u64))
 }
 
 /// Random parameters; thresholds and relaxation times are spread evenly in their logarithms over the data's scales.

@@ -1,0 +1,47 @@
+//! A block of rows of a network: inputs, outputs of neurons and derivatives, column by column.
+
+use crate::network::Architecture;
+use crate::network::memory::{BLOCK, MemorySlopes, Row};
+
+/// What the memory and the readout compute for some rows together.
+pub(crate) struct Block {
+    /// Scaled inputs by channel; of rows with slopes only.
+    pub u: Vec<Row>,
+    /// Outputs of the memory neurons.
+    pub z: Vec<Row>,
+    /// Outputs of the tanh neurons.
+    pub h: Vec<Row>,
+    /// Derivatives of the memory neurons' outputs by their own parameters, if wanted.
+    pub slopes: MemorySlopes,
+    pub target: Row,
+}
+
+impl Block {
+    pub fn new(a: &Architecture, with_slopes: bool) -> Self {
+        Self {
+            u: vec![Row([0.0; BLOCK]); a.channels()],
+            z: vec![Row([0.0; BLOCK]); a.memory_neurons()],
+            h: vec![Row([0.0; BLOCK]); a.hidden],
+            slopes: if with_slopes { MemorySlopes::new(a) } else { MemorySlopes::default() },
+            target: Row([0.0; BLOCK]),
+        }
+    }
+
+    /// Copies one row, as it is before the readout.
+    #[inline(always)]
+    pub fn copy_row(&mut self, to: usize, other: &Block, from: usize, with_slopes: bool) {
+        let copy = |to_rows: &mut [Row], from_rows: &[Row]| {
+            for (a, b) in to_rows.iter_mut().zip(from_rows) {
+                a[to] = b[from];
+            }
+        };
+        copy(&mut self.z, &other.z);
+        if with_slopes {
+            copy(&mut self.u, &other.u);
+            copy(&mut self.slopes.weights, &other.slopes.weights);
+            copy(&mut self.slopes.ln_beta, &other.slopes.ln_beta);
+            copy(&mut self.slopes.ln_tau, &other.slopes.ln_tau);
+        }
+        self.target[to] = other.target[from];
+    }
+}

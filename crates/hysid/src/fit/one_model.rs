@@ -1,0 +1,118 @@
+//! Identification of one network or one classical model, in the initial state that is asked for.
+
+use std::borrow::Cow;
+
+use crate::data::record::Dataset;
+use crate::error::Result;
+use crate::fit::initial_state::Wanted;
+use crate::fit::law;
+use crate::fit::law::random_stops::fit_random_stops;
+use crate::fit::network;
+use crate::fit::progress::{Fitted, Observer, Progress, SearchProgress, SharedObserver};
+use crate::law::facts::Origin;
+use crate::model::history::{HistoryPoint, Phase, Run};
+use crate::model::input_transform::Transformed;
+use crate::model::{Found, Model, Predictor};
+use crate::options::FitSpec;
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
+use crate::options::network::Method;
+use crate::stop_check::StopCheck;
+use crate::termination::Termination;
+
+/// As [`fit::identify`](crate::fit::identify), of one model, which `auto` is not.
+pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
+    match request {
+        FitSpec::Network(options) => network::fit(data, options, observer),
+        FitSpec::Classical(options) if options.model == ClassicalModel::RandomStops => {
+            random_stops(data, options, observer)
+        }
+        FitSpec::Classical(options) => of_law(data, options, observer),
+        FitSpec::Auto(_) => unreachable!("no candidate of auto is auto"),
+    }
+}
+
+fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
+    let begun = begun(data, options, Origin::OfData, observer)?;
+    let data = begun.as_ref();
+    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
+    let is_to_stop = || observer.is_to_stop();
+    let stop = StopCheck::new(&is_to_stop);
+    let wanted = ClassicalOptions { rate: seen.rate, ..options.clone() };
+    let found = fit_random_stops(&seen.data, &wanted, stop)?;
+    let body = Predictor::Network { network: found.network, scaling: found.scaling };
+    finished(data, options, &seen, body, 1, observer.termination(Termination::Converged), Vec::new())
+}
+
+fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
+    let mut history = Vec::new();
+    let origin = options.model.facts().origin;
+    let begun = begun(data, options, origin, observer)?;
+    let data = begun.as_ref();
+    let seen = Transformed::of(data, &options.shaping, options.rate, origin)?;
+    let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
+    let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
+    let is_to_stop = || observer.is_to_stop();
+    let stop = StopCheck::new(&is_to_stop);
+    let mut of_round = |progress: SearchProgress| {
+        if !progress.train_nrmse_percent.is_nan() {
+            history.push(HistoryPoint {
+                epoch: progress.round,
+                evaluations: progress.evaluations,
+                train_nrmse_percent: progress.train_nrmse_percent,
+            });
+        }
+        let so_far = || {
+            let body = Predictor::Law(progress.law_so_far()?);
+            let runs = vec![run_of_law(history.clone(), Termination::Stopped)];
+            let evaluations = progress.evaluations;
+            let fitted = finished(data, options, &seen, body, evaluations, Termination::Stopped, runs);
+            Some(fitted.ok()?.model)
+        };
+        observer.tell(&Progress::of_search(options.model, &progress).with_state(&so_far))
+    };
+    let found = law::fit(&seen.data, &of_seen, &mut of_round, stop)?;
+    let termination = observer.termination(found.termination);
+    let runs = if history.is_empty() { Vec::new() } else { vec![run_of_law(history, termination)] };
+    let body = Predictor::Law(found.law);
+    let fitted = finished(data, options, &seen, body, found.evaluations, termination, runs)?;
+    Ok(Fitted { searched: found.searched, ..fitted })
+}
+
+fn run_of_law(history: Vec<HistoryPoint>, termination: Termination) -> Run {
+    Run {
+        phase: Phase::AllData,
+        start: 0,
+        method: Method::LeastSquares,
+        history,
+        termination,
+        fold: None,
+        validation_nrmse_percent: None,
+    }
+}
+
+/// The data in the initial state that is asked for.
+fn begun<'d>(
+    data: &'d Dataset,
+    options: &ClassicalOptions,
+    origin: Origin,
+    observer: &mut Observer<'_>,
+) -> Result<Cow<'d, Dataset>> {
+    let ClassicalOptions { shaping, rate, seed, .. } = *options;
+    Wanted { state: shaping.initial_state, origin, rate, seed }.of(data, observer)
+}
+
+fn finished(
+    data: &Dataset,
+    options: &ClassicalOptions,
+    seen: &Transformed,
+    body: Predictor,
+    evaluations: usize,
+    termination: Termination,
+    runs: Vec<Run>,
+) -> Result<Fitted> {
+    let request = FitSpec::Classical(ClassicalOptions { near: Vec::new(), ..options.clone() });
+    let found = Found { runs, ..Found::of(request, termination) };
+    let model = Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?;
+    Ok(Fitted::of(model, evaluations))
+}
