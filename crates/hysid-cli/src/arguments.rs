@@ -33,7 +33,6 @@ use crate::reproduction::Experiment;
 pub use cycles::Cycles;
 use examples::*;
 pub use force::{Force, MotionOptions};
-pub use limits::Preview;
 pub use mass::Mass;
 pub use model_options::ModelOptions;
 pub use plan::Plan;
@@ -448,7 +447,7 @@ pub struct Invert {
     /// It matters for models whose output lags behind the input. `auto` finds the time with which the model follows the
     /// reference best.
     #[arg(long, value_name = "TIME", default_value = "auto", value_parser = limits::preview, hide_default_value = true, hide_short_help = true)]
-    pub preview: Preview,
+    pub preview: hysid_app::inversion::Preview,
     /// Add the inputs whose band of this probability, such as 0.9, contains the wanted output
     ///
     /// The columns with `_low` and `_high` behind the name of the drive are the lowest and the highest of them.

@@ -10,7 +10,7 @@ pub use hysid_document::shell::shown;
 pub use hysid_files::reason;
 use hysid_files::{Destination, Failure, Kind};
 
-use hysid_report::{origin, page_text};
+use hysid_app::{origin, page_text};
 
 use crate::messages::{Usage, note};
 

@@ -11,10 +11,10 @@ use hysid::fit::network::resume;
 use hysid::fit::progress::{Checkpoint, Progress};
 use hysid::model::Provenance;
 use hysid::options::FitSpec;
+use hysid_app::{Beforehand, Identified};
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_files::Destination;
 use hysid_records::Data;
-use hysid_report::{Beforehand, Identified};
 use rayon::ThreadPool;
 
 use crate::checkpoint::Keeper;
@@ -80,7 +80,7 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     let seconds = follower.finish();
     let fitted = fitted.map_err(|error| data.explain(error))?;
     let (model, evaluations, held_out) = (fitted.model, fitted.evaluations, fitted.held_out);
-    Ok(Identified { model, evaluations, held_out, seconds, beforehand })
+    Ok(Identified { model, evaluations, held_out, seconds: Some(seconds), beforehand })
 }
 
 /// Writes the model. It took long to find: if it cannot be written there, it is put elsewhere, and the error says
@@ -97,7 +97,8 @@ pub fn write_report(
     sets: &[(&str, &Dataset)],
     inputs: &[impl AsRef<Path>],
 ) -> Result<()> {
-    write_page(page, identified.page(model, sets)?, inputs)
+    let title = model.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    write_page(page, identified.page(&title, Some(model), sets)?, inputs)
         .context("the model was written, but not its report")
 }
 
@@ -133,7 +134,7 @@ pub fn printed(identified: &Identified, unseen: Option<&Errors>, written: &[(&st
         model.parameters(),
         chosen(provenance),
         provenance.termination,
-        seconds
+        seconds.unwrap_or_default()
     );
     for (what, path) in written {
         text += &format!("{what:<7} {}\n", files::shown(path));

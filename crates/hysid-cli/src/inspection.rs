@@ -8,9 +8,9 @@ use hysid::data::unit;
 use hysid::law::Parameter;
 use hysid::model::{Model, ParameterInUnits, Predictor, Provenance, Weights};
 use hysid::significant::Significant;
+use hysid_app::{initial_state, parameters, provenance};
 use hysid_document::plain::rendered;
 use hysid_document::{Cell, Part, Table, count, object};
-use hysid_report::{initial_state, parameters, provenance};
 use serde::{Deserialize, Serialize};
 
 use crate::errors_table::{AFTER_WARM_UP, errors_table};

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use hysid::fit::progress::Progress;
 use hysid::significant::Significant;
+use hysid_app::Course;
 use hysid_document::plain::WIDTH;
 use hysid_document::progress::{Line, Remaining, in_words, share_done};
-use hysid_report::Course;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::checkpoint::Keeper;

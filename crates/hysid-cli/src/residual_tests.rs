@@ -4,8 +4,8 @@ use hysid::data::record::ColumnNames;
 use hysid::data::warning::Warning;
 use hysid::diagnosis::residuals::{ResidualFinding, ResidualOptions, Residuals};
 use hysid::model::Model;
+use hysid_app::residual_words::{name, p_value, verdict};
 use hysid_document::plain::{aligned, indented};
-use hysid_report::residual_words::{name, p_value, verdict};
 
 use crate::gathered::{Gathered, Gatherer};
 

@@ -41,6 +41,21 @@ fn listed_as<N: AsRef<str>>(names: &[N], as_shown: impl Fn(&str) -> Cow<'_, str>
     }
 }
 
+/// Letters of a line that are shown, at its beginning and at its end.
+const LONGEST_LINE: (usize, usize) = (1500, 400);
+
+/// A line with names and words: visible, and without its middle where it is very long.
+pub fn line(text: &str) -> Cow<'_, str> {
+    let (first, last) = LONGEST_LINE;
+    let letters = text.chars().count();
+    if letters <= first + last {
+        return visible(text);
+    }
+    let place = |letter: usize| text.char_indices().nth(letter).map_or(text.len(), |(place, _)| place);
+    let (head, tail) = (&text[..place(first)], &text[place(letters - last)..]);
+    format!("{} … ({letters} characters) … {}", visible(head), visible(tail)).into()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

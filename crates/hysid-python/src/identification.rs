@@ -9,10 +9,11 @@ use std::time::Instant;
 
 use hysid::fit;
 use hysid::fit::cross_validate;
-use hysid::fit::progress::{Observer, Progress};
+use hysid::fit::progress::Progress;
 use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};
 use hysid::options::table::OPTIONS;
 use hysid::options::{self, ModelName};
+use hysid_app::compare::{CompareObserver, CompareRequest, CompareRow};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 
@@ -89,23 +90,23 @@ pub fn option_table() -> Vec<(&'static str, &'static str, String)> {
 
 /// Arguments of a progress callback: share of the work done, error on the training rows in percent of std,
 /// start, epoch, what is being done, the model that is being fitted, and whether that fit is one of many.
-type Report = (f64, f64, usize, usize, String, &'static str, bool);
+type Report = (f64, f64, usize, usize, String, String, bool);
 
 fn report(progress: &Progress<'_>) -> Report {
     let word = |value: serde_json::Result<serde_json::Value>| -> String {
         value.ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
     };
     let phase = word(serde_json::to_value(progress.phase));
-    let model = progress.model.name();
+    let model = progress.model.name().to_string();
     let error = progress.train_nrmse_percent;
     (progress.done, error, progress.start, progress.epoch, phase, model, progress.is_part)
 }
 
 /// What the fit's thread and the caller's tell each other.
-#[derive(Default)]
 struct Exchange {
     stop: AtomicBool,
     latest: Mutex<Option<Report>>,
+    deadline: Option<Instant>,
 }
 
 impl Exchange {
@@ -117,17 +118,20 @@ impl Exchange {
         self.latest.lock().ok().and_then(|mut latest| latest.take())
     }
 
-    /// The observer of the fit.
-    fn observe(&self, progress: &Progress<'_>, deadline: Option<Instant>) -> ControlFlow<()> {
+    fn keep(&self, report: Report) {
         if let Ok(mut latest) = self.latest.lock() {
-            *latest = Some(report(progress));
+            *latest = Some(report);
         }
-        let over = deadline.is_some_and(|deadline| Instant::now() >= deadline);
-        if over || self.stop.load(Ordering::SeqCst) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+    }
+
+    fn is_to_stop(&self) -> bool {
+        self.stop.load(Ordering::SeqCst) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
+    /// The observer of the fit.
+    fn observe(&self, progress: &Progress<'_>) -> ControlFlow<()> {
+        self.keep(report(progress));
+        if self.is_to_stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
@@ -144,9 +148,9 @@ pub fn identify(
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(Model, usize, bool)> {
     let (set, request) = (Arc::clone(&data.set), request.request.clone());
-    let work = move |observer: &mut Observer<'_>| {
+    let work = move |exchange: &Exchange| {
         check_memory(&set, &request)?;
-        fit::identify(&set, &request, observer)
+        fit::identify(&set, &request, &mut |progress| exchange.observe(progress))
     };
     let (fitted, interrupted) = attended(py, threads, time_limit, progress, work)?;
     Ok((Model::new(fitted.model), fitted.evaluations, interrupted))
@@ -165,12 +169,84 @@ pub fn validate(
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(String, bool)> {
     let (set, request) = (Arc::clone(&data.set), request.request.clone());
-    let work = move |observer: &mut Observer<'_>| {
+    let work = move |exchange: &Exchange| {
         check_memory(&set, &request)?;
-        cross_validate(&set, &request, folds, observer)
+        cross_validate(&set, &request, folds, &mut |progress| exchange.observe(progress))
     };
     let (validation, interrupted) = attended(py, threads, time_limit, progress, work)?;
     Ok((serde_json::to_string(&validation).map_err(refused)?, interrupted))
+}
+
+/// A row of a comparison: label, model, errors on the test data as JSON, seconds of the fit, and why there is no model.
+type ComparedRow = (String, Option<Model>, Option<String>, Option<f64>, Option<String>);
+
+/// Fits all requests to the same data, as many at the same time as there are threads, each under its time limit. Gives a row
+/// for each, the lowest error first, and whether Ctrl-C ended the comparison; otherwise as [`identify`].
+#[pyfunction]
+pub fn compare(
+    py: Python<'_>,
+    data: &Dataset,
+    requests: Vec<PyRef<'_, FitSpec>>,
+    test: Option<PyRef<'_, Dataset>>,
+    threads: Option<usize>,
+    time_limit: Option<f64>,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<(Vec<ComparedRow>, bool)> {
+    let limit = time_limit.map(hysid::time_limit).transpose();
+    limit.map_err(|needed| refused(format!("time_limit: {needed}")))?;
+    let specs: Vec<_> = requests.iter().map(|request| request.request.clone()).collect();
+    let (train, test) = (Arc::clone(&data.set), test.map(|test| Arc::clone(&test.set)));
+    let work = move |exchange: &Exchange| {
+        let done = Mutex::new(vec![0.0; specs.len()]);
+        let request = CompareRequest { train: &train, test: test.as_deref(), specs, time_limit, threads };
+        Ok(hysid_app::compare::compare(&request, &Comparison { exchange, done }))
+    };
+    let (outcome, interrupted) = attended(py, None, None, progress, work)?;
+    let outcome = outcome.map_err(|error| PyRuntimeError::new_err(format!("{error:#}")))?;
+    let row = |row: CompareRow| {
+        let label = row.label();
+        Ok(match row.fit {
+            Ok(fit) => {
+                let test =
+                    fit.test.map(|errors| serde_json::to_string(&errors)).transpose().map_err(refused)?;
+                (label, Some(Model::new(fit.model)), test, Some(fit.fit_seconds), None)
+            }
+            Err(why) => (label, None, None, None, Some(why)),
+        })
+    };
+    Ok((outcome.rows.into_iter().map(row).collect::<PyResult<_>>()?, interrupted))
+}
+
+/// Follows a comparison: the share of each fit that is done.
+struct Comparison<'a> {
+    exchange: &'a Exchange,
+    done: Mutex<Vec<f64>>,
+}
+
+impl Comparison<'_> {
+    fn keep(&self, place: usize, share: f64) {
+        let Ok(mut done) = self.done.lock() else { return };
+        done[place] = share;
+        let fits = done.len();
+        let number = (done.iter().filter(|share| **share >= 1.0).count() + 1).min(fits);
+        let name = format!("model {number} of {fits}");
+        let share = done.iter().sum::<f64>() / fits.max(1) as f64;
+        self.exchange.keep((share, f64::NAN, 0, 0, "all-data".into(), name, true));
+    }
+}
+
+impl CompareObserver for Comparison<'_> {
+    fn is_to_stop(&self) -> bool {
+        self.exchange.is_to_stop()
+    }
+
+    fn progress(&self, place: usize, progress: &Progress<'_>) {
+        self.keep(place, progress.done);
+    }
+
+    fn ended(&self, place: usize, _: &CompareRow, _: usize) {
+        self.keep(place, 1.0);
+    }
 }
 
 /// Refuses work that needs more memory than there is, with the threads of this pool.
@@ -186,19 +262,18 @@ fn attended<T: Send + 'static>(
     threads: Option<usize>,
     time_limit: Option<f64>,
     progress: Option<Bound<'_, PyAny>>,
-    work: impl FnOnce(&mut Observer<'_>) -> hysid::Result<T> + Send + 'static,
+    work: impl FnOnce(&Exchange) -> hysid::Result<T> + Send + 'static,
 ) -> PyResult<(T, bool)> {
     let limit = time_limit.map(hysid::time_limit).transpose();
     let limit = limit.map_err(|needed| refused(format!("time_limit: {needed}")))?;
     let deadline = limit.map(|limit| Instant::now() + limit);
     let pool = hysid::thread_pool(threads);
     let pool = pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start the threads: {error}")))?;
-    let exchange = Arc::new(Exchange::default());
+    let exchange = Arc::new(Exchange { stop: AtomicBool::new(false), latest: Mutex::new(None), deadline });
     let (answer, answers) = channel();
     let with_work = Arc::clone(&exchange);
     std::thread::spawn(move || {
-        let mut observer = |progress: &Progress<'_>| with_work.observe(progress, deadline);
-        let done = pool.install(|| work(&mut observer));
+        let done = pool.install(|| work(&with_work));
         // Nobody listens any more after a second Ctrl-C.
         let _ = answer.send(done);
     });

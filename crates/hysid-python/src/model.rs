@@ -10,6 +10,7 @@ use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::selection::Selection;
 use hysid::model::{self, BandLevel, ParameterInUnits, Prediction};
+use hysid_app::{Identified, origin, page_text};
 use hysid_export::description::RateSource;
 use hysid_export::{FmiVersion, InverseOptions, MANIFEST, Options, Precision, Target, files_of};
 use hysid_files::{Destination, Folder, Kind};
@@ -56,6 +57,30 @@ impl Model {
             destination.write(self.model.to_json().as_bytes())
         });
         written.map(drop).map_err(not_written)
+    }
+
+    /// Writes a report on the model: its free runs over sets of data, each with its name.
+    fn report(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        title: String,
+        sets: Vec<(String, PyRef<'_, Dataset>)>,
+        force: bool,
+    ) -> PyResult<()> {
+        let identified = Identified::before(model::Model::clone(&self.model));
+        let sets: Vec<_> = sets.into_iter().map(|(name, data)| (name, Arc::clone(&data.set))).collect();
+        let destination = Destination::new(path, Kind::Page, force);
+        destination.check().map_err(not_written)?;
+        let page = interruptible(py, move || {
+            let sets: Vec<_> = sets.iter().map(|(name, data)| (name.as_str(), data.as_ref())).collect();
+            Ok(identified.page(&title, None, &sets).map(|mut page| {
+                page.parts.push(origin::section("hysid.Model.report", &[]));
+                page_text(&page)
+            }))
+        })?;
+        let text = page.map_err(|error| refused(format!("{error:#}")))?;
+        destination.write(text.as_bytes()).map(drop).map_err(not_written)
     }
 
     /// Writes an export of the model into a folder; gives the names of its files, and what the user must know.

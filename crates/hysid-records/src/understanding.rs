@@ -3,7 +3,6 @@
 use hysid_core::data::rate::RateMethod;
 use hysid_core::data::record::{Difference, Protocol, Speeds, protocols};
 use hysid_core::data::summary::Summary;
-use hysid_core::network::Architecture;
 use hysid_core::options::FitSpec;
 use hysid_core::options::fit_spec::AutoOptions;
 use hysid_core::significant::Significant;
@@ -121,18 +120,6 @@ pub fn choice(options: &AutoOptions) -> String {
             format!(": at most {} models, chosen by cross-validation", options.members)
         }
     }
-}
-
-pub fn parts(architecture: &Architecture) -> String {
-    let deteriorating = if architecture.deterioration { "deteriorating " } else { "" };
-    let mut parts = vec![format!("{} {deteriorating}stops", architecture.stops)];
-    if architecture.hidden > 0 {
-        parts.push(format!("{} hidden", architecture.hidden));
-    }
-    if architecture.relaxation > 0 {
-        parts.push(format!("{} relaxation", architecture.relaxation_neurons()));
-    }
-    parts.join(", ")
 }
 
 /// In which ways tables were read, and how many in each way.

@@ -4,12 +4,12 @@ use hysid::options::ModelName;
 use hysid::options::network::Trainer;
 use hysid::options::table::{FitOption, OPTIONS, Values};
 use hysid::specimens::Specimen;
+use hysid_app::BAND;
+use hysid_app::models::Listed;
 use hysid_document::object;
 use hysid_document::shell::flag;
 use hysid_export::Target;
 use hysid_records::READING_OPTIONS;
-use hysid_report::BAND;
-use hysid_report::models::Listed;
 use serde_json::{Value, json};
 
 /// Largest file that is taken, in bytes.

@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Excitation;
 use hysid::model::{Model, Prediction};
-use hysid_report::BAND;
+use hysid_app::BAND;
 
 /// Longest path.
 pub const MOST_ROWS: usize = 20_000;

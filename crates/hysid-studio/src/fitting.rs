@@ -14,8 +14,8 @@ use anyhow::{Context, Result, anyhow, bail};
 use hysid::Model;
 use hysid::fit::{identify, memory_need};
 use hysid::options::FitSpec;
+use hysid_app::{Beforehand, Identified};
 use hysid_records::Data;
-use hysid_report::{Beforehand, Identified};
 
 use latest::Latest;
 pub use preview::Preview;
@@ -190,7 +190,7 @@ fn run(course: &Arc<Course>, work: Work, pool: &rayon::ThreadPool) -> Result<(Id
             model: fitted.model,
             evaluations: fitted.evaluations,
             held_out: fitted.held_out,
-            seconds,
+            seconds: Some(seconds),
             beforehand,
         };
         Ok((identified, Arc::clone(&data)))

@@ -8,9 +8,9 @@ use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
 use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualFinding, ResidualOptions, Residuals};
 use hysid::model::{Model, Prediction};
+use hysid_app::residual_words::{name, p_value, verdict};
+use hysid_app::{BAND, BandCoverage, ReportSet};
 use hysid_records::summarised;
-use hysid_report::residual_words::{name, p_value, verdict};
-use hysid_report::{BAND, BandCoverage, ReportSet};
 use serde_json::{Value, json};
 
 const MOST_KEPT: usize = 8;

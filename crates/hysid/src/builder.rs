@@ -6,15 +6,14 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
 
-use crate::data::metrics::Errors;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::progress::Progress;
 use crate::fit::{cross_validate, identify};
 use crate::model::Model;
+use crate::options::FitSpec;
 use crate::options::chosen::{NamedOptions, RateChoice};
-use crate::options::{FitSpec, ModelName};
 use crate::validation::CrossValidation;
 
 const FOLDS: usize = 5;
@@ -134,46 +133,4 @@ impl<'a> Fit<'a> {
             if end.is_some_and(|end| Instant::now() >= end) { ControlFlow::Break(()) } else { told }
         }
     }
-}
-
-/// Result of one model in a comparison.
-#[derive(Debug, Clone)]
-pub struct Compared {
-    /// Name of the model, with its variant if it has more than one.
-    pub label: String,
-    /// The model with its errors on the test data, or the error of its fit.
-    pub outcome: Result<(Model, Errors)>,
-}
-
-/// Fits models, each in all its variants, to `train` and evaluates them on `test`; the lowest error comes
-/// first. If `models` is empty, all models except `auto` are fitted ([`fit`](crate::fit()) is `auto`),
-/// without those that cannot be fitted to such data.
-///
-/// # Errors
-/// An unknown name of a model.
-pub fn compare(train: &Dataset, test: &Dataset, models: &[&str], seed: u64) -> Result<Vec<Compared>> {
-    let models: Vec<ModelName> = match models {
-        [] => ModelName::all().collect(),
-        names => names.iter().map(|name| name.parse()).collect::<Result<_>>()?,
-    };
-    let rate = |model| RateChoice::Auto.method(model, train);
-    let requests = models.into_iter().flat_map(|model| FitSpec::of(model, rate(model), seed).variants());
-    let mut all: Vec<Compared> = requests.filter_map(|request| compared(train, test, &request)).collect();
-    let error =
-        |compared: &Compared| compared.outcome.as_ref().map_or(f64::INFINITY, |(_, errors)| errors.rmse);
-    all.sort_by(|a, b| error(a).total_cmp(&error(b)));
-    Ok(all)
-}
-
-/// A model on these data; `None` if it cannot be fitted to data like these.
-fn compared(train: &Dataset, test: &Dataset, request: &FitSpec) -> Option<Compared> {
-    if request.model().check_data(train, request.rate()).is_err() {
-        return None;
-    }
-    let fitted = identify(train, request, &mut |_| ControlFlow::Continue(()));
-    let outcome = fitted.and_then(|fitted| {
-        let errors = fitted.model.evaluate(test)?;
-        Ok((fitted.model, errors))
-    });
-    Some(Compared { label: request.variant_label(), outcome })
 }

@@ -24,7 +24,7 @@
 //!
 //! [`fit`](fit()) takes the defaults: it cross-validates networks and classical models and combines the best.
 //! [`Fit`] chooses a model, options, a time limit and an observer; [`validate`] estimates the error on new
-//! data; [`compare`] fits every model; [`diagnose`] determines the properties of the hysteresis in the data.
+//! data; [`diagnose`] determines the properties of the hysteresis in the data.
 //! [`Model::stepper`] runs a model sample by sample, as a controller does.
 //!
 //! The library does no input or output, keeps no global state and has no unsafe code; only
@@ -46,7 +46,7 @@ mod thread_pool;
 mod time_limit;
 pub mod validation;
 
-pub use builder::{Compared, Fit, compare};
+pub use builder::Fit;
 pub use fit::progress::Progress;
 pub use hysid_core::data::metrics::Errors;
 pub use hysid_core::data::record::{ColumnNames, Dataset, Record};

@@ -24,7 +24,7 @@ const LIBRARY: [&str; 12] = [
     "crates/hysid-paper/src/",
     "crates/hysid-tables/src/",
     "crates/hysid-records/src/",
-    "crates/hysid-report/src/",
+    "crates/hysid-app/src/",
     "crates/hysid-document/src/",
     "crates/hysid-files/src/",
     "crates/hysid-studio/src/",
@@ -60,9 +60,9 @@ const ALLOWED: [(&str, Effect); 8] = [
     // The C compiler that builds a Functional Mock-up Unit works on files.
     ("crates/hysid-export/src/target/fmu/binary.rs", Effect::Files),
     // A page names the day, the checksums of its files and the time of a simulation.
-    ("crates/hysid-report/src/date.rs", Effect::Clock),
-    ("crates/hysid-report/src/origin.rs", Effect::Files),
-    ("crates/hysid-report/src/timing.rs", Effect::Clock),
+    ("crates/hysid-app/src/date.rs", Effect::Clock),
+    ("crates/hysid-app/src/origin.rs", Effect::Files),
+    ("crates/hysid-app/src/timing.rs", Effect::Clock),
     ("crates/hysid-files/src/", Effect::Files),
     ("crates/hysid-studio/src/", Effect::Files),
     ("crates/hysid-studio/src/", Effect::Clock),

@@ -1,13 +1,6 @@
 //! Bounds of an input on the command line.
 
-/// How far an inverse looks ahead.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Preview {
-    /// As far as suits the model and the reference.
-    Auto,
-    /// This time.
-    Time(f64),
-}
+use hysid_app::inversion::Preview;
 
 /// Lowest and highest value, as LOW:HIGH.
 pub fn limits(text: &str) -> Result<(f64, f64), String> {

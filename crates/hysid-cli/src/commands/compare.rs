@@ -3,15 +3,16 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
+use hysid::Error;
 use hysid::data::summary::Summary;
 use hysid::options::ModelName;
 use hysid::options::chosen::NamedOptions;
-use hysid_records::Roles;
-use hysid_report::data_warnings;
+use hysid_app::compare::{CompareObserver, CompareRequest, CompareRow, ComparedData, compare};
+use hysid_app::data_warnings;
+use hysid_records::{Data, Roles};
 
 use crate::Outcome;
 use crate::arguments::Compare;
-use crate::comparison::{self, Data as Compared};
 use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
 use crate::interrupt;
@@ -56,13 +57,42 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
         summarised(&test.set.copies_of(&train.set)).iter().for_each(warning);
     }
     interrupt::listen("stopping; the finished fits are compared")?;
-    let rows = comparison::run(&Compared { train: &train, test: test.as_ref() }, &requests, arguments)?;
-    told(arguments.json, || Ok(comparison::printed(&rows)), || comparison::table(&rows, test.is_some()))?;
+    let request = CompareRequest {
+        train: &train.set,
+        test: test.as_ref().map(|test| &test.set),
+        specs: requests,
+        time_limit: arguments.time_limit,
+        threads: arguments.threads.map(usize::from),
+    };
+    let listener = Listener { train: &train, test: test.as_ref(), count: request.specs.len() };
+    let outcome = compare(&request, &listener)?;
+    told(arguments.json, || Ok(outcome.printed()), || outcome.text())?;
     if let Some(page) = &page {
         let title = format!("Models compared: {}", train.source.tables[0].file);
-        let content = comparison::page(&title, &train.set, test.as_ref().map(|test| &test.set), &rows)?;
-        files::write_page(page, content, &inputs)?;
+        files::write_page(page, outcome.page(&title, request.train, request.test)?, &inputs)?;
         note(format_args!("page    {}", files::shown(page.path())));
     }
     Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
+}
+
+/// Writes a line for each fit that has ended; Ctrl-C ends the others.
+struct Listener<'a> {
+    train: &'a Data,
+    test: Option<&'a Data>,
+    count: usize,
+}
+
+impl CompareObserver for Listener<'_> {
+    fn is_to_stop(&self) -> bool {
+        interrupt::requested()
+    }
+
+    fn ended(&self, _: usize, row: &CompareRow, count: usize) {
+        note(format_args!("{count:>2}/{} {}", self.count, row.line()));
+    }
+
+    fn explain(&self, error: Error, data: ComparedData) -> String {
+        let data = if data == ComparedData::Test { self.test.unwrap_or(self.train) } else { self.train };
+        format!("{:#}", data.explain(error))
+    }
 }

@@ -12,10 +12,10 @@ use hysid_records::understanding;
 use crate::Outcome;
 use crate::arguments::{self, RateOption};
 use crate::commands::{Given, model_from_bytes};
-use crate::cycles::{self, BEGINNING, BEGINNING_OF_CURVES, Cycles, Files};
 use crate::data::data_of;
 use crate::files::{self, check_outputs};
 use crate::messages::{note_labelled, raw_results, results, warning};
+use hysid_app::cycles::{self, BEGINNING, BEGINNING_OF_CURVES, Cycles, Files};
 
 pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
     let outputs = Outputs::of(arguments)?;
@@ -42,7 +42,9 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
             if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
                 warning("cycles ignores --rate: it needs no rate");
             }
-            let cycles = Cycles::of_data(&data, &options, &arguments.corrections(), (factor, understood))?;
+            let told = (data.source.tables[0].file.as_str(), understood);
+            let cycles = Cycles::of_data(&data.set, &options, &arguments.corrections(), factor, told)
+                .map_err(|error| data.explain(error))?;
             tell(arguments, &outputs, &cycles)
         }
     }

@@ -4,9 +4,9 @@ use anyhow::Result;
 use hysid::data::summary::Summary;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::options::chosen::RateChoice;
+use hysid_app::diagnosis::{DataDiagnosis, DiagnosedModel};
 use hysid_document::Page;
 use hysid_records::understanding;
-use hysid_report::diagnosis::{DataDiagnosis, DiagnosedModel};
 use hysid_tables::Table;
 
 use crate::Outcome;

@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use anyhow::{Context, Result};
 use hysid::data::metrics::ErrorSums;
 use hysid::error::{Channel, DataError, DataProblem};
+use hysid_app::BandCoverage;
 use hysid_document::object;
 use hysid_records::{Roles, explained};
-use hysid_report::BandCoverage;
 use hysid_tables::Rows;
 
 use crate::Outcome;

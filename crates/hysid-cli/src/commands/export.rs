@@ -4,13 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Result, anyhow};
+use hysid_app::date;
 use hysid_document::{count, object};
 use hysid_export::description::RateSource;
 use hysid_export::{
     Error, Export as Exported, FmiVersion, InverseOptions, MANIFEST, Options, Precision, Target, files_of,
 };
 use hysid_files::Folder;
-use hysid_report::date;
 use serde::Serialize;
 
 use crate::Outcome;

@@ -11,11 +11,11 @@ use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};
 use hysid::options::network::FitOptions;
+use hysid_app::{Identified, initial_state};
 use hysid_document::object;
 use hysid_document::shell::flag;
 use hysid_files::{Destination, Kind};
 use hysid_records::Roles;
-use hysid_report::{Identified, initial_state};
 use serde::Serialize;
 
 use crate::Outcome;

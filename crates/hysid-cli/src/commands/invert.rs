@@ -15,14 +15,14 @@ use hysid_tables::{Table, push_shortest};
 use serde::Serialize;
 
 use crate::Outcome;
-use crate::arguments::{Invert, Preview};
+use crate::arguments::Invert;
 use crate::commands::{check_band, read_model};
 use crate::data::factors;
 use crate::errors_table::errors_table;
 use crate::files::{self, check_outputs};
-use crate::inversion::{self, Bounds, Inverted, Wanted};
 use crate::messages::{note_labelled, raw_results, told, warning};
 use crate::terminal::clipped;
+use hysid_app::inversion::{self, Bounds, Inverted, Preview, Wanted};
 
 pub fn run(arguments: &Invert) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;

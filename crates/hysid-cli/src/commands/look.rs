@@ -4,11 +4,11 @@ use std::path::Path;
 
 use anyhow::Result;
 use hysid::data::summary::Summary;
+use hysid_app::data_warnings;
 use hysid_document::object;
 use hysid_files::{Destination, Kind};
 use hysid_records::csv_text;
 use hysid_records::{Data, Looked, Roles, understanding};
-use hysid_report::data_warnings;
 use serde::Serialize;
 
 use crate::Outcome;

@@ -1,7 +1,7 @@
 //! `hysid models`: all models that a fit can use, or what a model file holds.
 
 use anyhow::Result;
-use hysid_report::models;
+use hysid_app::models;
 
 use crate::Outcome;
 use crate::arguments::Models;

@@ -14,7 +14,7 @@ use crate::arguments;
 use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
 use crate::messages::{Usage, note_labelled, raw_results, told};
-use crate::planning::{self, Planned};
+use hysid_app::plan::{self as planning, Planned};
 
 pub fn run(arguments: &arguments::Plan) -> Result<Outcome> {
     match (&arguments.kind, arguments.like.is_empty()) {

@@ -1,10 +1,10 @@
 //! Loops of measured data and of a model.
 
+use hysid_app::{MEASURED_WIDTH, MODEL_WIDTH, path_curves, scored_rows};
 use hysid_document::{Chart, Colour, Curve, unit};
-use hysid_report::{MEASURED_WIDTH, MODEL_WIDTH, path_curves, scored_rows};
 
 use super::Subject;
-use crate::cycles::pictures::path;
+use hysid_app::cycles::pictures::path;
 
 /// Points of all curves of a colour together.
 const POINTS: usize = 12_000;

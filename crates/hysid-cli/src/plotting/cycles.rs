@@ -5,17 +5,17 @@ use std::borrow::Cow;
 use anyhow::{Result, anyhow, bail};
 use hysid::data::record::Dataset;
 use hysid::diagnosis::cycles::{CycleOptions, CycleTable, Field};
+use hysid_app::quantities::Quantities;
+use hysid_app::tracks::times;
+use hysid_app::{MODEL_WIDTH, time_label};
 use hysid_document::chart::thin::Point;
 use hysid_document::{Chart, Colour, Curve, unit};
-use hysid_report::quantities::Quantities;
-use hysid_report::tracks::times;
-use hysid_report::{MODEL_WIDTH, time_label};
 
 use super::Subject;
 use super::curves::{BOTH, alone, legend};
-use crate::cycles::Cycles;
-use crate::cycles::over_amplitude::{self, Shown};
-use crate::cycles::pictures::path;
+use hysid_app::cycles::Cycles;
+use hysid_app::cycles::over_amplitude::{self, Shown};
+use hysid_app::cycles::pictures::path;
 
 /// Height of a chart over its width.
 const SHAPE: f64 = 0.7;

@@ -3,12 +3,12 @@
 use anyhow::Result;
 use hysid::data::record::Record;
 use hysid::model::Prediction;
+use hysid_app::histories::{Panel, difference, error_label};
+use hysid_app::tracks::times;
+use hysid_app::{MODEL_WIDTH, scored_rows, time_label};
 use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Chart, Colour, Curve, unit};
-use hysid_report::histories::{Panel, difference, error_label};
-use hysid_report::tracks::times;
-use hysid_report::{MODEL_WIDTH, scored_rows, time_label};
 
 use super::Subject;
 use super::curves::{BOTH, alone};

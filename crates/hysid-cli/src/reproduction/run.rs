@@ -5,10 +5,10 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use hysid_app::{date, page_text};
 use hysid_document::{Page, Text, markdown, plain};
 use hysid_files::{Destination, GENERATOR};
 use hysid_paper::{Chapter, Content, Experiment, Observer, Settings};
-use hysid_report::{date, page_text};
 
 use super::{Outputs, rendering};
 use crate::messages::{note, results};

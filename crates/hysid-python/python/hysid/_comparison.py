@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-import os
-import warnings
-from collections.abc import Callable, Sequence
+import json
+from collections.abc import Sequence
 from dataclasses import dataclass
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
 from hysid._arguments import real, whole
-from hysid._data import columns
-from hysid._fitting import as_json, fitted
+from hysid._data import columns, in_units_of
+from hysid._fitting import as_json
 from hysid._html import number, table
-from hysid._progress import Listener, Progress
+from hysid._progress import Listener, of_native
 from hysid._progress_line import told
-from hysid._warning import HysidWarning, warn
+from hysid._warning import warn
 from hysid._results import Errors
 from hysid.model import Model
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from hysid._data import Columns, Values
-
-# Seconds for a model other than auto.
-_TIME_LIMIT = 20.0
-
-# Seconds between two looks at the progress.
-_PAUSE = 0.1
-
+    from hysid._data import Values
 
 @dataclass(frozen=True)
 class Compared:
@@ -192,9 +183,6 @@ def compare(
     >>> comparison[0].name
     'generalized-prandtl-ishlinskii'
     """
-    # Imported here: it is slow to import, and only this function needs it.
-    from concurrent.futures import ThreadPoolExecutor, wait
-
     limit = None if time_limit is None else real("time_limit", time_limit)
     named = isinstance(rate, str)
     arranged = columns(x, y, time, None if named else rate, records)
@@ -215,76 +203,25 @@ def compare(
         except ValueError as error:
             rows.append(Compared(name, error=str(error)))
 
-    work = _Work(len(requests))
-
-    def row(place: int) -> Compared:
-        return _compared(data, requests[place], unseen, limit, work, place)
-
-    workers = os.cpu_count() or 1 if threads is None else whole("threads", threads, 1, 1024)
-    with (
-        told(progress) as callback,
-        ThreadPoolExecutor(min(workers, max(1, len(requests)))) as pool,
-        warnings.catch_warnings(),
-    ):
-        warnings.simplefilter("ignore", HysidWarning)
-        futures = [pool.submit(row, place) for place in range(len(requests))]
-        try:
-            pending = set(futures)
-            while pending:
-                pending = wait(pending, timeout=_PAUSE).not_done
-                if callback is not None and callback(work.progress()):
-                    work.ended = True
-        except BaseException:
-            # The models that are being fitted end as well.
-            work.ended = True
-            raise
-        return Comparison(rows + [future.result() for future in futures])
-
-
-class _Work:
-    """What the fits of a comparison have in common: how far each is, and whether they are to end."""
-
-    def __init__(self, fits: int) -> None:
-        self.shares = [0.0] * fits
-        self.ended = False
-
-    def listener(self, place: int) -> Callable[[Progress], object]:
-        def listen(progress: Progress) -> bool:
-            self.shares[place] = progress.done
-            return self.ended
-
-        return listen
-
-    def progress(self) -> Progress:
-        """The progress of all of them together."""
-        done = sum(self.shares) / max(1, len(self.shares))
-        fits = len(self.shares)
-        place = min(sum(share >= 1.0 for share in self.shares) + 1, fits)
-        return Progress(done, float("nan"), 0, 0, "all-data", f"model {place} of {fits}", True)
+    if unseen is not None:
+        unseen = in_units_of(unseen, dict(zip(("time", "inputs", "rate", "output"), data.names())))
+    workers = None if threads is None else whole("threads", threads, 1, 1024)
+    with told(progress) as callback:
+        tested = None if unseen is None else unseen.dataset()
+        fitted, interrupted = _hysid.compare(data, requests, tested, workers, limit, of_native(callback))
+    if interrupted:
+        raise KeyboardInterrupt
+    return Comparison(rows + [_compared(*row) for row in fitted])
 
 
 def _compared(
-    data: _hysid.Dataset,
-    request: _hysid.FitSpec,
-    unseen: Columns | None,
-    time_limit: float | None,
-    work: _Work,
-    place: int,
+    name: str, native: _hysid.Model | None, test: str | None, seconds: float | None, error: str | None
 ) -> Compared:
-    name = request.label()
-    if work.ended:
-        return Compared(name, error="not fitted: the comparison was ended before")
-    limit = time_limit if time_limit is not None or name == "auto" else _TIME_LIMIT
-    began = perf_counter()
-    try:
-        model = fitted(data, request, time_limit=limit, threads=1, progress=work.listener(place))
-        seconds = perf_counter() - began
-        test = None if unseen is None else model._evaluated(model._converted(unseen, same_units=False))
-    except ValueError as error:
-        return Compared(name, error=str(error))
-    finally:
-        work.shares[place] = 1.0
-    return Compared(name, model, model.train, test, seconds)
+    if native is None:
+        return Compared(name, error=error)
+    model = Model(native)
+    unseen = None if test is None else Errors(**json.loads(test))
+    return Compared(name, model, model.train, unseen, seconds)
 
 
 def _parts(test: Any) -> tuple[Any, ...]:

@@ -68,6 +68,34 @@ class Columns(NamedTuple):
         return [column.name or f"x{place + 1}" for place, column in enumerate(self.inputs)]
 
 
+def in_units_of(arranged: Columns, trained: Mapping[str, Any]) -> Columns:
+    """The columns in the units of the training, converted where names contain units; warns of conversions.
+
+    `trained` has the names of training data: time, inputs, rate, output.
+    """
+    notes: list[str] = []
+
+    def one(column: Column | None, name: str | None) -> Column | None:
+        if column is None or column.name is None or name is None:
+            return column
+        factor = _hysid.unit_factor(column.name, name)
+        if factor is None:
+            return column
+        notes.append(f"{column.name} is converted to the unit of the model's {name} (factor {factor:.6g})")
+        return Column(factor * column.values, name)
+
+    pairs = zip(arranged.inputs, trained["inputs"])
+    converted = [one(column, name) or column for column, name in pairs]
+    result = arranged._replace(
+        inputs=[*converted, *arranged.inputs[len(converted) :]],
+        time=one(arranged.time, trained["time"]),
+        rate=one(arranged.rate, trained["rate"]),
+        output=one(arranged.output, trained["output"]),
+    )
+    warn(notes)
+    return result
+
+
 def columns(x: Any, y: Any, time: Any, rate: Any, records: Any, inputs: Sequence[str] = ()) -> Columns:
     """Splits the arguments into columns, and refuses columns of different length.
 

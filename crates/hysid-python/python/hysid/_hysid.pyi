@@ -13,6 +13,7 @@ __all__ = [
     "Stepper",
     "__version__",
     "axis_label",
+    "compare",
     "cycles",
     "deteriorating_stop",
     "diagnose",
@@ -66,6 +67,9 @@ class Model:
     def from_json(text: str) -> Model: ...
     def to_json(self) -> str: ...
     def save(self, path: str | os.PathLike[str], force: bool) -> None: ...
+    def report(
+        self, path: str | os.PathLike[str], title: str, sets: list[tuple[str, Dataset]], force: bool
+    ) -> None: ...
     def export(
         self,
         to: str,
@@ -203,6 +207,14 @@ def identify(
     time_limit: float | None,
     progress: Callable[..., object] | None,
 ) -> tuple[Model, int, bool]: ...
+def compare(
+    data: Dataset,
+    requests: list[FitSpec],
+    test: Dataset | None,
+    threads: int | None,
+    time_limit: float | None,
+    progress: Callable[..., object] | None,
+) -> tuple[list[tuple[str, Model | None, str | None, float | None, str | None]], bool]: ...
 def validate(
     data: Dataset,
     request: FitSpec,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, overload
@@ -13,7 +14,7 @@ from hysid import _hysid
 from hysid._arguments import name_of, pair, real, truth, whole
 from hysid._columns import Column
 from hysid._cycles import Cycles, named_options
-from hysid._data import Columns, columns, shaped_like
+from hysid._data import Columns, columns, in_units_of, shaped_like
 from hysid._diagnosis import ModelDiagnosis
 from hysid._inverse import Inverse, Inversion, Reference
 from hysid._residuals import ParameterInterval, Residuals, intervals_of
@@ -360,6 +361,56 @@ class Model(StoredModel):
         warn(self._native.range_warnings(data))
         return Residuals(content)
 
+    def report(
+        self,
+        path: str | os.PathLike[str],
+        x: Values,
+        y: Values | str,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        title: str | None = None,
+        name: str | None = None,
+        same_units: bool = False,
+        force: bool = False,
+    ) -> None:
+        """Write a page on the model and its free run over measured data: loops, errors, tests of the residual, limits.
+
+        Parameters
+        ----------
+        path : path
+            The page, an HTML file that needs no other file.
+        x, y, time, rate, records : array
+            As of `evaluate`.
+        title : str, optional
+            Title of the page; by default the name of the model.
+        name : str, optional
+            What the data are: ``"training"`` for those that the model was fitted to, by default ``"unseen"``.
+        same_units : bool
+            As of `simulate`.
+        force : bool
+            Replace a file even if it is not a page of Hysid.
+
+        Raises
+        ------
+        ValueError
+            Invalid inputs, or no measured output.
+        FileExistsError
+            The file exists, is not a page of Hysid, and `force` is False.
+
+        Examples
+        --------
+        >>> import hysid, tempfile
+        >>> train, test = hysid.specimen("terfenol-rod").data()
+        >>> model = hysid.fit(train.x, train.y, model="prandtl-ishlinskii")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     model.report(folder + "/page.html", test.x, test.y)
+        """
+        arranged = self._converted(self._columns(x, y, time, rate, records), same_units)
+        sets = [("unseen" if name is None else name, arranged.dataset())]
+        self._native.report(path, self.name if title is None else title, sets, truth("force", force))
+
     def parameter_intervals(
         self,
         x: Values,
@@ -390,30 +441,7 @@ class Model(StoredModel):
 
     def _converted(self, arranged: Columns, same_units: bool) -> Columns:
         """Columns in the units of the training, converted where names contain units; warns of conversions."""
-        if same_units:
-            return arranged
-        trained = self.description["columns"]
-        notes: list[str] = []
-
-        def one(column: Column | None, name: str | None) -> Column | None:
-            if column is None or column.name is None or name is None:
-                return column
-            factor = _hysid.unit_factor(column.name, name)
-            if factor is None:
-                return column
-            notes.append(f"{column.name} is converted to the unit of the model's {name} (factor {factor:.6g})")
-            return Column(factor * column.values, name)
-
-        pairs = zip(arranged.inputs, trained["inputs"])
-        converted = [one(column, name) or column for column, name in pairs]
-        result = arranged._replace(
-            inputs=[*converted, *arranged.inputs[len(converted) :]],
-            time=one(arranged.time, trained["time"]),
-            rate=one(arranged.rate, trained["rate"]),
-            output=one(arranged.output, trained["output"]),
-        )
-        warn(notes)
-        return result
+        return arranged if same_units else in_units_of(arranged, self.description["columns"])
 
     def _evaluated(
         self, arranged: Columns, *, after_warm_up: bool = False, initial_state: str | None = None

@@ -30,7 +30,7 @@ pub struct SoFar {
 /// The observer of a fit.
 pub struct Watch<'c> {
     course: &'c Arc<Course>,
-    words: hysid_report::Course,
+    words: hysid_app::Course,
     began: Instant,
     limit: Option<Duration>,
     told: Instant,
@@ -54,7 +54,7 @@ impl<'c> Watch<'c> {
         let now = Instant::now();
         Self {
             course,
-            words: hysid_report::Course::new(starts),
+            words: hysid_app::Course::new(starts),
             began: now,
             limit: time_limit.map(Duration::from_secs_f64),
             told: now,

@@ -9,10 +9,10 @@ use hysid::data::record::Dataset;
 use hysid::data::summary::Summary;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions, before_a_fit};
 use hysid::specimens::{Specimen, with_noise};
+use hysid_app::diagnosis::DataDiagnosis;
 use hysid_document::html;
 use hysid_document::visible::clipped;
 use hysid_records::{Data, ReadingChoice, Roles, csv_text, summarised, understanding};
-use hysid_report::diagnosis::DataDiagnosis;
 use hysid_tables::Table;
 use serde_json::{Value, json};
 

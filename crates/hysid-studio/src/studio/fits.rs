@@ -7,9 +7,9 @@ use anyhow::{Context, Result, anyhow, bail};
 use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::options::chosen::NamedOptions;
+use hysid_app::{Beforehand, Identified, date, origin, page_text};
 use hysid_files::Kind;
 use hysid_records::{Data, Usage};
-use hysid_report::{Beforehand, Identified, date, origin, page_text};
 
 use super::Studio;
 use crate::fitting::{Finish, FitState, Preview, Unsaved, Work, caught};
@@ -168,7 +168,7 @@ impl Studio {
             file,
             report: written.is_ok().then_some(report),
             made: date::now(),
-            seconds: found.identified.seconds,
+            seconds: found.identified.seconds.unwrap_or_default(),
             was_interrupted: false,
         })
     }
@@ -202,7 +202,9 @@ impl Studio {
     fn write_report(&self, report: &str, file: &str, found: &Found) -> Result<()> {
         let Found { begun, identified, data, .. } = found;
         let trained = identified.model.as_trained(&data.set)?;
-        let mut page = identified.page(Path::new(file), &[("training", trained.as_ref())])?;
+        let title = file.strip_suffix(".json").unwrap_or(file);
+        let sets = [("training", trained.as_ref())];
+        let mut page = identified.page(title, Some(Path::new(file)), &sets)?;
         let inputs: Vec<PathBuf> = begun.files.iter().map(|file| self.folder.data(file)).collect();
         let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
         page.parts.push(origin::section("hysid studio", &inputs));

@@ -9,9 +9,9 @@ use std::time::SystemTime;
 
 use anyhow::{Result, anyhow};
 use hysid::model::Model;
+use hysid_app::diagnosis::DiagnosedModel;
 use hysid_document::{Page, html};
 use hysid_records::{ColumnChoice, Data};
-use hysid_report::diagnosis::DiagnosedModel;
 use serde_json::Value;
 
 use super::Studio;

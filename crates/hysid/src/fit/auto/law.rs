@@ -25,7 +25,7 @@ const LEFT_BY_PREISACH: f64 = 0.05;
 
 /// Least error of such a Preisach model on the folds, relative to its training error: the folds ask for more than the data
 /// show. Where they do not, they can tell candidates apart by themselves. Designed.
-const ASKS_FOR_MORE: f64 = 3.0;
+const ASKS_FOR_MORE: f64 = 5.0;
 
 /// Scores of laws, relative to the lowest, that tell nothing apart: the law with the fewest numbers is taken. Designed.
 const ALIKE: f64 = 1.05;

@@ -7,7 +7,7 @@ use hysid_document::{Cell, Part, Table, count};
 
 use super::Cycles;
 use super::table::{notes, present, shown};
-use hysid_report::quantities::text_label;
+use crate::quantities::text_label;
 
 /// Rows shown at each end of a long table.
 const AT_EACH_END: usize = 8;

@@ -5,34 +5,35 @@ pub mod over_amplitude;
 mod page;
 pub mod pictures;
 mod table;
+#[cfg(feature = "tables")]
+mod tables;
 mod text;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::quantities::Quantities;
 use anyhow::{Result, anyhow};
 use hysid::Model;
 use hysid::data::record::Dataset;
 use hysid::diagnosis::cycles::{Correction, CycleOptions, CycleTable, FIGURES, Figure, corrected};
 use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
+use hysid_document::visible::clipped;
 use hysid_document::{count, object};
-use hysid_records::Data;
-use hysid_report::quantities::Quantities;
 
-pub use curves::{BEGINNING as BEGINNING_OF_CURVES, csv as curves_csv};
 pub use page::page;
-pub use table::{BEGINNING, csv};
+#[cfg(feature = "tables")]
+pub use tables::{BEGINNING, BEGINNING_OF_CURVES, csv, curves_csv};
 pub use text::text;
-
-use crate::terminal;
 
 pub struct Cycles<'a> {
     /// The file that the title of the page names.
     pub file: String,
     /// True for a model that was driven; false for measured data.
     pub of_model: bool,
-    pub data: std::borrow::Cow<'a, Dataset>,
+    pub data: Cow<'a, Dataset>,
     pub table: CycleTable,
     /// First-order reversal curves, if there are any.
     pub curves: Option<ReversalCurves>,
@@ -43,29 +44,29 @@ pub struct Cycles<'a> {
 }
 
 impl<'a> Cycles<'a> {
-    /// The cycles of measured data.
+    /// The cycles of measured data from a file, of which this was understood.
+    ///
+    /// # Errors
+    /// Data without cycles or reversal curves that can be looked at.
     pub fn of_data(
-        data: &'a Data,
+        data: &'a Dataset,
         options: &CycleOptions,
         corrections: &[Correction],
-        (smoothing_factor, understood): (Option<usize>, Vec<(String, String)>),
-    ) -> Result<Self> {
-        let explained = |error| data.explain(error);
+        smoothing_factor: Option<usize>,
+        (file, understood): (&str, Vec<(String, String)>),
+    ) -> hysid::Result<Self> {
         let (set, removed) = match corrections {
-            [] => (std::borrow::Cow::Borrowed(&data.set), Vec::new()),
-            _ => {
-                let (set, notes) = corrected(&data.set, corrections).map_err(explained)?;
-                (std::borrow::Cow::Owned(set), notes)
-            }
+            [] => (Cow::Borrowed(data), Vec::new()),
+            _ => corrected(data, corrections).map(|(set, notes)| (Cow::Owned(set), notes))?,
         };
-        let mut table = CycleTable::of(&set, options).map_err(explained)?;
+        let mut table = CycleTable::of(&set, options)?;
         table.notes.splice(..0, removed);
         let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor };
-        let curves = ReversalCurves::of(&set, &of_curves).map_err(explained)?;
+        let curves = ReversalCurves::of(&set, &of_curves)?;
         Ok(Self {
-            file: data.source.tables[0].file.clone(),
+            file: file.into(),
             of_model: false,
-            quantities: Quantities::of(data.set.names()),
+            quantities: Quantities::of(data.names()),
             data: set,
             table,
             curves,
@@ -88,7 +89,7 @@ impl<'a> Cycles<'a> {
             file,
             of_model: true,
             quantities: Quantities::of(driven.data.names()),
-            data: std::borrow::Cow::Owned(driven.data),
+            data: Cow::Owned(driven.data),
             table: driven.table,
             curves: driven.reversal_curves,
             understood,
@@ -104,7 +105,7 @@ impl<'a> Cycles<'a> {
             let named = self.quantities.as_figure(figure.name, figure.quantity);
             (figure.name, hysid::data::unit::of_column(&named))
         };
-        Ok(terminal::json(&object! {
+        Ok(hysid_document::json(&object! {
             input: &self.quantities.input,
             output: &self.quantities.output,
             /// True for cycles of a model that was driven.
@@ -130,8 +131,8 @@ impl<'a> Cycles<'a> {
         format!(
             "{}{incomplete}{whose}: {} over {}",
             count(complete, "cycle"),
-            terminal::clipped(&self.quantities.output),
-            terminal::clipped(&self.quantities.input),
+            clipped(&self.quantities.output),
+            clipped(&self.quantities.input),
         )
     }
 }

@@ -1,6 +1,7 @@
 //! All models that a fit can use, each with what it is.
 
 use hysid::law::facts::Rate;
+use hysid::network::Architecture;
 use hysid::options::ModelName;
 use hysid::options::classical::ClassicalModel;
 use hysid::options::network::Trainer;
@@ -98,6 +99,19 @@ fn what(model: ModelName) -> &'static str {
         ModelName::Network(family) => family.summary(),
         ModelName::Classical(law) => law.facts().summary,
     }
+}
+
+/// The neurons of a network, in words.
+pub fn parts(architecture: &Architecture) -> String {
+    let deteriorating = if architecture.deterioration { "deteriorating " } else { "" };
+    let mut parts = vec![format!("{} {deteriorating}stops", architecture.stops)];
+    if architecture.hidden > 0 {
+        parts.push(format!("{} hidden", architecture.hidden));
+    }
+    if architecture.relaxation > 0 {
+        parts.push(format!("{} relaxation", architecture.relaxation_neurons()));
+    }
+    parts.join(", ")
 }
 
 #[cfg(test)]

@@ -1,35 +1,8 @@
 //! First-order reversal curves: their table as CSV, and what they are in words.
 
-use anyhow::Result;
 use hysid::diagnosis::reversal_curves::{ReversalCurves, ReversalNode};
 
 use super::Cycles;
-use hysid_records::header_line;
-use hysid_tables::shortest;
-
-/// How every table of reversal curves begins, by which it is known again.
-pub const BEGINNING: &[u8] = b"reversal_input";
-
-/// The nodes as CSV: Everett function and density over reversal input and input.
-pub fn csv(cycles: &Cycles, curves: &ReversalCurves) -> Result<Vec<u8>> {
-    let q = &cycles.quantities;
-    let names = [
-        q.as_input("reversal_input"),
-        q.as_input("input"),
-        q.as_output("output"),
-        q.as_output("everett"),
-        q.as_density("density"),
-        q.as_density("density_deviation"),
-    ];
-    let mut writer = csv::Writer::from_writer(header_line(b',', names.iter().map(String::as_str))?);
-    for node in &curves.nodes {
-        let given = [node.reversal_input, node.input, node.output, node.everett].map(shortest);
-        let densities =
-            [node.density, node.density_deviation].map(|value| value.map_or_else(String::new, shortest));
-        writer.write_record(given.into_iter().chain(densities))?;
-    }
-    Ok(writer.into_inner()?)
-}
 
 /// Number of curves, smoothing and largest density in a sentence without full stop.
 /// `number` writes a number.

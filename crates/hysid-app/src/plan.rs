@@ -1,6 +1,8 @@
 //! A plan for its reader: text, page, table of the drive, JSON.
 
 mod page;
+#[cfg(feature = "tables")]
+mod rows;
 mod text;
 
 use std::path::Path;
@@ -8,10 +10,11 @@ use std::path::Path;
 use hysid::data::unit;
 use hysid::plan::Plan;
 use hysid_document::{Cell, Table, number, object};
-use hysid_tables::{DecimalSign, push_shortest};
 use serde::Serialize;
 
 pub use page::page;
+#[cfg(feature = "tables")]
+pub use rows::rows;
 pub use text::text;
 
 /// A plan and what was understood before it.
@@ -22,20 +25,6 @@ pub struct Planned<'a> {
     pub understood: Vec<(String, String)>,
     /// The command with which the results of the drive are used.
     pub next: String,
-}
-
-/// The rows of the drive as CSV, without the header.
-pub fn rows(plan: &Plan) -> Vec<u8> {
-    let mut text = String::new();
-    for (row, &x) in plan.input.iter().enumerate() {
-        if let Some(time) = &plan.time {
-            push_shortest(&mut text, time[row], DecimalSign::Point);
-            text.push(',');
-        }
-        push_shortest(&mut text, x, DecimalSign::Point);
-        text.push('\n');
-    }
-    text.into_bytes()
 }
 
 /// The object that `--json` prints; the drive is in its file.

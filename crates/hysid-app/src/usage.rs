@@ -9,12 +9,13 @@ use hysid_document::{Cell, Item, Part, Table, span, unit};
 use crate::Report;
 
 /// Commands and limits.
-pub fn sections(report: &Report) -> [Part; 2] {
-    [commands(report), limits(report)]
+pub fn sections(report: &Report) -> impl Iterator<Item = Part> {
+    let commands = report.model_file.as_deref().map(|file| commands(report, file));
+    commands.into_iter().chain([limits(report)])
 }
 
-fn commands(report: &Report) -> Part {
-    let file = shown(Path::new(&report.model_file));
+fn commands(report: &Report, file: &str) -> Part {
+    let file = shown(Path::new(file));
     let band = if report.model.band().is_some() { " --band 0.9" } else { "" };
     let parts = [
         Part::paragraph("Evaluate it on new measured data:"),

@@ -2,6 +2,7 @@
 
 mod cards;
 mod counsel;
+#[cfg(feature = "tables")]
 mod data;
 mod findings;
 mod invertibility;
@@ -9,6 +10,7 @@ mod loops;
 mod model;
 mod overview;
 
+#[cfg(feature = "tables")]
 pub use data::DataDiagnosis;
 use hysid_document::plain::{WIDTH, wrapped};
 pub use model::DiagnosedModel;

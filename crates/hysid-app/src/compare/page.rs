@@ -6,8 +6,8 @@ use hysid::elementary::ln;
 use hysid_document::chart::thin::thin;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Table, unit};
 
-use super::{Fitted, HEADINGS, Row, cells, stopped_note};
-use hysid_report::{MEASURED_WIDTH, MODEL_WIDTH, ReportSet, Tracks, small_loops};
+use super::{CompareOutcome, CompareRow, ComparedFit, HEADINGS, cells, stopped_note};
+use crate::{MEASURED_WIDTH, MODEL_WIDTH, ReportSet, Tracks, small_loops};
 
 /// Most records drawn into one chart.
 const MOST_RECORDS: usize = 200;
@@ -15,46 +15,50 @@ const MOST_RECORDS: usize = 200;
 /// Models whose loops are drawn over each other.
 const OVERLAID: usize = 3;
 
-pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) -> Result<Page> {
-    let labels: Vec<String> = rows.iter().map(Row::label).collect();
-    let fitted: Vec<(&str, &Fitted)> = rows
-        .iter()
-        .zip(&labels)
-        .filter_map(|(row, label)| Some((label.as_str(), row.outcome.as_ref().ok()?)))
-        .collect();
-    let shown = test.unwrap_or(train);
-    let data = if test.is_some() { "unseen data" } else { "the training data" };
-    let mut parts = Vec::new();
-    parts.extend(fitted.first().map(|(name, best)| {
-        let error = super::percent(best.judged());
-        Part::Lead(
-            format!(
-                "{name} has the lowest error on {data}: {error} % of the standard deviation of \
-                            the output."
+impl CompareOutcome {
+    /// The comparison as a page, with the data of the request.
+    pub fn page(&self, title: &str, train: &Dataset, test: Option<&Dataset>) -> Result<Page> {
+        let rows = &self.rows;
+        let labels: Vec<String> = rows.iter().map(CompareRow::label).collect();
+        let fitted: Vec<(&str, &ComparedFit)> = rows
+            .iter()
+            .zip(&labels)
+            .filter_map(|(row, label)| Some((label.as_str(), row.fit.as_ref().ok()?)))
+            .collect();
+        let shown = test.unwrap_or(train);
+        let data = if test.is_some() { "unseen data" } else { "the training data" };
+        let mut parts = Vec::new();
+        parts.extend(fitted.first().map(|(name, best)| {
+            let error = super::percent(best.judged());
+            Part::Lead(
+                format!(
+                    "{name} has the lowest error on {data}: {error} % of the standard deviation of \
+                                the output."
+                )
+                .into(),
             )
-            .into(),
-        )
-    }));
-    let words = format!(
-        "NRMSE of free runs, in percent of the standard deviation of the output. Each fit ran on one \
-         thread, several fits at the same time. {}",
-        stopped_note(rows)
-    );
-    parts.push(Part::section("Errors", [Part::Table(rows_table(rows)), Part::note(words)]));
-    if !fitted.is_empty() {
-        parts.push(Part::section("Error against size", [Part::chart(size_chart(&fitted, data))]));
-        let tracks = Tracks::of(data, shown);
-        let loops = fitted.iter().map(|(name, fitted)| loops(name, fitted, data, shown, tracks.clone()));
-        let loops = loops.collect::<Result<_>>()?;
-        let overlay = Part::chart(overlay(&fitted, shown)?);
-        let content = [overlay, Part::heading("Model by model"), Part::Charts(loops)];
-        parts.push(Part::section(format!("Loops on {data}"), content));
+        }));
+        let words = format!(
+            "NRMSE of free runs, in percent of the standard deviation of the output. Each fit ran on one \
+             thread, several fits at the same time. {}",
+            stopped_note(rows)
+        );
+        parts.push(Part::section("Errors", [Part::Table(rows_table(rows)), Part::note(words)]));
+        if !fitted.is_empty() {
+            parts.push(Part::section("Error against size", [Part::chart(size_chart(&fitted, data))]));
+            let tracks = Tracks::of(data, shown);
+            let loops = fitted.iter().map(|(name, fitted)| loops(name, fitted, data, shown, tracks.clone()));
+            let loops = loops.collect::<Result<_>>()?;
+            let overlay = Part::chart(overlay(&fitted, shown)?);
+            let content = [overlay, Part::heading("Model by model"), Part::Charts(loops)];
+            parts.push(Part::section(format!("Loops on {data}"), content));
+        }
+        Ok(Page { title: title.into(), parts })
     }
-    Ok(Page { title: title.into(), parts })
 }
 
 /// Measured and simulated loops of one model.
-fn loops(name: &str, fitted: &Fitted, data: &str, shown: &Dataset, tracks: Tracks) -> Result<Chart> {
+fn loops(name: &str, fitted: &ComparedFit, data: &str, shown: &Dataset, tracks: Tracks) -> Result<Chart> {
     let simulated = shown.records().iter().map(|record| fitted.model.simulate(record));
     let simulated = simulated.collect::<hysid::Result<_>>()?;
     let errors = fitted.judged().clone();
@@ -62,9 +66,9 @@ fn loops(name: &str, fitted: &Fitted, data: &str, shown: &Dataset, tracks: Track
     Ok(small_loops(&set, &format!("{name}: {} %", super::percent(fitted.judged()))))
 }
 
-fn rows_table(rows: &[Row]) -> Table {
-    let cells_of = |row: &Row| -> Vec<Cell> {
-        let cells = match &row.outcome {
+fn rows_table(rows: &[CompareRow]) -> Table {
+    let cells_of = |row: &CompareRow| -> Vec<Cell> {
+        let cells = match &row.fit {
             Ok(fitted) => cells(fitted).to_vec(),
             Err(why) => vec![why.clone()],
         };
@@ -74,8 +78,8 @@ fn rows_table(rows: &[Row]) -> Table {
 }
 
 /// Error against number of parameters, a dot for each model.
-fn size_chart(fitted: &[(&str, &Fitted)], data: &str) -> Chart {
-    let point = |fitted: &Fitted| {
+fn size_chart(fitted: &[(&str, &ComparedFit)], data: &str) -> Chart {
+    let point = |fitted: &ComparedFit| {
         let error = fitted.judged().nrmse_std_percent.unwrap_or(f64::NAN);
         (fitted.model.parameters() as f64, error)
     };
@@ -122,7 +126,7 @@ fn labels<'a>(named: impl Iterator<Item = (&'a str, (f64, f64))>) -> Vec<Label> 
 }
 
 /// Measured loops, and those of the best models over them.
-fn overlay(fitted: &[(&str, &Fitted)], data: &Dataset) -> Result<Chart> {
+fn overlay(fitted: &[(&str, &ComparedFit)], data: &Dataset) -> Result<Chart> {
     let names = data.names();
     let (mut curves, mut legend) = (Vec::new(), vec![(Colour::Measured, "measured".to_string())]);
     let path = |x: &[f64], y: &[f64], shown: &[f64]| -> Vec<(f64, f64)> {

@@ -1,48 +1,9 @@
-//! The table of cycles: as CSV, and as rows for text and page.
+//! Rows of the table of cycles for text and page.
 
-use anyhow::Result;
 use hysid::diagnosis::cycles::{CycleRow, Field, Figure, Quantity};
 use hysid_document::{Cell, Table};
 
 use super::Cycles;
-use hysid_records::header_line;
-use hysid_tables::shortest;
-
-/// How every table of cycles begins, by which it is known again.
-pub const BEGINNING: &[u8] = b"record,cycle,first_row,last_row,complete,";
-
-/// The table as CSV: rows count from 1 in their record, an empty cell is a figure that the data do not give.
-pub fn csv(cycles: &Cycles) -> Result<Vec<u8>> {
-    let fixed = ["record", "cycle", "first_row", "last_row", "complete"].map(String::from);
-    let named = |figure: &Figure| cycles.quantities.as_figure(figure.name, figure.quantity);
-    let figures: Vec<&Figure> = cycles.figures().collect();
-    let has_backbone = has_backbone(cycles.table.field);
-    let marks: &[&str] =
-        if has_backbone { &["backbone_peak", "backbone_valley", "notes"] } else { &["notes"] };
-    let names: Vec<String> = fixed
-        .into_iter()
-        .chain(figures.iter().map(|figure| named(figure)))
-        .chain(marks.iter().map(|mark| mark.to_string()))
-        .collect();
-    let mut writer = csv::Writer::from_writer(header_line(b',', names.iter().map(String::as_str))?);
-    for row in &cycles.table.cycles {
-        let place = [row.cycle, row.rows.0 + 1, row.rows.1 + 1].map(|number| number.to_string());
-        let values = figures.iter().map(|figure| (figure.of)(row).map_or_else(String::new, shortest));
-        let marks = [row.backbone_peak, row.backbone_valley].map(|mark| yes(mark).to_string());
-        let cells = std::iter::once(row.record.clone())
-            .chain(place)
-            .chain([yes(row.complete).to_string()])
-            .chain(values)
-            .chain(marks.into_iter().filter(|_| has_backbone))
-            .chain([row.notes.join("; ")]);
-        writer.write_record(cells)?;
-    }
-    Ok(writer.into_inner()?)
-}
-
-fn yes(is: bool) -> &'static str {
-    if is { "yes" } else { "no" }
-}
 
 /// True if the tables of the field mark the points of the backbone.
 pub fn has_backbone(field: Field) -> bool {
@@ -104,7 +65,7 @@ pub fn notes(cycles: &Cycles) -> Vec<String> {
     let said = |(note, rows): (&str, Vec<String>)| match rows.len() {
         1 => format!("cycle {}: {note}", rows[0]),
         count if count == cycles.table.cycles.len() => format!("all cycles: {note}"),
-        _ => format!("cycles {}: {note}", crate::terminal::listed(&rows)),
+        _ => format!("cycles {}: {note}", hysid_document::visible::listed(&rows)),
     };
     all.into_iter().map(said).chain(cycles.table.notes.iter().cloned()).collect()
 }

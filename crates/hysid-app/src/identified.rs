@@ -4,17 +4,13 @@ use std::path::Path;
 
 use anyhow::Result;
 use hysid::data::record::Dataset;
-use hysid::data::summary::Summary;
 use hysid::diagnosis::frequency_response::ModelResponses;
 use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualOptions, Residuals};
-use hysid::diagnosis::{DataIssueKind, before_a_fit};
 use hysid::fit::intervals::ParameterIntervals;
 use hysid::fit::progress::HeldOutRows;
 use hysid::model::Model;
-use hysid::options::FitSpec;
 use hysid_document::Page;
 use hysid_files::GENERATOR;
-use hysid_records::{Data, summarised, understanding};
 
 use crate::{Report, ReportSet, loops, page};
 
@@ -26,41 +22,6 @@ pub struct Beforehand {
     pub warnings: Vec<String>,
 }
 
-impl Beforehand {
-    /// # Errors
-    /// Data that the model cannot be fitted to.
-    pub fn of(data: &Data, request: &FitSpec) -> Result<Self> {
-        let model = match request {
-            FitSpec::Network(options) => {
-                let architecture = options.architecture(&data.set).map_err(|error| data.explain(error))?;
-                format!(": {} parameters; {}", architecture.parameters(), understanding::parts(&architecture))
-            }
-            FitSpec::Auto(options) => understanding::choice(options),
-            FitSpec::Classical(_) => String::new(),
-        };
-        request.model().check_data(&data.set, request.rate()).map_err(|error| data.explain(error))?;
-        let summary = Summary::of(&data.set);
-        let understood = understanding::understanding(data, &summary, request, &model);
-        let mut warnings = data_warnings(data, &summary);
-        warnings.extend(request.cautions(&data.set));
-        Ok(Self { understood, warnings })
-    }
-}
-
-/// What to be aware of in data that a model is to be fitted to.
-pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
-    // Data that cannot be looked at cannot be fitted to either: the fit says why.
-    let doubtful = before_a_fit(&data.set).unwrap_or_default();
-    let output = format!("\"{}\" ", data.roles.output);
-    let statements = doubtful.into_iter().map(|issue| match (issue.kind, issue.value) {
-        (DataIssueKind::MissingValueMark, Some(value)) if issue.statement.starts_with(&output) => {
-            format!("{} (--missing {value})", issue.statement)
-        }
-        _ => issue.statement,
-    });
-    summarised(&summary.warnings(&data.set)).into_iter().chain(statements).collect()
-}
-
 /// A model and what was told and spent on the way to it.
 #[derive(Debug)]
 pub struct Identified {
@@ -68,7 +29,8 @@ pub struct Identified {
     pub evaluations: usize,
     /// Rows that were held out in turn, and what was predicted for them.
     pub held_out: Option<HeldOutRows>,
-    pub seconds: f64,
+    /// Time of the fit; `None` for a model that was fitted before.
+    pub seconds: Option<f64>,
     /// What was told before.
     pub beforehand: Beforehand,
 }
@@ -106,8 +68,16 @@ impl Identified {
         Ok(ParameterIntervals::of(&self.model, trained)?)
     }
 
-    /// The report on the model, whose file is at `path`, with some data: those called "training" are what it was fitted to.
-    pub fn page(&self, path: &Path, sets: &[(&str, &Dataset)]) -> Result<Page> {
+    /// A model that was fitted before.
+    pub fn before(model: Model) -> Self {
+        Self { model, evaluations: 0, held_out: None, seconds: None, beforehand: Beforehand::default() }
+    }
+
+    /// The report on the model with some data: those called "training" are what it was fitted to.
+    ///
+    /// # Errors
+    /// Data that the model cannot be run on, or without a measured output.
+    pub fn page(&self, title: &str, file: Option<&Path>, sets: &[(&str, &Dataset)]) -> Result<Page> {
         let mut residuals = Vec::new();
         let mut intervals = None;
         for &(name, data) in sets {
@@ -123,9 +93,8 @@ impl Identified {
             sets.iter().map(|(name, data)| ReportSet::of(&self.model, name, data)).collect::<Result<_>>()?;
         let training = reported.iter().find(|set| set.name == "training" && self.model.has_inertia());
         let responses = training.map(|set| ModelResponses::of(&self.model, set.data, &set.simulated));
-        let title = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         Ok(page(&Report {
-            title,
+            title: title.into(),
             model: &self.model,
             sets: reported,
             residuals: &residuals,
@@ -133,7 +102,7 @@ impl Identified {
             frequency_response: responses.transpose()?,
             warnings: &self.beforehand.warnings,
             understood: &self.beforehand.understood,
-            model_file: path.display().to_string(),
+            model_file: file.map(|file| file.display().to_string()),
             seconds: self.seconds,
         }))
     }

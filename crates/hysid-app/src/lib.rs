@@ -1,12 +1,18 @@
-//! What Hysid tells of data and models: the report of a fit ([`page`], [`Identified`]), the [`diagnosis`] of data and of
-//! models, and how a page was made ([`origin`]).
+//! The use cases of Hysid, one for all faces: program, studio and Python collect requests and show outcomes.
+//!
+//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`plan`], [`inversion`], the [`diagnosis`] of
+//! data and of models, and how a page was made ([`origin`]).
 
 // Only the crates of Hysid use this one: what a name says needs no comment.
 #![allow(missing_docs)]
 
 mod band;
 mod band_coverage;
+#[cfg(feature = "tables")]
+mod beforehand;
+pub mod compare;
 mod course;
+pub mod cycles;
 pub mod date;
 pub mod diagnosis;
 mod ensemble;
@@ -15,9 +21,12 @@ mod figures;
 mod frequency_response;
 pub mod histories;
 mod identified;
+#[cfg(feature = "tables")]
+pub mod inversion;
 pub mod models;
 pub mod origin;
 pub mod parameters;
+pub mod plan;
 pub mod provenance;
 pub mod quantities;
 pub mod residual_words;
@@ -38,9 +47,11 @@ use hysid_document::{Page, html, number, unit};
 use hysid_files::{PAGE_MARK, with_page_sum};
 
 pub use band_coverage::BandCoverage;
+#[cfg(feature = "tables")]
+pub use beforehand::data_warnings;
 pub use course::Course;
 pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, scored_rows, small_loops};
-pub use identified::{Beforehand, Identified, data_warnings};
+pub use identified::{Beforehand, Identified};
 pub use timing::ns_per_sample;
 pub use tracks::Tracks;
 
@@ -61,9 +72,10 @@ pub struct Report<'a> {
     pub warnings: &'a [String],
     /// What was understood of the data: a question and its answer.
     pub understood: &'a [(String, String)],
-    pub model_file: String,
-    /// How long the fit took.
-    pub seconds: f64,
+    /// Name of the model file, if there is one.
+    pub model_file: Option<String>,
+    /// Time of the fit, if the report is of a fit.
+    pub seconds: Option<f64>,
 }
 
 /// Data, and what the model makes of them.

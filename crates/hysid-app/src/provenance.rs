@@ -32,8 +32,8 @@ pub fn notes(report: &Report) -> Option<Part> {
 /// Options and provenance.
 pub fn section(report: &Report) -> Part {
     let mut pairs = of_model(report.model);
-    pairs.push(pair("Time taken", format!("{} s", number(report.seconds, 3))));
-    pairs.push(pair("Model file", &*report.model_file));
+    pairs.extend(report.seconds.map(|seconds| pair("Time taken", format!("{} s", number(seconds, 3)))));
+    pairs.extend(report.model_file.as_deref().map(|file| pair("Model file", file)));
     Part::section("Options and provenance", [Part::Definitions(pairs)])
 }
 

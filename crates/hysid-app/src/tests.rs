@@ -59,8 +59,8 @@ fn report<'a>(model: &'a Model, data: &'a Dataset, warnings: &'a [String]) -> Re
         frequency_response: None,
         warnings,
         understood: &[],
-        model_file: "my $(model).json".into(),
-        seconds: 1.25,
+        model_file: Some("my $(model).json".into()),
+        seconds: Some(1.25),
     }
 }
 

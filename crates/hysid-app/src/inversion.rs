@@ -13,7 +13,14 @@ use hysid::model::{BandLevel, Inverse, Inversion, Model, Reach};
 pub use page::page;
 pub use reference::{Wanted, WantedRecord};
 
-use crate::arguments::Preview;
+/// How far an inverse looks ahead.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Preview {
+    /// As far as suits the model and the reference.
+    Auto,
+    /// This time.
+    Time(f64),
+}
 
 /// What bounds the search of the inputs.
 #[derive(Debug, Clone, Copy)]

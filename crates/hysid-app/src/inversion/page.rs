@@ -7,9 +7,9 @@ use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Cell, Chart, Colour, Curve, Page, Part, Piece, Table, Text, number, unit};
 
 use super::{Bounds, Inverted, Wanted, WantedRecord, meaning};
-use hysid_report::histories::Panel;
-use hysid_report::tracks::times_or_rows;
-use hysid_report::{MEASURED_WIDTH, MODEL_WIDTH, path_curves};
+use crate::histories::Panel;
+use crate::tracks::times_or_rows;
+use crate::{MEASURED_WIDTH, MODEL_WIDTH, path_curves};
 
 /// Most records drawn; of more, those with the largest deviations.
 const MOST_RECORDS: usize = 6;

@@ -1,0 +1,335 @@
+//! Models side by side: each is fitted to the same data, and judged on data that none has seen.
+
+mod page;
+
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use crate::models::parts;
+use crate::ns_per_sample;
+use anyhow::{Context, Result};
+use hysid::Error;
+use hysid::data::metrics::Errors;
+use hysid::data::record::Dataset;
+use hysid::fit::progress::Progress;
+use hysid::fit::{identify, memory_need};
+use hysid::model::Model;
+use hysid::options::FitSpec;
+use hysid::significant::Significant;
+use hysid::termination::Termination;
+use hysid_document::visible;
+
+/// A simulation is timed over at least this time.
+const TIMED: Duration = Duration::from_millis(30);
+
+/// Seconds for a model that is named; `auto` has no limit of its own, so that its row is what `fit` gives.
+const TIME_LIMIT: f64 = 20.0;
+
+/// Models to compare, and the data for it.
+#[derive(Debug, Clone)]
+pub struct CompareRequest<'a> {
+    pub train: &'a Dataset,
+    /// Data that no model is fitted to; without them, models are compared on the training data.
+    pub test: Option<&'a Dataset>,
+    /// Models with their options; the one that takes longest first.
+    pub specs: Vec<FitSpec>,
+    /// Seconds for each fit; by default 20, and no limit for `auto`.
+    pub time_limit: Option<f64>,
+    /// Number of fits at the same time; by default one for each processor.
+    pub threads: Option<usize>,
+}
+
+/// The data that an error concerns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ComparedData {
+    Train,
+    Test,
+}
+
+/// Follows a comparison, from several threads.
+pub trait CompareObserver: Sync {
+    /// True once fits are to end with their best model so far, and no further one is to begin.
+    fn is_to_stop(&self) -> bool;
+
+    /// The progress of the fit of the specification at a place of the request.
+    fn progress(&self, _place: usize, _progress: &Progress<'_>) {}
+
+    /// The fit of the specification at a place of the request has ended: its row, and the number of fits that have.
+    fn ended(&self, _place: usize, _row: &CompareRow, _count: usize) {}
+
+    /// An error in words.
+    fn explain(&self, error: Error, _data: ComparedData) -> String {
+        error.to_string()
+    }
+}
+
+/// Models with their errors; the lowest error on unseen data comes first.
+#[derive(Debug)]
+pub struct CompareOutcome {
+    pub rows: Vec<CompareRow>,
+    /// True if there were data that no model was fitted to.
+    pub is_tested: bool,
+}
+
+/// A model and the result of its fit.
+#[derive(Debug)]
+pub struct CompareRow {
+    pub spec: FitSpec,
+    /// The model, or the reason why there is none.
+    pub fit: Result<ComparedFit, String>,
+}
+
+/// A fitted model and its errors.
+#[derive(Debug)]
+pub struct ComparedFit {
+    pub model: Model,
+    pub train: Errors,
+    /// Errors on the test data, if there are any.
+    pub test: Option<Errors>,
+    pub fit_seconds: f64,
+    /// Nanoseconds for a sample of a free run, on one thread.
+    pub simulate_ns_per_sample: f64,
+}
+
+impl CompareRow {
+    /// The model, and its variant if it has more than one.
+    pub fn label(&self) -> String {
+        self.spec.variant_label()
+    }
+
+    /// Number that rows are sorted by; those without a model come last.
+    fn error(&self) -> f64 {
+        let fit = self.fit.as_ref().ok();
+        fit.and_then(|fit| fit.judged().nrmse_std_percent).unwrap_or(f64::INFINITY)
+    }
+
+    /// The row in a line, once its fit has ended.
+    pub fn line(&self) -> String {
+        let name = self.label();
+        match &self.fit {
+            Ok(fit) => {
+                let stopped = if fit.is_stopped() { " (stopped)" } else { "" };
+                let error = percent(fit.judged());
+                format!("{name:<33} {error:>9} % {:7.1} s{stopped}", fit.fit_seconds)
+            }
+            Err(why) => format!("{name:<33} {why}"),
+        }
+    }
+}
+
+impl ComparedFit {
+    /// True if the time limit or the observer ended the fit.
+    fn is_stopped(&self) -> bool {
+        self.model.provenance().termination == Termination::Stopped
+    }
+
+    /// Error on unseen data; on the training data if there are no others.
+    fn judged(&self) -> &Errors {
+        self.test.as_ref().unwrap_or(&self.train)
+    }
+}
+
+/// Fits every model, several at a time, each on one thread (on more, if there are fewer models) and under its time
+/// limit.
+///
+/// # Errors
+/// Threads that cannot be started.
+pub fn compare(request: &CompareRequest<'_>, observer: &dyn CompareObserver) -> Result<CompareOutcome> {
+    let count = request.specs.len();
+    let workers = match request.threads {
+        Some(threads) => threads,
+        None => std::thread::available_parallelism().map_or(1, usize::from),
+    };
+    // A single model, or the last ones of a few, need not leave processors idle.
+    let threads = (workers / count.max(1)).max(1);
+    let queue: Mutex<VecDeque<(usize, &FitSpec)>> = Mutex::new(request.specs.iter().enumerate().collect());
+    let ended: Mutex<Vec<CompareRow>> = Mutex::new(Vec::new());
+    std::thread::scope(|scope| -> Result<()> {
+        let work = || -> Result<()> {
+            let pool = hysid::thread_pool(Some(threads)).context("cannot start a thread")?;
+            loop {
+                let next = queue.lock().expect("no thread panics with the lock").pop_front();
+                let Some((place, spec)) = next else { return Ok(()) };
+                let one = Fit { request, spec, place, threads: workers, observer };
+                let row = CompareRow { spec: spec.clone(), fit: pool.install(|| one.fit()) };
+                let mut ended = ended.lock().expect("no thread panics with the lock");
+                observer.ended(place, &row, ended.len() + 1);
+                ended.push(row);
+            }
+        };
+        let workers: Vec<_> = (0..workers.min(count).max(1)).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().try_for_each(|worker| worker.join().expect("a worker does not panic"))
+    })?;
+    let mut rows = ended.into_inner().expect("all threads are done");
+    for fit in rows.iter_mut().filter_map(|row| row.fit.as_mut().ok()) {
+        fit.simulate_ns_per_sample = ns_per_sample(&fit.model, request.train.records(), TIMED)?;
+    }
+    rows.sort_by(|a, b| a.error().total_cmp(&b.error()));
+    Ok(CompareOutcome { rows, is_tested: request.test.is_some() })
+}
+
+/// One of the fits of a comparison.
+struct Fit<'a> {
+    request: &'a CompareRequest<'a>,
+    spec: &'a FitSpec,
+    place: usize,
+    threads: usize,
+    observer: &'a dyn CompareObserver,
+}
+
+impl Fit<'_> {
+    fn fit(&self) -> Result<ComparedFit, String> {
+        let Self { request: CompareRequest { train, test, .. }, spec, place, observer, .. } = *self;
+        if observer.is_to_stop() {
+            return Err("not fitted: the comparison was ended before".into());
+        }
+        spec.model().check_data(train, spec.rate()).map_err(|error| error.to_string())?;
+        let of_train = |error| observer.explain(error, ComparedData::Train);
+        memory_need(train, spec, self.threads)
+            .and_then(|need| need.check(hysid_files::available_memory()))
+            .map_err(of_train)?;
+        let limit = match spec {
+            FitSpec::Auto(_) => f64::INFINITY,
+            FitSpec::Network(_) | FitSpec::Classical(_) => TIME_LIMIT,
+        };
+        let limit = self.request.time_limit.unwrap_or(limit);
+        let began = Instant::now();
+        let fitted = identify(train, spec, &mut |progress| {
+            observer.progress(place, progress);
+            let is_over = began.elapsed().as_secs_f64() >= limit || observer.is_to_stop();
+            if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        let model = fitted.map_err(of_train)?.model;
+        let fit_seconds = began.elapsed().as_secs_f64();
+        let test = test.map(|test| model.evaluate(test)).transpose();
+        Ok(ComparedFit {
+            train: model.provenance().train.clone(),
+            test: test.map_err(|error| observer.explain(error, ComparedData::Test))?,
+            model,
+            fit_seconds,
+            simulate_ns_per_sample: f64::NAN,
+        })
+    }
+}
+
+fn percent(errors: &Errors) -> String {
+    errors.nrmse_std_percent.map_or_else(|| "-".into(), |percent| format!("{:.3}", Significant(percent)))
+}
+
+/// The cells of a fitted model, in the order of [`HEADINGS`].
+fn cells(fitted: &ComparedFit) -> [String; 5] {
+    [
+        fitted.test.as_ref().map_or_else(String::new, percent),
+        percent(&fitted.train),
+        fitted.model.parameters().to_string(),
+        format!("{:.2}{}", Significant(fitted.fit_seconds), if fitted.is_stopped() { STOPPED } else { "" }),
+        format!("{:.2}", Significant(fitted.simulate_ns_per_sample)),
+    ]
+}
+
+/// Marks a fit that was stopped.
+const STOPPED: &str = "*";
+
+/// What the mark means; empty if no fit was stopped.
+fn stopped_note(rows: &[CompareRow]) -> String {
+    let is_stopped = |row: &CompareRow| row.fit.as_ref().is_ok_and(ComparedFit::is_stopped);
+    if !rows.iter().any(is_stopped) {
+        return String::new();
+    }
+    format!("{STOPPED} stopped early: the best model so far (for more time: --time-limit SECONDS)")
+}
+
+const HEADINGS: [&str; 6] = ["model", "unseen %", "train %", "parameters", "fit s", "ns/sample"];
+
+/// A row of `--json`.
+#[derive(serde::Serialize)]
+#[serde(untagged)]
+pub enum PrintedFit<'a> {
+    Fitted {
+        model: &'static str,
+        /// The model and its variant, such as "bouc-wen (degradation)".
+        label: String,
+        /// What was chosen, or what a network is made of; `null` for a law.
+        structure: Option<String>,
+        parameters: usize,
+        train: &'a Errors,
+        test: Option<&'a Errors>,
+        fit_seconds: f64,
+        simulate_ns_per_sample: f64,
+        termination: Termination,
+    },
+    Failed {
+        model: &'static str,
+        label: String,
+        error: &'a str,
+    },
+}
+
+/// What a model is made of, in words; `None` for a law, whose name says it.
+fn structure(model: &Model) -> Option<String> {
+    let provenance = model.provenance();
+    match (&provenance.selection, model.network()) {
+        (Some(selection), _) => Some(selection.summary()[0].clone()),
+        (None, network) => Some(parts(network?.architecture())),
+    }
+}
+
+impl CompareOutcome {
+    /// The comparison as plain text in 80 columns.
+    pub fn text(&self) -> String {
+        const NAME: usize = 33;
+        let line = |cells: [&str; 6]| {
+            let [model, test, train, parameters, fit, simulate] = cells;
+            let test = if self.is_tested { format!(" {test:>8}") } else { String::new() };
+            // A long name has a line of its own.
+            let is_long = model.chars().count() >= NAME;
+            let name = if is_long { format!("{model}\n{:NAME$}", "") } else { format!("{model:<NAME$}") };
+            format!("{name}{test} {train:>7} {parameters:>10} {fit:>6} {simulate:>9}\n")
+        };
+        let mut text = line(HEADINGS);
+        for row in &self.rows {
+            match &row.fit {
+                Ok(fitted) => {
+                    let [test, train, parameters, fit, simulate] = cells(fitted);
+                    text += &line([&row.label(), &test, &train, &parameters, &fit, &simulate]);
+                }
+                Err(why) => text += &format!("{:<NAME$} {}\n", row.label(), visible::line(why)),
+            }
+        }
+        let data =
+            if self.is_tested { "the unseen data" } else { "the training data (name test data with --test)" };
+        let stopped = match stopped_note(&self.rows) {
+            note if note.is_empty() => note,
+            note => note + "\n",
+        };
+        text + &format!(
+            "\nErrors: NRMSE of free runs, in % of the standard deviation of the output.\nSorted by the error \
+             on {data}.\nEach fit ran on one thread.\n{stopped}"
+        )
+    }
+
+    /// The comparison as `--json` prints it, one object for each model.
+    pub fn printed(&self) -> Vec<PrintedFit<'_>> {
+        self.rows
+            .iter()
+            .map(|row| match &row.fit {
+                Ok(fitted) => PrintedFit::Fitted {
+                    model: row.spec.model().name(),
+                    label: row.label(),
+                    structure: structure(&fitted.model),
+                    parameters: fitted.model.parameters(),
+                    train: &fitted.train,
+                    test: fitted.test.as_ref(),
+                    fit_seconds: fitted.fit_seconds,
+                    simulate_ns_per_sample: fitted.simulate_ns_per_sample,
+                    termination: fitted.model.provenance().termination,
+                },
+                Err(error) => {
+                    PrintedFit::Failed { model: row.spec.model().name(), label: row.label(), error }
+                }
+            })
+            .collect()
+    }
+}
