@@ -2,7 +2,6 @@
 
 mod cycles;
 mod examples;
-mod force;
 mod limits;
 mod mass;
 mod model_options;
@@ -10,6 +9,7 @@ mod plan;
 mod plot;
 mod program;
 mod reading;
+mod restoring_force;
 mod studio;
 
 use std::ops::RangeInclusive;
@@ -32,13 +32,13 @@ pub use hysid_records::RateOption;
 use crate::reproduction::Experiment;
 pub use cycles::Cycles;
 use examples::*;
-pub use force::{Force, MotionOptions};
 pub use mass::Mass;
 pub use model_options::ModelOptions;
 pub use plan::Plan;
 pub use plot::{Plot, PlotKind};
 pub use program::{Completions, Man, Models};
 pub use reading::ReadingOptions;
+pub use restoring_force::{MotionOptions, RestoringForce};
 pub use studio::Studio;
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.
@@ -109,7 +109,7 @@ pub enum Command {
     /// Tabulate each cycle: energy, damping, coercive field, losses, width, creep
     Cycles(Cycles),
     /// Compute the restoring force of an element from measured motion and force
-    Force(Box<Force>),
+    RestoringForce(Box<RestoringForce>),
     /// Draw a figure for a paper: loops, histories, errors, cycles, backbone, energy
     Plot(Box<Plot>),
     /// Fit and judge models in the browser; everything runs on this machine

@@ -29,15 +29,15 @@ fn of_command(typed: impl IntoIterator<Item = String>) -> String {
     }
 }
 
-/// What helps if a value was typed after `--force` of `hysid force`, which takes none: it may be a column.
+/// What helps if a value was typed after `--force` of `hysid restoring-force`, which takes none: it may be a column.
 pub fn hint_of_force() -> Option<String> {
     value_of_force(typed()).map(|column| applied_force(&column))
 }
 
-/// What was typed after `--force` of `hysid force`.
+/// What was typed after `--force` of `hysid restoring-force`.
 fn value_of_force(typed: impl IntoIterator<Item = String>) -> Option<String> {
     let mut typed = typed.into_iter().skip_while(|argument| argument.starts_with('-'));
-    typed.next().filter(|command| command == "force")?;
+    typed.next().filter(|command| command == "restoring-force")?;
     let mut rest = typed.skip_while(|argument| argument != "--force" && !argument.starts_with("--force="));
     match rest.next()?.strip_prefix("--force=") {
         Some(value) => Some(value.to_string()),

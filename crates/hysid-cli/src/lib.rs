@@ -79,7 +79,7 @@ pub fn run() -> ExitCode {
         Command::Look(arguments) => commands::look::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Cycles(arguments) => commands::cycles::run(&arguments),
-        Command::Force(arguments) => commands::force::run(&arguments),
+        Command::RestoringForce(arguments) => commands::restoring_force::run(&arguments),
         Command::Plot(arguments) => commands::plot::run(&arguments),
         Command::Studio(arguments) => commands::studio::run(&arguments),
         Command::Plan(arguments) => commands::plan::run(&arguments),

@@ -21,7 +21,7 @@ pub use table::Written;
 pub use text::{Printed, summary, understood, warnings};
 pub use units::Units;
 
-use crate::arguments::{Force, Mass};
+use crate::arguments::{self, Mass};
 
 pub struct MeasuredMotion {
     pub names: MotionColumns,
@@ -52,7 +52,7 @@ impl MotionRecord {
 
 impl MeasuredMotion {
     /// Reads the columns of a motion.
-    pub fn of(table: &Table, arguments: &Force) -> Result<Self> {
+    pub fn of(table: &Table, arguments: &arguments::RestoringForce) -> Result<Self> {
         let names = MotionColumns::find(table, &arguments.columns)?;
         let units = Units::of(&table.file, &names, &arguments.mass, arguments.columns.same_units)?;
         let mut cells = CellReader::new(table.numbers());

@@ -591,3 +591,23 @@ def test_an_inverse_of_a_record_refuses_what_is_invalid(actuator, quick_model):
     with pytest.raises(ValueError, match="y and time have different indexes"):
         quick_model.invert(pandas.Series([1.0, 2.0]), pandas.Series([0.0, 1.0], index=[1, 2]))
     assert quick_model.invert([]).input.shape == (0,)
+
+
+def test_a_report_is_a_page_of_the_model_on_these_data(quick_model, spring_and_slider, tmp_path):
+    x, y = spring_and_slider
+    page = tmp_path / "page.html"
+    quick_model.report(page, x, y, title="Spring & slider")
+    text = page.read_text(encoding="utf-8")
+    assert "<title>Spring &amp; slider" in text and "unseen" in text and "hysid.Model.report" in text
+    # No command is shown for a model file that nobody wrote, and no time of a fit that the page does not know.
+    assert "hysid evaluate" not in text and "Time taken" not in text
+    error = quick_model.evaluate(x, y).nrmse_std_percent
+    assert f"{error:.3g}" in text
+    quick_model.report(page, x, y, name="training")
+    assert "training" in page.read_text(encoding="utf-8")
+    other = tmp_path / "other.html"
+    other.write_text("mine", encoding="utf-8")
+    with pytest.raises(FileExistsError, match="force=True"):
+        quick_model.report(other, x, y)
+    with pytest.raises(ValueError):
+        quick_model.report(page, x, np.full_like(y, np.nan))

@@ -44,7 +44,7 @@ def test_it_is_that_of_the_program(vibration, program, tmp_path):
     records = np.where(time < 4, "a", "b")
     rows = (f"{k},{t!r},{x!r},{f!r}\n" for k, t, x, f in zip(records, time.tolist(), y.tolist(), u.tolist(), strict=True))
     (tmp_path / "data.csv").write_text("record,t_s,y_m,u_N\n" + "".join(rows))
-    said = program("force", "data.csv", "--mass", "2", "--json", folder=tmp_path)
+    said = program("restoring-force", "data.csv", "--mass", "2", "--json", folder=tmp_path)
     told = json.loads(said.stdout)
     found = hysid.restoring_force(y, time, MASS, force=u, records=records)
     assert [found.deviation, found.noise, found.smoothing] == pytest.approx(

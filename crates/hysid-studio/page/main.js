@@ -5,13 +5,13 @@ import { project } from "./project.js";
 import { connection, Gone, isStranger, listenToEvents } from "./server.js";
 import { CompareStep } from "./steps/compare.js";
 import { DataStep } from "./steps/data.js";
-import { DiagnoseStep } from "./steps/diagnose.js";
 import { IdentifyStep } from "./steps/identify.js";
 import { JudgeStep } from "./steps/judge.js";
 import { TakeAwayStep } from "./steps/take-away.js";
+import { CyclesStep, DiagnoseStep } from "./steps/training-page.js";
 import { TryStep } from "./steps/try.js";
 
-const KINDS = { data: DataStep, diagnose: DiagnoseStep, identify: IdentifyStep, judge: JudgeStep, compare: CompareStep, "take-away": TakeAwayStep, try: TryStep };
+const KINDS = { data: DataStep, diagnose: DiagnoseStep, cycles: CyclesStep, identify: IdentifyStep, judge: JudgeStep, compare: CompareStep, "take-away": TakeAwayStep, try: TryStep };
 const steps = new Map();
 const banner = document.getElementById("banner");
 

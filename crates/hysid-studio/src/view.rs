@@ -33,6 +33,8 @@ pub struct View {
     together: OnceLock<Arc<Data>>,
     /// The diagnosis of the training data, or why there is none, once it was asked for.
     pub diagnosis: OnceLock<std::result::Result<String, String>>,
+    /// The cycles of the training data, as the diagnosis.
+    pub cycles: OnceLock<std::result::Result<String, String>>,
 }
 
 /// A table that was read before its file was in the project, with the number of the file.

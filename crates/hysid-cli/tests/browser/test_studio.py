@@ -19,6 +19,7 @@ from axe_playwright_python.sync_playwright import Axe
 STEPS = {
     "data": "canvas",
     "diagnose": ".card",
+    "cycles": "svg.plot",
     "identify": "button.main",
     "judge": "td",
     "compare": "td",
@@ -153,6 +154,12 @@ def test_the_whole_way(start, visit, tmp_path):
     found = json.loads(hysid(studio.project, "diagnose", "data/rod.csv", "--json", "--no-report"))["properties"]
     assert diagnose.locator(".card").count() == len(found)
     assert diagnose.locator("svg.plot").count() >= 3
+
+    # The cycles, as the program counts them.
+    cycles = opened.go("cycles")
+    counted = json.loads(hysid(studio.project, "cycles", "data/rod.csv", "--json"))["cycles"]
+    complete = sum(row["complete"] for row in counted)
+    assert f"{complete} cycles" in cycles.inner_text() and cycles.locator("table").count() >= 1
 
     # 3. Identify, and a second model.
     opened.fit("xpnn", stops=4, seed=3)

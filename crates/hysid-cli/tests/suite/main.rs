@@ -13,7 +13,6 @@ mod ensemble;
 mod export;
 mod files;
 mod fit_inverse;
-mod force;
 mod generate;
 mod hostile_text;
 #[cfg(unix)]
@@ -33,5 +32,6 @@ mod program;
 mod quiet;
 mod reproduce;
 mod residuals;
+mod restoring_force;
 mod units;
 mod workbench;

@@ -386,7 +386,8 @@ class Model(StoredModel):
         title : str, optional
             Title of the page; by default the name of the model.
         name : str, optional
-            What the data are: ``"training"`` for those that the model was fitted to, by default ``"unseen"``.
+            Name of the data on the page, by default ``"unseen"``. With ``"training"``, for the data that the model was fitted
+            to, the page has the intervals of the parameters too.
         same_units : bool
             As of `simulate`.
         force : bool

@@ -1,4 +1,4 @@
-//! Files, columns, findings, diagnosis.
+//! Files, columns, findings, diagnosis, cycles.
 
 use std::fs::{self, File};
 use std::io::Write;
@@ -220,4 +220,9 @@ pub async fn findings(State(shared): State<Shared>) -> Answer<Response> {
 /// The diagnosis of the training data.
 pub async fn diagnosis(State(shared): State<Shared>) -> Answer<Response> {
     Ok(value(json!({"html": diagnosed(shared, |studio| studio.diagnosis()).await?})))
+}
+
+/// The cycles of the training data.
+pub async fn cycles(State(shared): State<Shared>) -> Answer<Response> {
+    Ok(value(json!({"html": diagnosed(shared, |studio| studio.cycles()).await?})))
 }

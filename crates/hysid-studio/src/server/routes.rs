@@ -27,7 +27,8 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
         .route("/reading", post(files::reading))
         .route("/columns", post(files::columns))
         .route("/findings", get(files::findings))
-        .route("/diagnosis", get(files::diagnosis));
+        .route("/diagnosis", get(files::diagnosis))
+        .route("/cycles", get(files::cycles));
     let of_models = Router::new()
         .route("/fit", post(models::fit))
         .route("/fit/stop", post(models::stop))

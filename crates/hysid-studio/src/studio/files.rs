@@ -2,13 +2,15 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use anyhow::{Result, anyhow, bail};
 use hysid::data::record::Dataset;
 use hysid::data::summary::Summary;
+use hysid::diagnosis::cycles::CycleOptions;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions, before_a_fit};
 use hysid::specimens::{Specimen, with_noise};
+use hysid_app::cycles::{self, Cycles};
 use hysid_app::diagnosis::DataDiagnosis;
 use hysid_document::html;
 use hysid_document::visible::clipped;
@@ -19,7 +21,7 @@ use serde_json::{Value, json};
 use super::Studio;
 use crate::folder::{Inner, UPLOAD, cannot_read};
 use crate::project::{ChosenColumns, Project, ProjectFile, Use};
-use crate::view::read;
+use crate::view::{View, read};
 use crate::words::said;
 
 const MOST_FILES: usize = 200;
@@ -229,10 +231,23 @@ impl Studio {
 
     /// The diagnosis of the training data, as HTML. It is made once, also if who asked for it does not wait.
     pub fn diagnosis(&self) -> Result<String> {
+        self.made_once(|view| &view.diagnosis, diagnosis_of)
+    }
+
+    /// The cycles of the training data, as the diagnosis.
+    pub fn cycles(&self) -> Result<String> {
+        self.made_once(|view| &view.cycles, cycles_of)
+    }
+
+    fn made_once(
+        &self,
+        kept: impl Fn(&View) -> &OnceLock<std::result::Result<String, String>>,
+        make: fn(&Data) -> Result<String>,
+    ) -> Result<String> {
         let (project, view) = self.current();
-        let made = || view.training(&project, &self.folder).and_then(|data| diagnosis_of(&data));
-        let diagnosis = view.diagnosis.get_or_init(|| made().map_err(|error| said(&error)));
-        diagnosis.clone().map_err(|words| anyhow!(words))
+        let made = || view.training(&project, &self.folder).and_then(|data| make(&data));
+        let page = kept(&view).get_or_init(|| made().map_err(|error| said(&error)));
+        page.clone().map_err(|words| anyhow!(words))
     }
 }
 
@@ -240,4 +255,10 @@ fn diagnosis_of(data: &Data) -> Result<String> {
     let understood = understanding::of_data(data, &Summary::of(&data.set));
     let diagnosed = DataDiagnosis::of(data, &DiagnosisOptions::default(), &understood, String::new())?;
     Ok(html::parts(&diagnosed.page().parts))
+}
+
+fn cycles_of(data: &Data) -> Result<String> {
+    let understood = understanding::of_data(data, &Summary::of(&data.set));
+    let cycles = Cycles::of_data(&data.set, &CycleOptions::default(), &[], None, ("", understood));
+    Ok(html::parts(&cycles::page(&cycles.map_err(|error| data.explain(error))?).parts))
 }

@@ -1,4 +1,4 @@
-//! `hysid force`: the restoring force of an element from the measured motion of a mass and the force on it.
+//! `hysid restoring-force`: the restoring force of an element from the measured motion of a mass and the force on it.
 
 use std::path::Path;
 
@@ -7,13 +7,13 @@ use hysid_files::{Destination, Kind};
 use hysid_tables::Table;
 
 use crate::Outcome;
-use crate::arguments::Force;
+use crate::arguments::RestoringForce;
 use crate::files::{self, check_outputs};
 use crate::help;
 use crate::messages::{note_labelled, raw_results, told, warning};
 use crate::motion::{MeasuredMotion, Printed, Written, summary, understood, warnings};
 
-pub fn run(arguments: &Force) -> Result<Outcome> {
+pub fn run(arguments: &RestoringForce) -> Result<Outcome> {
     let path = arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.data, ".force.csv"));
     let to_stdout = path == Path::new("-");
     files::check_stdout(to_stdout, arguments.json)?;
@@ -42,8 +42,8 @@ pub fn run(arguments: &Force) -> Result<Outcome> {
 }
 
 /// Reads the table of the motion. A column name typed after `--force` is parsed as its file, which is missing.
-fn table(arguments: &Force) -> Result<Table> {
-    let Force { data, reading, .. } = arguments;
+fn table(arguments: &RestoringForce) -> Result<Table> {
+    let RestoringForce { data, reading, .. } = arguments;
     let table = Table::read(data, &reading.reading());
     match help::hint_of_force().filter(|_| !data.exists()) {
         Some(hint) => table.map_err(|error| anyhow!("{error:#} ({hint})")),

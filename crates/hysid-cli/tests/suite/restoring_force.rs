@@ -1,4 +1,4 @@
-//! `hysid force`: restoring forces from tables of measured motion and force, what other commands make of them, and what is
+//! `hysid restoring-force`: restoring forces from tables of measured motion and force, what other commands make of them, and what is
 //! refused.
 
 use hysid::elementary::{cos, sin};
@@ -58,7 +58,7 @@ fn bench() -> Workbench {
 #[test]
 fn millimetres_kilonewtons_and_gravity_are_converted() {
     let bench = bench();
-    let said = ran(&bench, "force rig.csv --mass '2 t' --acceleration acc");
+    let said = ran(&bench, "restoring-force rig.csv --mass '2 t' --acceleration acc");
     let (header, found) = columns(&bench.text("rig.force.csv"));
     assert_eq!(header, ["time [s]", "disp [mm]", "velocity_mm_s", "restoring_force_kN"]);
     assert!(error_percent(&found[1], |at| 1e3 * at[1]) < 1e-12);
@@ -75,7 +75,7 @@ fn millimetres_kilonewtons_and_gravity_are_converted() {
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     }
     // The same without the measured acceleration, and in kg.
-    let said = ran(&bench, "force rig.csv --mass 2000 -o computed.csv");
+    let said = ran(&bench, "restoring-force rig.csv --mass 2000 -o computed.csv");
     let (_, found) = columns(&bench.text("computed.csv"));
     assert!(error_percent(&found[3], |at| at[5] / 1e3) < 1e-3);
     let blank = found[3].iter().filter(|force| force.is_nan()).count();
@@ -84,19 +84,19 @@ fn millimetres_kilonewtons_and_gravity_are_converted() {
     assert!(said.stdout.contains(&format!("rows with a force   {} of {ROWS}", ROWS - blank)), "{said}");
     // Numbers without units are taken as they are.
     bench.put("plain.csv", table("t,y,u", |_, [t, y, _, _, u, _]| format!("{t},{y},{u}")));
-    let said = ran(&bench, "force plain.csv --mass 2000 --displacement y --applied-force u");
+    let said = ran(&bench, "restoring-force plain.csv --mass 2000 --displacement y --applied-force u");
     let (header, found) = columns(&bench.text("plain.force.csv"));
     assert_eq!(header, ["t", "y", "velocity", "restoring_force"]);
     assert!(error_percent(&found[3], |at| at[5]) < 1e-3);
     assert!(said.stderr.contains("none known, nothing is converted"), "{}", said.stderr);
     // As do those of a table whose units are not to be converted: mm, kN and t mm/s² per kN.
-    let same = ran(&bench, "force rig.csv --mass 0.002 --same-units -o same.csv");
+    let same = ran(&bench, "restoring-force rig.csv --mass 0.002 --same-units -o same.csv");
     let (header, found) = columns(&bench.text("same.csv"));
     assert_eq!(header[3], "restoring_force_kN");
     assert!(error_percent(&found[3], |at| at[5] / 1e3) < 1e-3, "{}", same.stdout);
     // A column without a unit beside others is taken to be in an SI unit.
     bench.put("mixed.csv", table("t,y_mm,force", |_, [t, y, _, _, u, _]| format!("{t},{},{u}", 1e3 * y)));
-    let said = ran(&bench, "force mixed.csv --mass 2000");
+    let said = ran(&bench, "restoring-force mixed.csv --mass 2000");
     let (header, found) = columns(&bench.text("mixed.force.csv"));
     assert_eq!(header[3], "restoring_force");
     assert!(error_percent(&found[3], |at| at[5]) < 1e-3);
@@ -117,14 +117,17 @@ fn a_moving_base_drives_the_mass() {
         ("absolute", "--absolute-acceleration floor_g"),
         ("base", "--base-acceleration 'ground [Gal]' --velocity v_m_s --keep 'temperature [degC]'"),
     ] {
-        ran(&bench, &format!("force table.csv --mass '2 t' {options} -o {name}.csv"));
+        ran(&bench, &format!("restoring-force table.csv --mass '2 t' {options} -o {name}.csv"));
         let (header, found) = columns(&bench.text(&format!("{name}.csv")));
         assert_eq!((header[0].as_str(), header[header.len() - 1].as_str()), ("record", "restoring_force_kN"));
         assert!(error_percent(&found[header.len() - 1], |at| at[5] / 1e3) < 2e-2, "{name}");
         assert!(error_percent(&found[3], |at| 1e3 * at[2]) < 2e-2, "{name}");
         assert_eq!(header.contains(&"temperature [degC]".to_string()), name == "base");
     }
-    let told = ran(&bench, "force table.csv --mass '2 t' --absolute-acceleration floor_g --json -o json.csv");
+    let told = ran(
+        &bench,
+        "restoring-force table.csv --mass '2 t' --absolute-acceleration floor_g --json -o json.csv",
+    );
     let told: serde_json::Value = serde_json::from_str(&told.stdout).unwrap();
     assert_eq!(
         (&told["records"], &told["rows"], &told["rows_with_force"]),
@@ -140,7 +143,7 @@ fn a_moving_base_drives_the_mass() {
 #[test]
 fn other_commands_take_the_table_without_options() {
     let bench = bench();
-    ran(&bench, "force rig.csv --mass '2 t'");
+    ran(&bench, "restoring-force rig.csv --mass '2 t'");
     let told = ran(&bench, "look rig.force.csv").stdout;
     for role in ["disp [mm]            input", "velocity_mm_s       unused", "restoring_force_kN  output"] {
         assert!(told.contains(role), "{role}: {told}");
@@ -171,7 +174,7 @@ fn noise_is_told_and_a_longer_window_lets_less_of_it_through() {
     };
     bench.put("noisy.csv", table("t_s,y_m,force_N", cells));
     let share = |options: &str| {
-        let said = ran(&bench, &format!("force noisy.csv --mass 2000 --json {options}"));
+        let said = ran(&bench, &format!("restoring-force noisy.csv --mass 2000 --json {options}"));
         let told: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
         (told["noise_percent"].as_f64().unwrap(), said.stderr)
     };
@@ -194,7 +197,7 @@ fn zero_removes_offsets_of_displacement_and_force() {
     let bench = Workbench::new();
     let cells = |_, [t, y, _, a, u, _]: [f64; 6]| format!("{t},{},{},{a}", y + 0.5, u + 700.0);
     bench.put("offset.csv", table("t_s,y_m,force_N,acc_m_s2", cells));
-    ran(&bench, "force offset.csv --mass 2000 --acceleration acc_m_s2 --zero 1");
+    ran(&bench, "restoring-force offset.csv --mass 2000 --acceleration acc_m_s2 --zero 1");
     let (_, found) = columns(&bench.text("offset.force.csv"));
     assert_eq!((found[1][0], found[3][0]), (0.0, 0.0));
     let first = motion(0)[5];
@@ -209,7 +212,7 @@ fn blanks_leave_blanks_and_a_force_goes_to_stdout() {
         format!("{t};{y};{u};{a}").replace('.', ",")
     };
     bench.put("blank.csv", table("t_s;y_m;force_N;acc_m_s2", cells));
-    let said = ran(&bench, "force blank.csv --mass 2000 --acceleration acc_m_s2 -o -");
+    let said = ran(&bench, "restoring-force blank.csv --mass 2000 --acceleration acc_m_s2 -o -");
     let line = said.stdout.lines().nth(8).unwrap();
     assert!(line.starts_with("0,035;") && line.ends_with(';'), "{line}");
     assert_eq!(said.stdout.lines().count(), ROWS + 1);
@@ -221,7 +224,7 @@ const HINT: &str =
 
 #[test]
 fn the_help_speaks_of_the_columns_of_a_motion() {
-    let help = Workbench::new().shell("hysid force --help").stdout;
+    let help = Workbench::new().shell("hysid restoring-force --help").stdout;
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
     for told in [
         "Subtract from the displacement and from the restoring force their means over the first ROWS rows",
@@ -287,40 +290,40 @@ fn what_has_no_restoring_force_is_refused_in_one_line() {
     bench.put("no-time.csv", rows("y_mm,F_N", &|_, at| format!("{},{}", at[1], at[4])));
     for (status, line, expected) in cases(&format!(
         r#"
-        2 force rig.csv => --mass
-        2 force rig.csv --mass 0 => a mass above 0 is needed
-        2 force rig.csv --mass -2 => a mass above 0 is needed
-        2 force rig.csv --mass '2 mm' => the unit of the mass is unknown
-        2 force rig.csv --mass '2 stone' => the unit of the mass is unknown
-        2 force rig.csv --mass 2 --window 6 => an odd number of rows is needed, 5 or more
-        1 force rig.csv --mass 2 --window 1201 => column "disp [mm]" has 1200 rows: at least 1201 rows are needed
-        1 force rig.csv --mass 2 --displacement drift => there is no column "drift" for --displacement
-        1 force rig.csv --mass 2 --applied-force none --acceleration 'force [kN]' => is in kN, which is not an acceleration
-        2 force rig.csv --mass 2 --velocity acc --acceleration acc => is named twice, by --velocity and --acceleration
-        1 force rig.csv --mass 2 --absolute-acceleration acc => may be a force on the mass
-        2 force rig.csv --mass 2 --acceleration acc --absolute-acceleration acc => cannot be used with
-        2 force rig.csv --mass 2 -o rig.csv => would be overwritten
-        2 force rig.csv --mass 2 -o - --json => name a file for the table with -o
-        1 force constant.csv --mass 2 => column "y_mm" is constant (3)
-        1 force empty.csv --mass 2 => empty.csv, line 6, column "y_mm": the cell is empty (time, displacement and velocity need a number in every row; choose rows with --rows)
-        1 force slow.csv --mass 2 --velocity v_mm_s => slow.csv, line 4, column "v_mm_s": the cell is empty (time, displacement and velocity need
-        1 force word.csv --mass 2 => (not the displacement? name it with --displacement)
-        1 force off.csv --mass 2 => (if it stands for a missing value: --missing off)
-        2 force rig.csv --mass 2 --force force => {HINT}
-        2 force --force force rig.csv --mass 2 => {HINT}
-        2 force rig.csv --mass 2 --force=force => {HINT}
-        1 force --mass 2 --force force => {HINT}
-        2 force rig.csv --mass 2 --force --bogus => (see `hysid force --help`)
-        1 force back.csv --mass 2 => back.csv, line 7, column "t_ms": time 19 does not come after 20
-        1 force one.csv --mass 2 => column "y_mm" has 1 row: at least 5 rows are needed
-        1 force two.csv --mass 2 => several columns may be the displacement: y_mm, x_mm
-        1 force free.csv --mass 2 => a free vibration has --applied-force none
-        1 force stress.csv --mass 2 => is in MPa, which is not a force
-        1 force no-time.csv --mass 2 => there is no column of time
-        1 force nowhere.csv --mass 2 => nowhere.csv: cannot be read
+        2 restoring-force rig.csv => --mass
+        2 restoring-force rig.csv --mass 0 => a mass above 0 is needed
+        2 restoring-force rig.csv --mass -2 => a mass above 0 is needed
+        2 restoring-force rig.csv --mass '2 mm' => the unit of the mass is unknown
+        2 restoring-force rig.csv --mass '2 stone' => the unit of the mass is unknown
+        2 restoring-force rig.csv --mass 2 --window 6 => an odd number of rows is needed, 5 or more
+        1 restoring-force rig.csv --mass 2 --window 1201 => column "disp [mm]" has 1200 rows: at least 1201 rows are needed
+        1 restoring-force rig.csv --mass 2 --displacement drift => there is no column "drift" for --displacement
+        1 restoring-force rig.csv --mass 2 --applied-force none --acceleration 'force [kN]' => is in kN, which is not an acceleration
+        2 restoring-force rig.csv --mass 2 --velocity acc --acceleration acc => is named twice, by --velocity and --acceleration
+        1 restoring-force rig.csv --mass 2 --absolute-acceleration acc => may be a force on the mass
+        2 restoring-force rig.csv --mass 2 --acceleration acc --absolute-acceleration acc => cannot be used with
+        2 restoring-force rig.csv --mass 2 -o rig.csv => would be overwritten
+        2 restoring-force rig.csv --mass 2 -o - --json => name a file for the table with -o
+        1 restoring-force constant.csv --mass 2 => column "y_mm" is constant (3)
+        1 restoring-force empty.csv --mass 2 => empty.csv, line 6, column "y_mm": the cell is empty (time, displacement and velocity need a number in every row; choose rows with --rows)
+        1 restoring-force slow.csv --mass 2 --velocity v_mm_s => slow.csv, line 4, column "v_mm_s": the cell is empty (time, displacement and velocity need
+        1 restoring-force word.csv --mass 2 => (not the displacement? name it with --displacement)
+        1 restoring-force off.csv --mass 2 => (if it stands for a missing value: --missing off)
+        2 restoring-force rig.csv --mass 2 --force force => {HINT}
+        2 restoring-force --force force rig.csv --mass 2 => {HINT}
+        2 restoring-force rig.csv --mass 2 --force=force => {HINT}
+        1 restoring-force --mass 2 --force force => {HINT}
+        2 restoring-force rig.csv --mass 2 --force --bogus => (see `hysid restoring-force --help`)
+        1 restoring-force back.csv --mass 2 => back.csv, line 7, column "t_ms": time 19 does not come after 20
+        1 restoring-force one.csv --mass 2 => column "y_mm" has 1 row: at least 5 rows are needed
+        1 restoring-force two.csv --mass 2 => several columns may be the displacement: y_mm, x_mm
+        1 restoring-force free.csv --mass 2 => a free vibration has --applied-force none
+        1 restoring-force stress.csv --mass 2 => is in MPa, which is not a force
+        1 restoring-force no-time.csv --mass 2 => there is no column of time
+        1 restoring-force nowhere.csv --mass 2 => nowhere.csv: cannot be read
     "#
     )) {
         refused(line, status, expected);
     }
-    assert_eq!(ran(&bench, "force free.csv --mass 2 --applied-force none").status, Some(0));
+    assert_eq!(ran(&bench, "restoring-force free.csv --mass 2 --applied-force none").status, Some(0));
 }

@@ -1,4 +1,4 @@
-//! Arguments of `hysid force`.
+//! Arguments of `hysid restoring-force`.
 
 use std::path::PathBuf;
 
@@ -10,10 +10,10 @@ use super::{Overwriting, RUN, ReadingOptions};
 
 const FORCE_EXAMPLES: &str = "\
 Examples:
-  hysid force rig.csv --mass 2           force and displacement: rig.force.csv
-  hysid force rig.csv --mass 2 --acceleration acc
-  hysid force floor.csv --mass \"25 t\" --absolute-acceleration acc
-  hysid force floor.csv --mass \"25 t\" --base-acceleration ag
+  hysid restoring-force rig.csv --mass 2           force and displacement: rig.force.csv
+  hysid restoring-force rig.csv --mass 2 --acceleration acc
+  hysid restoring-force floor.csv --mass \"25 t\" --absolute-acceleration acc
+  hysid restoring-force floor.csv --mass \"25 t\" --base-acceleration ag
 
 The method, signs and units: docs/how-to/restoring-force.md";
 
@@ -28,7 +28,7 @@ const MISSING_MEANS: &str = "Where an acceleration or the applied force is missi
     mut_arg("zero", |option| option.help(ZERO_HELP)),
     mut_arg("missing", |option| option.long_help(missing_help(MISSING_MEANS)))
 )]
-pub struct Force {
+pub struct RestoringForce {
     /// Table of the measured motion of a mass
     #[arg(value_name = "DATA.csv")]
     pub data: PathBuf,
