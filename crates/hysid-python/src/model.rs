@@ -68,12 +68,16 @@ impl Model {
         sets: Vec<(String, PyRef<'_, Dataset>)>,
         force: bool,
     ) -> PyResult<()> {
-        let identified = Identified::before(model::Model::clone(&self.model));
+        let mut identified = Identified::before(model::Model::clone(&self.model));
         let sets: Vec<_> = sets.into_iter().map(|(name, data)| (name, Arc::clone(&data.set))).collect();
         let destination = Destination::new(path, Kind::Page, force);
         destination.check().map_err(not_written)?;
         let page = interruptible(py, move || {
             let sets: Vec<_> = sets.iter().map(|(name, data)| (name.as_str(), data.as_ref())).collect();
+            for (_, data) in &sets {
+                let warnings = identified.model.range_warnings(data)?;
+                identified.beforehand.warnings.extend(warnings.iter().map(ToString::to_string));
+            }
             Ok(identified.page(&title, None, &sets).map(|mut page| {
                 page.parts.push(origin::section("hysid.Model.report", &[]));
                 page_text(&page)

@@ -11,7 +11,7 @@ import { TakeAwayStep } from "./steps/take-away.js";
 import { CyclesStep, DiagnoseStep } from "./steps/training-page.js";
 import { TryStep } from "./steps/try.js";
 
-const KINDS = { data: DataStep, diagnose: DiagnoseStep, cycles: CyclesStep, identify: IdentifyStep, judge: JudgeStep, compare: CompareStep, "take-away": TakeAwayStep, try: TryStep };
+const KINDS = { data: DataStep, diagnose: DiagnoseStep, figures: CyclesStep, identify: IdentifyStep, judge: JudgeStep, compare: CompareStep, "take-away": TakeAwayStep, try: TryStep };
 const steps = new Map();
 const banner = document.getElementById("banner");
 

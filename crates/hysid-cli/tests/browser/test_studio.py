@@ -19,7 +19,7 @@ from axe_playwright_python.sync_playwright import Axe
 STEPS = {
     "data": "canvas",
     "diagnose": ".card",
-    "cycles": "svg.plot",
+    "figures": "svg.plot",
     "identify": "button.main",
     "judge": "td",
     "compare": "td",
@@ -156,7 +156,7 @@ def test_the_whole_way(start, visit, tmp_path):
     assert diagnose.locator("svg.plot").count() >= 3
 
     # The cycles, as the program counts them.
-    cycles = opened.go("cycles")
+    cycles = opened.go("figures")
     counted = json.loads(hysid(studio.project, "cycles", "data/rod.csv", "--json"))["cycles"]
     complete = sum(row["complete"] for row in counted)
     assert f"{complete} cycles" in cycles.inner_text() and cycles.locator("table").count() >= 1

@@ -264,7 +264,7 @@ def test_names_are_text_and_never_html(browser, start):
     page.on("request", lambda request: wrong.append(request.url) if not request.url.startswith((studio.origin, "data:", "blob:")) else None)
     page.goto(studio.address)
     page.get_by_text(COLUMN).first.wait_for()
-    steps = {"diagnose": ".card", "cycles": "svg.plot", "identify": ".main", "judge": "td", "compare": "td", "take-away": "pre", "try": "canvas"}
+    steps = {"diagnose": ".card", "figures": "svg.plot", "identify": ".main", "judge": "td", "compare": "td", "take-away": "pre", "try": "canvas"}
     for step, part in steps.items():
         page.evaluate("step => { location.hash = step; }", step)
         page.locator(f"#{step} {part}").first.wait_for()
