@@ -54,7 +54,7 @@ pub use ensemble::{Excursion, MedianBuffers, Predictions};
 pub use file::FORMAT_VERSION;
 pub use inverse::{Inverse, Inversion, Inverted, MOST_TRIALS, Reach, Reference};
 use ranges::Ranges;
-use runner::{Runner, Spread};
+use runner::{OutputSpread, Runner};
 pub use simulation::Simulation;
 pub use stepper::{Snapshot, Stepper};
 
@@ -251,7 +251,7 @@ impl Provenance {
 
 /// How a model was fitted, before its errors on the data are known; with them it becomes the [`Provenance`].
 #[derive(Debug, Clone)]
-pub struct Found {
+pub struct ProvenanceDraft {
     /// The requested value.
     pub options: FitSpec,
     /// The start that became the model, counted from 0.
@@ -268,7 +268,7 @@ pub struct Found {
     pub selection: Option<Selection>,
 }
 
-impl Found {
+impl ProvenanceDraft {
     /// Of a fit from one start, without more that is known of it.
     pub fn of(options: FitSpec, termination: Termination) -> Self {
         let (validation, penalties, runs, selection) = Default::default();
@@ -294,7 +294,7 @@ impl Found {
     }
 }
 
-impl From<Provenance> for Found {
+impl From<Provenance> for ProvenanceDraft {
     fn from(known: Provenance) -> Self {
         let Provenance { options, chosen_start, termination, validation, penalties, runs, selection, .. } =
             known;
@@ -320,7 +320,7 @@ impl Model {
         preprocessing: InputTransform,
         rate: Option<RateMethod>,
         data: &Dataset,
-        found: Found,
+        found: ProvenanceDraft,
     ) -> Result<Self> {
         let uses_rate = match &body {
             Predictor::Network { network, .. } => network.architecture().rate,
@@ -628,7 +628,7 @@ impl Model {
         let band = self.checked_band(level)?;
         self.check_time(excitation)?;
         let mut output = vec![0.0; excitation.len()];
-        let mut spreads = vec![Spread::default(); excitation.len()];
+        let mut spreads = vec![OutputSpread::default(); excitation.len()];
         Runner::of_model(self).rows(excitation, 0, &mut output, Some(&mut spreads))?;
         Ok(Prediction::of(Some((band, level)), output, &spreads))
     }
@@ -664,7 +664,7 @@ impl Model {
         let mut errors = Predictions::default();
         for record in data.records() {
             let mut output = vec![0.0; record.len()];
-            let mut spreads = vec![Spread::default(); record.len()];
+            let mut spreads = vec![OutputSpread::default(); record.len()];
             Runner::of_model(&self).rows(&record.excitation(), 0, &mut output, Some(&mut spreads))?;
             for ((y, simulated), spread) in record.output().iter().zip(output).zip(spreads) {
                 if !y.is_nan() {

@@ -2,7 +2,7 @@
 
 use hysid_core::elementary::{hypot, square};
 
-use super::branch::Reading;
+use super::branch::CurveReading;
 use super::significance;
 use super::{PictureCurve, Piece, Verdict};
 
@@ -57,7 +57,7 @@ pub(crate) struct Comparison {
 
 impl Comparison {
     /// Of two readings that should be equal, between which slow noise may have wandered so far. Nothing is drawn.
-    pub fn of_readings(height: f64, [a, b]: [Reading; 2], wander: f64) -> Self {
+    pub fn of_readings(height: f64, [a, b]: [CurveReading; 2], wander: f64) -> Self {
         Self {
             index: (a.y - b.y).abs() / height,
             deviation: hypot(hypot(a.deviation, b.deviation), wander) / height,
@@ -72,7 +72,7 @@ impl Comparison {
 
 /// Result of all comparisons of a property.
 #[derive(Debug, Clone)]
-pub(crate) struct Judgement {
+pub(crate) struct PropertyResult {
     /// `Yes` if no difference is distinguishable from noise or close to the relevant size.
     pub verdict: Verdict,
     /// The difference that decides.
@@ -103,7 +103,7 @@ fn are_doubtful_together(comparisons: &[Comparison], effect: f64) -> bool {
 /// Judges comparisons: a difference counts if it is above `effect` and cannot be noise, theory.md (10.3).
 ///
 /// `bound` is [`BOUND`] or [`NARROW_BOUND`].
-pub(crate) fn judge(comparisons: &[Comparison], effect: f64, bound: f64) -> Option<Judgement> {
+pub(crate) fn judge(comparisons: &[Comparison], effect: f64, bound: f64) -> Option<PropertyResult> {
     let count = comparisons.len();
     let (critical, doubtful) = (significance::critical_value(count), significance::doubtful_value(count));
     let limit = |c: &Comparison| (effect + UNSURE * (c.bend + c.other)).max(critical * c.deviation);
@@ -137,7 +137,7 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64, bound: f64) -> Opti
         true => "with its uncertainty, the largest difference may be below or above the size that matters",
         false => "noise or widely spaced rows may hide a relevant difference",
     };
-    Some(Judgement {
+    Some(PropertyResult {
         doubt,
         verdict,
         index: deciding.index,

@@ -27,7 +27,7 @@ pub use self::backbone::{BackbonePoint, Direction};
 pub use self::correction::{Correction, corrected};
 pub use self::division::Division;
 pub use self::field::Field;
-pub use self::figure::{FIGURES, Figure, Quantity};
+pub use self::figure::{FIGURES, Figure, FigureQuantity};
 pub use self::losses::LossAtFrequency;
 pub use self::quantities::Quantities;
 pub use self::row::CycleRow;

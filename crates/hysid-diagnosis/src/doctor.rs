@@ -215,13 +215,13 @@ pub(crate) fn longest_lag(survey: &BranchSet) -> Option<f64> {
 }
 
 /// Units of the columns, as their names tell them.
-struct Units {
+struct ColumnUnits {
     input: Option<String>,
     output: Option<String>,
     time: Option<String>,
 }
 
-impl Units {
+impl ColumnUnits {
     fn of(survey: &BranchSet) -> Self {
         let names = survey.data.names();
         Self {

@@ -39,7 +39,7 @@ pub use cycles::ModelCycles;
 use hysid_core::error::Result;
 use hysid_core::model::Model;
 use hysid_core::options::ModelName;
-pub use invertibility::{AtTimeStep, Direction, Invertibility, Place, PlaceKind, Scans};
+pub use invertibility::{AtTimeStep, Invertibility, NonMonotonePlace, OutputDirection, PlaceKind, Scans};
 pub use loop_widths::{LoopWidths, WidthAtSpeed};
 use probe::Probe;
 pub use probe::{Probing, TimeScale};
@@ -100,7 +100,7 @@ impl ModelDiagnosis {
 /// An element of the serialized properties.
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Listed<'a> {
+enum PropertyEntry<'a> {
     Property(&'a Finding),
     Invertible(&'a Invertibility),
 }
@@ -108,8 +108,9 @@ enum Listed<'a> {
 impl Serialize for ModelDiagnosis {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let Self { model, probing, properties, invertibility, promises, loop_widths } = self;
-        let properties = properties.iter().map(Listed::Property);
-        let properties: Vec<Listed> = properties.chain([Listed::Invertible(invertibility)]).collect();
+        let properties = properties.iter().map(PropertyEntry::Property);
+        let properties: Vec<PropertyEntry> =
+            properties.chain([PropertyEntry::Invertible(invertibility)]).collect();
         let mut object = serializer.serialize_struct("ModelDiagnosis", 5)?;
         object.serialize_field("model", model)?;
         object.serialize_field("probing", probing)?;

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 use hysid_core::elementary::{cos, powf, sin_cos, square};
 
-pub(crate) use differences::{Run, roughness};
+pub(crate) use differences::{ChannelRun, roughness};
 pub use resolution::resolution;
 
 /// Share of the variance above which noise is hum.
@@ -93,7 +93,7 @@ impl Noise {
 
     /// The noise of a channel, from its values in runs of rows on which the course is smooth: between two turning
     /// points. No difference is taken across their ends.
-    pub fn of<'a>(runs: impl Iterator<Item = Run<'a>>) -> Self {
+    pub fn of<'a>(runs: impl Iterator<Item = ChannelRun<'a>>) -> Self {
         differences::noise(runs)
     }
 

@@ -25,8 +25,8 @@
 //! # Ok::<(), hysid_core::Error>(())
 //! ```
 
+mod groups;
 mod input;
-mod place;
 mod rows;
 mod whiteness;
 mod words;
@@ -38,9 +38,9 @@ use hysid_core::model::Model;
 use serde::Serialize;
 
 use crate::serial::{SerialSum, correlation_lag};
+pub use groups::{GroupedResiduals, ResidualGroup};
 pub use input::InputCorrelation;
-pub use place::{Group, Place};
-use rows::Rows;
+use rows::ResidualRows;
 pub use whiteness::Whiteness;
 
 /// Probability of any false finding over all tests of a data set, for white noise.
@@ -171,7 +171,7 @@ pub struct Residuals {
     /// Correlation with each input and with the rate of the first.
     pub inputs: Vec<InputCorrelation>,
     /// Size and bias by place.
-    pub places: Vec<Place>,
+    pub places: Vec<GroupedResiduals>,
     /// What limits all tests, in a sentence; `None` if nothing does.
     pub caution: Option<String>,
     /// What the tests say, in the order of [`ResidualTest`].
@@ -195,7 +195,7 @@ impl Residuals {
     /// # Errors
     /// Fewer than [`FEWEST_ROWS`] scored rows.
     pub fn of(data: &Dataset, simulated: &[Vec<f64>], options: &ResidualOptions) -> Result<Self> {
-        let all = Rows::of(data, simulated, options.smallest_reversal);
+        let all = ResidualRows::of(data, simulated, options.smallest_reversal);
         let scored = all.len();
         if scored < FEWEST_ROWS {
             let problem = DataProblem::TooFewForTests { found: scored, needed: FEWEST_ROWS };
@@ -224,7 +224,7 @@ impl Residuals {
             correlation_lag: lag,
             whiteness: Whiteness::of(&residual),
             inputs: input::correlations(&rows, &about_mean, names),
-            places: place::places(&rows),
+            places: groups::places(&rows),
             caution: None,
             findings: Vec::new(),
         };

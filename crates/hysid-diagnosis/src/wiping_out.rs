@@ -97,7 +97,7 @@ impl BranchSet<'_> {
     pub(super) fn finding(
         &self,
         property: Property,
-        judgement: &super::comparison::Judgement,
+        judgement: &super::comparison::PropertyResult,
         comparisons: &[Comparison],
         statement: String,
         experiment: &str,

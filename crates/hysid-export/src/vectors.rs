@@ -101,7 +101,7 @@ pub fn vectors(
         }
         all.push(Vector { action, arguments, output, tangent: slope });
     };
-    let path = Path { arguments: &description.arguments, inputs, rate };
+    let path = VectorPath { arguments: &description.arguments, inputs, rate };
     let rows = rows_of(tangent, &path);
     let (saved, repeated) = (SAVED * rows / ROWS, REPEATED * rows / ROWS);
     act(Action::Reset, Vec::new());
@@ -133,7 +133,7 @@ pub fn vectors(
 }
 
 /// Rows of the path: fewer where steps need much work.
-fn rows_of(tangent: &Program, path: &Path<'_>) -> usize {
+fn rows_of(tangent: &Program, path: &VectorPath<'_>) -> usize {
     let mut machine = Machine::new(tangent);
     for row in 0..TRIED {
         machine.step(&path.row(row, 0.0));
@@ -144,13 +144,13 @@ fn rows_of(tangent: &Program, path: &Path<'_>) -> usize {
 }
 
 /// A path through the trained ranges and a little beyond.
-struct Path<'a> {
+struct VectorPath<'a> {
     arguments: &'a [Argument],
     inputs: &'a [(f64, f64)],
     rate: f64,
 }
 
-impl Path<'_> {
+impl VectorPath<'_> {
     /// Arguments of a row; the first input is displaced by this share of half its range.
     fn row(&self, row: usize, displaced: f64) -> Vec<f64> {
         let t = row as f64;

@@ -14,7 +14,7 @@ pub struct Chapter {
     /// Text, tables and charts in their order.
     pub parts: Vec<Part>,
     /// What was to be reached, and what was.
-    pub targets: Vec<Target>,
+    pub targets: Vec<ChapterTarget>,
     /// Further files, by name.
     pub files: Vec<(String, Content)>,
 }
@@ -39,7 +39,7 @@ pub struct FurtherFile {
 
 /// Whose target it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum TargetSource {
     /// The paper claims it, with this number.
     Paper,
     /// The paper claims it in words; the number is ours.
@@ -48,7 +48,7 @@ pub enum Source {
     Ours,
 }
 
-impl Source {
+impl TargetSource {
     /// In words.
     pub fn words(self) -> &'static str {
         match self {
@@ -61,7 +61,7 @@ impl Source {
 
 /// Was a target met?
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum TargetVerdict {
     /// By the median of the seeds.
     Met,
     /// Not by one network, but by the median of several.
@@ -72,7 +72,7 @@ pub enum Verdict {
     OtherDiverged,
 }
 
-impl Verdict {
+impl TargetVerdict {
     /// In words.
     pub fn words(self) -> &'static str {
         match self {
@@ -86,13 +86,13 @@ impl Verdict {
 
 /// A figure that was to be reached.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Target {
+pub struct ChapterTarget {
     /// The specimen.
     pub specimen: String,
     /// Which of its figures.
     pub figure: String,
     /// Whose target it is.
-    pub source: Source,
+    pub source: TargetSource,
     /// What was asked for.
     pub wanted: String,
     /// What one network reached: median and range of the seeds.
@@ -100,7 +100,7 @@ pub struct Target {
     /// What the median of several networks reached, likewise.
     pub several: Option<String>,
     /// Was it reached?
-    pub verdict: Verdict,
+    pub verdict: TargetVerdict,
 }
 
 /// Begins the heading of every table whose figures are of a specimen.
@@ -120,7 +120,9 @@ pub fn targets(chapters: &[Chapter], of_paper: bool) -> Option<Table> {
         "{heading}: median of the seeds, lowest to highest in brackets. Synthetic specimens replace the paper's measured data"
     ));
     for chapter in chapters {
-        for target in chapter.targets.iter().filter(|target| (target.source != Source::Ours) == of_paper) {
+        for target in
+            chapter.targets.iter().filter(|target| (target.source != TargetSource::Ours) == of_paper)
+        {
             table.push([
                 format!("{}, {}", chapter.name, target.specimen).into(),
                 target.figure.as_str().into(),

@@ -6,7 +6,7 @@ use hysid::elementary::{cos, sin};
 use hysid::operator::{DeterioratingStop, Operator};
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, number};
 
-use crate::chapter::{Chapter, Source, Target, Verdict};
+use crate::chapter::{Chapter, ChapterTarget, TargetSource, TargetVerdict};
 
 /// A neuron: the stop of `weight x + rate_weight x'` with threshold 1, which deteriorates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -153,7 +153,7 @@ const CLAIMED: [(bool, bool, bool); 6] = [
 ];
 
 /// The demonstrations that have the K, the P and the end that the paper claims.
-fn target() -> Target {
+fn target() -> ChapterTarget {
     let holds = |((neuron, _), claimed): &((Neuron, &str), (bool, bool, bool))| {
         let (zero, slow) = (neuron.width(0.0), neuron.width(RATES[0]));
         let is_wide = zero.is_some_and(|zero| zero.abs() > 1e-9);
@@ -162,14 +162,14 @@ fn target() -> Target {
     };
     let holding = DEMONSTRATIONS.into_iter().zip(CLAIMED).filter(holds).count();
     let all = DEMONSTRATIONS.len();
-    Target {
+    ChapterTarget {
         specimen: "one neuron".into(),
         figure: "demonstrations with the K, P and end of life claimed".into(),
-        source: Source::Paper,
+        source: TargetSource::Paper,
         wanted: format!("{all} of {all}"),
         one: format!("{holding} of {all}"),
         several: None,
-        verdict: if holding == all { Verdict::Met } else { Verdict::Missed },
+        verdict: if holding == all { TargetVerdict::Met } else { TargetVerdict::Missed },
     }
 }
 
@@ -285,7 +285,7 @@ mod tests {
 
     #[test]
     fn all_demonstrations_are_as_the_paper_claims() {
-        assert_eq!((target().one.as_str(), target().verdict), ("6 of 6", Verdict::Met));
+        assert_eq!((target().one.as_str(), target().verdict), ("6 of 6", TargetVerdict::Met));
     }
 
     #[test]

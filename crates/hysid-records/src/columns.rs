@@ -15,7 +15,7 @@ use hysid_core::options::chosen::{NamedOptions, RateChoice};
 use hysid_core::options::{FitSpec, ModelName};
 
 use self::guess::Guess;
-use self::values::{Running, Seen, numbers};
+use self::values::{Seen, TimeCheck, numbers};
 use crate::usage::Usage;
 use hysid_core::data::unit::{self, Conversion};
 use hysid_document::shell::option;
@@ -344,12 +344,12 @@ fn time_by_name(table: &Table, free: &[&String], records: &[Range<usize>]) -> Re
         let running = numbers(table, name).map(|values| Seen::of(&values, records).running);
         // A single T is a temperature as often.
         let is_temperature =
-            name.trim() == "T" && !matches!(running, Some(Running::Strictly | Running::WithEqualStamps));
+            name.trim() == "T" && !matches!(running, Some(TimeCheck::Strictly | TimeCheck::WithEqualStamps));
         if is_temperature {
             continue;
         }
         ensure!(
-            running != Some(Running::Falls),
+            running != Some(TimeCheck::Falls),
             "{}: column \"{}\" falls, as no time does: name another with --time, or use --time none",
             table.file,
             clipped(name)

@@ -1,7 +1,7 @@
 //! What the program understood of the data, said before the work begins.
 
 use hysid_core::data::rate::RateMethod;
-use hysid_core::data::record::{Difference, Protocol, Speeds, protocols};
+use hysid_core::data::record::{ProtocolDifference, RepeatedProtocol, SpeedEvidence, protocols};
 use hysid_core::data::summary::Summary;
 use hysid_core::network::Architecture;
 use hysid_core::options::FitSpec;
@@ -12,7 +12,7 @@ use crate::data::Data;
 use hysid_core::data::unit;
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_document::visible::{clipped, listed, listed_paths};
-use hysid_tables::Origin;
+use hysid_tables::TableOrigin;
 
 /// Room for a label and the blank behind it.
 const LABEL: usize = 9;
@@ -31,7 +31,7 @@ pub fn understanding(
 ) -> Vec<(String, String)> {
     let used = request.rate().filter(|_| request.model().uses_rate());
     let rate = match used {
-        None if request.model().uses_rate() && data.set.has_time() && data.set.speeds() == Speeds::One => {
+        None if request.model().uses_rate() && data.set.has_time() && data.set.speeds() == SpeedEvidence::One => {
             "none: each input value was passed at one speed only, so the data cannot show a rate dependence (to use the \
              rate anyway: --rate backward)"
                 .into()
@@ -136,7 +136,7 @@ pub fn parts(architecture: &Architecture) -> String {
 }
 
 /// In which ways tables were read, and how many in each way.
-fn as_read(tables: &[Origin]) -> Vec<(String, usize)> {
+fn as_read(tables: &[TableOrigin]) -> Vec<(String, usize)> {
     let mut ways: Vec<(String, usize)> = Vec::new();
     for table in tables {
         let way = table.described();
@@ -168,17 +168,17 @@ fn repeats(data: &Data) -> Vec<String> {
     let records = data.set.records();
     let (low, high) = data.set.output_range();
     let repeated = protocols(records).into_iter().filter(|protocol| protocol.runs.len() > 1);
-    let words = |protocol: Protocol| {
+    let words = |protocol: RepeatedProtocol| {
         let names: Vec<&str> = protocol.runs.iter().map(|&run| records[run].name()).collect();
         let percent =
             |deviation: f64| format!("{:.3} % of the range", Significant(100.0 * deviation / (high - low)));
         let differ = match protocol.difference(records) {
-            Some(Difference { deviation: 0.0, .. }) => String::new(),
-            Some(Difference { deviation, is_noise: true }) => format!(
+            Some(ProtocolDifference { deviation: 0.0, .. }) => String::new(),
+            Some(ProtocolDifference { deviation, is_noise: true }) => format!(
                 "; their outputs differ by noise of {} (standard deviation), the least error of any model",
                 percent(deviation)
             ),
-            Some(Difference { deviation, is_noise: false }) => format!(
+            Some(ProtocolDifference { deviation, is_noise: false }) => format!(
                 "; their outputs differ by {} (standard deviation), and not by noise alone: the conditions, the specimen \
                  or the input differed; a model that does not know this has at least this error",
                 percent(deviation)

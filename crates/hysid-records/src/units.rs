@@ -11,7 +11,7 @@ use hysid_document::visible::clipped;
 
 /// What the numbers of each column are multiplied by to be in the model's units; `None` for as they are.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Factors {
+pub struct UnitFactors {
     pub time: Option<f64>,
     pub inputs: Vec<Option<f64>>,
     pub rate: Option<f64>,
@@ -20,7 +20,7 @@ pub struct Factors {
     pub conversions: Vec<String>,
 }
 
-impl Factors {
+impl UnitFactors {
     /// From the units that the names of the table's columns tell to those of the columns that the model was trained
     /// on. `is_scored` if the output is read.
     ///

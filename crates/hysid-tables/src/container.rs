@@ -21,7 +21,7 @@ use budget::Unpacking;
 /// Bytes that tell what a file is.
 const FIRST: usize = 1 << 16;
 
-pub struct Text {
+pub struct DecodedText {
     /// The file, as the user named it.
     pub file: String,
     /// UTF-8, without a byte order mark.
@@ -31,7 +31,7 @@ pub struct Text {
     pub other_sheets: Vec<String>,
 }
 
-impl Text {
+impl DecodedText {
     /// Opens a file; standard input for `-`.
     pub fn open(path: &Path, reading: &Reading) -> Result<Self> {
         if path == Path::new("-") {
@@ -127,7 +127,7 @@ mod tests {
 
     fn text(bytes: &[u8]) -> Result<(String, String)> {
         let bytes = bytes.to_vec();
-        let mut text = Text::new("f".into(), Box::new(Cursor::new(bytes)), &Reading::default())?;
+        let mut text = DecodedText::new("f".into(), Box::new(Cursor::new(bytes)), &Reading::default())?;
         let mut content = String::new();
         text.reader.read_to_string(&mut content)?;
         Ok((content, text.stored))

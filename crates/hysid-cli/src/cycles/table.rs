@@ -1,7 +1,7 @@
 //! The table of cycles: as CSV, and as rows for text and page.
 
 use anyhow::Result;
-use hysid::diagnosis::cycles::{CycleRow, Field, Figure, Quantity};
+use hysid::diagnosis::cycles::{CycleRow, Field, Figure, FigureQuantity};
 use hysid_document::{Cell, Table};
 
 use super::Cycles;
@@ -72,7 +72,7 @@ pub fn shown(
             "energy" if cycles.table.field == Field::Magnet => "loss per cycle",
             _ => figure.label,
         };
-        let per = if figure.quantity == Quantity::Creep { " per decade" } else { "" };
+        let per = if figure.quantity == FigureQuantity::Creep { " per decade" } else { "" };
         let named = cycles.quantities.as_figure(own.trim_end_matches(per), figure.quantity);
         label(&named) + per
     };

@@ -15,7 +15,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::hysteretic_dynamics::{Dynamics, Form, law_of_dynamics};
+use crate::law::hysteretic_dynamics::{Dynamics, DynamicsForm, law_of_dynamics};
 
 /// A hysteretic oscillator in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,6 +23,6 @@ use crate::law::hysteretic_dynamics::{Dynamics, Form, law_of_dynamics};
 pub struct HystereticOscillator(pub Dynamics);
 
 law_of_dynamics! {
-    HystereticOscillator, Form::Oscillator, 1, "hysteretic oscillator",
+    HystereticOscillator, DynamicsForm::Oscillator, 1, "hysteretic oscillator",
     "hysteretic-oscillator", "masses on springs and dampers with hysteretic elements, for data with a resonance; needs time"
 }

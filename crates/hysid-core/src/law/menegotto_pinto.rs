@@ -118,7 +118,7 @@ pub struct MenegottoPinto {
 
 /// A branch from a turning point, in the direction of its movement.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Branch {
+struct SteelBranch {
     /// `d_r`, with the sign of the direction.
     from: f64,
     /// `q_r`, likewise.
@@ -131,7 +131,7 @@ struct Branch {
     chord: [(f64, f64); 2],
 }
 
-impl Branch {
+impl SteelBranch {
     fn new(from: f64, start: f64, room: f64, roundness: f64) -> Self {
         Self { from, start, room, roundness, chord: [(from, start); 2] }
     }
@@ -169,7 +169,7 @@ impl Branch {
 #[derive(Debug, Clone, PartialEq)]
 pub struct MenegottoPintoState {
     /// Branches upwards and downwards, the oldest first.
-    branches: [Vec<Branch>; 2],
+    branches: [Vec<SteelBranch>; 2],
     /// 0 upwards, 1 downwards; `None` before the first movement.
     direction: Option<usize>,
     d: f64,
@@ -210,19 +210,19 @@ impl MenegottoPinto {
     }
 
     /// The branch of a virgin material.
-    fn virgin_branch(&self, direction: usize) -> Branch {
+    fn virgin_branch(&self, direction: usize) -> SteelBranch {
         let room = self.down.filter(|_| direction == 1).map_or(1.0, |down| down.ratio);
-        Branch::new(0.0, 0.0, room, self.roundness)
+        SteelBranch::new(0.0, 0.0, room, self.roundness)
     }
 
     /// The branch from the present point in a direction.
-    fn branch(&self, state: &MenegottoPintoState, direction: usize) -> Branch {
+    fn branch(&self, state: &MenegottoPintoState, direction: usize) -> SteelBranch {
         let sign = sign_of(direction);
         let (from, start) = (sign * state.d, sign * state.q);
         let room = (self.yield_stress(direction, state.extremes) - start).max(0.0);
         let excursion = (state.extremes[direction] - (from + room)).abs();
         let roundness = self.roundness * (1.0 - self.loss * excursion / (self.pace + excursion));
-        Branch::new(from, start, room, roundness.max(LEAST_ROUNDNESS))
+        SteelBranch::new(from, start, room, roundness.max(LEAST_ROUNDNESS))
     }
 
     /// Advances to the next input and returns `q`.
@@ -276,7 +276,7 @@ impl MenegottoPinto {
 
 /// The smallest `q` of the branches at `d` (theory.md (8.51)). Branches later than its own have met it and are
 /// deleted. An earlier branch is only evaluated where the last one may have met it. `by` is the length of this step.
-fn followed(branches: &mut Vec<Branch>, d: f64, by: f64) -> f64 {
+fn followed(branches: &mut Vec<SteelBranch>, d: f64, by: f64) -> f64 {
     let Some((last, earlier)) = branches.split_last_mut() else { return 0.0 };
     let (mut least, mut kept) = (last.at(d), earlier.len() + 1);
     for (index, branch) in earlier.iter_mut().enumerate().rev() {

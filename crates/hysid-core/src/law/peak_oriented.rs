@@ -133,7 +133,7 @@ pub struct PeakOrientedState {
     d: f64,
     /// Largest `d` so far on each side; not negative.
     peaks: [f64; 2],
-    loading: Loading,
+    loading: LoadingBranch,
     unloading: Option<Unloading>,
     /// `e`, in yield forces times yield displacements.
     work: f64,
@@ -142,7 +142,7 @@ pub struct PeakOrientedState {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Loading {
+struct LoadingBranch {
     /// `d_0`.
     from: f64,
     /// `d_t`.
@@ -220,7 +220,7 @@ impl PeakOriented {
     }
 
     /// The branch of a side that begins without force at `from`.
-    fn loading(&self, state: &PeakOrientedState, side: usize, from: f64) -> Loading {
+    fn loading(&self, state: &PeakOrientedState, side: usize, from: f64) -> LoadingBranch {
         let strength = self.strength(state.deterioration);
         let (peak, far) = (state.peaks[side], (-from).max(0.0));
         let (growth, loss) = self.degradation.map_or((0.0, 0.0), |degradation| {
@@ -235,11 +235,11 @@ impl PeakOriented {
         let height =
             self.pinch_place + room.clamp(0.0, 1.0) * (self.pinch_height * (1.0 - loss) - self.pinch_place);
         let bend = Bend { place: self.pinch_place, height, weight: self.pinch_weight };
-        Loading { from, target, top, bend, strength }
+        LoadingBranch { from, target, top, bend, strength }
     }
 
     /// The force on a branch at `d`, beyond its beginning.
-    fn force(&self, loading: &Loading, d: f64) -> f64 {
+    fn force(&self, loading: &LoadingBranch, d: f64) -> f64 {
         if d >= loading.target {
             return loading.strength * self.envelope(d.max(0.0));
         }
@@ -247,7 +247,7 @@ impl PeakOriented {
     }
 
     /// The branch from a turning point at `from` on a branch.
-    fn unloading(&self, loading: &Loading, peak: f64, from: f64) -> Unloading {
+    fn unloading(&self, loading: &LoadingBranch, peak: f64, from: f64) -> Unloading {
         let force = self.force(loading, from);
         let secant = self.secant(peak, loading.strength);
         let stiffness = powf(secant, self.unloading);
@@ -258,7 +258,7 @@ impl PeakOriented {
     }
 
     /// Work of a branch that was loaded and unloaded to zero force.
-    fn dissipated(&self, loading: &Loading, unloading: &Unloading) -> f64 {
+    fn dissipated(&self, loading: &LoadingBranch, unloading: &Unloading) -> f64 {
         let middle = loading.target.clamp(loading.from, unloading.from);
         let area = |from: f64, to: f64| {
             let at = |(node, weight): (f64, f64)| weight * self.force(loading, from + node * (to - from));
@@ -337,7 +337,7 @@ impl Law for PeakOriented {
             side: None,
             d: 0.0,
             peaks: [0.0; 2],
-            loading: Loading { from: 0.0, target: 0.0, top: 0.0, bend, strength: 1.0 },
+            loading: LoadingBranch { from: 0.0, target: 0.0, top: 0.0, bend, strength: 1.0 },
             unloading: None,
             work: 0.0,
             deterioration: 0.0,

@@ -23,10 +23,10 @@ use crate::error::{Error, Result};
 use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::thresholds::{check_weights, limited};
-use crate::law::turning_point_stack::{Branch, TurningPointStack};
+use crate::law::turning_point_stack::{StackBranch, TurningPointStack};
 use crate::law::{Dimension, Law, Parameter, Sample, stored_as};
 use crate::property::Property;
-use everett::Everett;
+use everett::EverettTables;
 use plane::Plane;
 
 /// Most intervals of each axis.
@@ -40,7 +40,7 @@ pub struct Preisach {
     weights: PreisachWeights,
     /// Output in the virgin state, reversible part left out.
     virgin: f64,
-    everett: Everett,
+    everett: EverettTables,
     /// Reversible output at each line, without `k x`.
     reversible: Vec<f64>,
 }
@@ -117,7 +117,7 @@ impl Preisach {
         for (j, v) in weights.reversible.iter().enumerate() {
             reversible.push(reversible[j] + 2.0 * v);
         }
-        Ok(Self { everett: Everett::new(&plane, &weights.cells), virgin, reversible, weights })
+        Ok(Self { everett: EverettTables::new(&plane, &weights.cells), virgin, reversible, weights })
     }
 
     /// The parameters.
@@ -175,10 +175,10 @@ impl Law for Preisach {
         let x = limited(sample.x);
         stack.advance(x, 0.0);
         let switched = match stack.branch() {
-            Branch::Virgin if x >= 0.0 => self.virgin + 2.0 * self.everett.virgin(x),
-            Branch::Virgin => self.virgin - 2.0 * self.everett.virgin(x),
-            Branch::From { start, .. } if x > start.x => start.value + 2.0 * self.everett(x, start.x),
-            Branch::From { start, .. } => start.value - 2.0 * self.everett(start.x, x),
+            StackBranch::Virgin if x >= 0.0 => self.virgin + 2.0 * self.everett.virgin(x),
+            StackBranch::Virgin => self.virgin - 2.0 * self.everett.virgin(x),
+            StackBranch::From { start, .. } if x > start.x => start.value + 2.0 * self.everett(x, start.x),
+            StackBranch::From { start, .. } => start.value - 2.0 * self.everett(start.x, x),
         };
         stack.set_value(switched);
         switched + self.reversible_part(x)

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
-use crate::data::record::{Dataset, Speeds};
+use crate::data::record::{Dataset, SpeedEvidence};
 use crate::error::{Error, OptionError, Result};
 use crate::law::thresholds::MOST_THRESHOLDS;
 use crate::network::{Family, Sizes};
@@ -16,7 +16,7 @@ use crate::options::effort::Effort;
 use crate::options::fit_spec::AutoOptions;
 use crate::options::input_options::InputOptions;
 use crate::options::network::{FitOptions, Trainer};
-use crate::options::table::{FitOption, OPTIONS, Values, check};
+use crate::options::table::{FitOption, OPTIONS, OptionValues, check};
 use crate::options::{FitSpec, ModelName};
 
 /// Options of a fit, described in [`OPTIONS`]; `None` stands for the default of the model or its trainer.
@@ -255,7 +255,7 @@ impl NamedOptions {
         // A flag that is not set asks for nothing.
         let is_asked = |option: &FitOption| match named.get(option.name) {
             None | Some(Value::Null) => false,
-            Some(Value::Bool(false)) => matches!(option.values, Values::Truth),
+            Some(Value::Bool(false)) => matches!(option.values, OptionValues::Truth),
             Some(_) => true,
         };
         let (model, trainer) = (self.model(), self.trainer());
@@ -293,7 +293,7 @@ pub enum RateChoice {
 impl RateChoice {
     /// The rate of this model on these data.
     pub fn method(self, model: ModelName, data: &Dataset) -> Option<RateMethod> {
-        let is_shown = || model.uses_rate() && (model.needs_rate() || data.speeds() != Speeds::One);
+        let is_shown = || model.uses_rate() && (model.needs_rate() || data.speeds() != SpeedEvidence::One);
         match self {
             Self::Auto => (data.has_time() && is_shown()).then_some(RateMethod::Backward),
             Self::None => None,

@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::Piece;
 use crate::branch::BranchSet;
 use hysid_core::data::record::{Dataset, Record};
@@ -42,7 +42,7 @@ pub(super) fn may_be(data: &Dataset) -> bool {
 }
 
 pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let mut found = Vec::new();
     for of_output in [true, false] {
         for sign in [1.0, -1.0] {
@@ -78,14 +78,14 @@ pub(crate) fn clipped_outputs(survey: &BranchSet) -> Vec<(usize, Range<usize>)> 
 }
 
 /// Rows of a record at the end of what was measured.
-struct Run {
+struct LimitRun {
     record: usize,
     rows: Range<usize>,
 }
 
 /// What is clipped at one end of a channel.
 struct Clipped {
-    runs: Vec<Run>,
+    runs: Vec<LimitRun>,
     value: f64,
 }
 
@@ -108,7 +108,7 @@ fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<Clipped> {
                     false => there_and_back(survey, y, (row, last)),
                 };
             if is_clipped {
-                runs.push(Run { record: number, rows: row..last + 1 });
+                runs.push(LimitRun { record: number, rows: row..last + 1 });
             }
             row += length.max(1);
         }

@@ -8,9 +8,9 @@
 mod turn;
 
 use hysid_core::elementary::{hypot, ln, powf, powi, square};
-use turn::{Beside, Turn, Window};
+use turn::{Beside, TurnBranches, TurnWindow};
 
-use super::{DataIssue, DataIssueKind, Severity, Units};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity};
 use crate::Delay;
 use crate::branch::BranchSet;
 use crate::minimum::lowest;
@@ -114,7 +114,7 @@ pub(super) fn longest(survey: &BranchSet) -> Option<f64> {
 
 /// A delay that makes all speeds agree, theory.md (10.14).
 fn between_speeds(survey: &BranchSet, delay: &Delay) -> DataIssue {
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let statement = format!(
         "the output is {}, the same at all speeds, which explains the apparent rate dependence; shift the \
          output by {} to {} time before fitting",
@@ -134,7 +134,7 @@ fn at_turning_points(survey: &BranchSet) -> Vec<DataIssue> {
     let Some(sharpest) = clear.iter().copied().min_by(|a, b| a.deviation.total_cmp(&b.deviation)) else {
         return Vec::new();
     };
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let time = |time: f64| units.time(time);
     if let Some(other) = lags.iter().find(|lag| !sharpest.agrees(lag, 3.0, SAME)) {
         let (slow, fast) = if sharpest.speed < other.speed { (sharpest, other) } else { (other, sharpest) };
@@ -182,12 +182,12 @@ fn at_turning_points(survey: &BranchSet) -> Vec<DataIssue> {
 
 /// Turning points whose lag is found together.
 struct Turns<'t, 'd> {
-    turns: Vec<&'t Turn<'d>>,
-    windows: Vec<Window>,
+    turns: Vec<&'t TurnBranches<'d>>,
+    windows: Vec<TurnWindow>,
 }
 
 impl<'t, 'd> Turns<'t, 'd> {
-    fn new(turns: &[&'t Turn<'d>], share: f64, lags: (f64, f64)) -> Self {
+    fn new(turns: &[&'t TurnBranches<'d>], share: f64, lags: (f64, f64)) -> Self {
         let (turns, windows) =
             turns.iter().filter_map(|turn| Some((*turn, turn.window(share, lags)?))).unzip();
         Self { turns, windows }
@@ -239,19 +239,19 @@ impl<'t, 'd> Turns<'t, 'd> {
 }
 
 /// All turning points between long branches, the slowest first.
-fn turns<'d>(survey: &BranchSet<'d>) -> Vec<Turn<'d>> {
-    let mut turns: Vec<Turn> = survey
+fn turns<'d>(survey: &BranchSet<'d>) -> Vec<TurnBranches<'d>> {
+    let mut turns: Vec<TurnBranches> = survey
         .branches
         .windows(2)
         .filter(|pair| pair[0].record == pair[1].record)
         .filter(|pair| pair[0].travel().min(pair[1].travel()) >= SHORTEST * survey.width())
-        .filter_map(|pair| Turn::between(survey, &pair[0], &pair[1]))
+        .filter_map(|pair| TurnBranches::between(survey, &pair[0], &pair[1]))
         .collect();
     turns.sort_by(|a, b| a.speed.total_cmp(&b.speed));
     turns
 }
 
-fn speeds<'t, 'd>(turns: &'t [Turn<'d>]) -> Vec<&'t [Turn<'d>]> {
+fn speeds<'t, 'd>(turns: &'t [TurnBranches<'d>]) -> Vec<&'t [TurnBranches<'d>]> {
     let mut speeds = Vec::new();
     let mut rest = turns;
     while let Some(slowest) = rest.first() {
@@ -266,8 +266,8 @@ fn speeds<'t, 'd>(turns: &'t [Turn<'d>]) -> Vec<&'t [Turn<'d>]> {
     speeds.into_iter().step_by(every).collect()
 }
 
-fn at_one_speed(survey: &BranchSet, turns: &[Turn]) -> Option<Lag> {
-    let turns: Vec<&Turn> = turns.iter().step_by(turns.len().div_ceil(MOST)).collect();
+fn at_one_speed(survey: &BranchSet, turns: &[TurnBranches]) -> Option<Lag> {
+    let turns: Vec<&TurnBranches> = turns.iter().step_by(turns.len().div_ceil(MOST)).collect();
     let shortest = turns.iter().map(|turn| turn.duration()).fold(f64::INFINITY, f64::min);
     let reach = LONGEST * shortest;
     let first = first_search(&turns, reach)?;
@@ -303,7 +303,7 @@ fn widest(found: &[(Lag, f64)]) -> usize {
 }
 
 /// The lag to begin with: of those found in wide and in narrow windows, and none, the one that leaves least.
-fn first_search(turns: &[&Turn], reach: f64) -> Option<f64> {
+fn first_search(turns: &[&TurnBranches], reach: f64) -> Option<f64> {
     let mut found = vec![0.0];
     let mut narrowest = None;
     for share in FIRST {

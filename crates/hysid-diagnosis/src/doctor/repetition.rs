@@ -1,6 +1,6 @@
 //! Values that repeat: whole rows, values held for a fixed number of rows, and columns with few different values.
 
-use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::branch::BranchSet;
 use crate::significance;
 use hysid_core::data::record::Record;
@@ -142,7 +142,7 @@ fn coarse_resolution(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     if commonest * 10 > total * 9 && jumps[0] * 10 < total {
         return None;
     }
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let (name, shown) = if of_output { ("output", units.output(step)) } else { ("input", units.input(step)) };
     let statement = format!(
         "the {name} comes in steps of {shown}, {:.1} % of its range: smaller differences, and turning \

@@ -1,6 +1,6 @@
 //! Where records begin: a model starts from the virgin state, and a record that does not misleads it.
 
-use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::branch::{Branch, BranchSet};
 
 /// A first input within this share of the largest is at rest.
@@ -29,7 +29,7 @@ fn beginning(survey: &BranchSet, number: usize) -> Option<DataIssue> {
     if y.is_nan() {
         return None;
     }
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let complaint = |kind, severity, statement: String| {
         Some(DataIssue::of_rows(kind, severity, statement, vec![piece(record, 0, 0)]))
     };

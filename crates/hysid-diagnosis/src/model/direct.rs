@@ -1,6 +1,6 @@
 //! Tests that only a model allows: the same way at other speeds, its mirror image, an excursion repeated.
 
-use super::probe::{Path, Probe, extent, path};
+use super::probe::{Probe, ProbePath, extent, path};
 use crate::odd_symmetry::EFFECT as ODD_EFFECT;
 use crate::rate_dependence::EFFECT as RATE_EFFECT;
 use crate::wiping_out::{EFFECT as GAP_EFFECT, loops};
@@ -137,7 +137,7 @@ pub(super) fn about_origin(probe: &Probe) -> bool {
 }
 
 fn mirrored(probe: &Probe, centre: f64, half: f64) -> Result<Mirrored> {
-    let there: Path = path(centre, half, &LOOPS, probe.steps);
+    let there: ProbePath = path(centre, half, &LOOPS, probe.steps);
     let back = path(centre, half, &LOOPS.map(|turning| -turning), probe.steps);
     let record = probe.run("path", &there.x, probe.speeds.vanishing)?;
     let other = probe.run("mirrored path", &back.x, probe.speeds.vanishing)?;

@@ -5,8 +5,8 @@
 //! model with a rate, the rate belongs to the unknown input, so what is found depends on the time step; a scan then
 //! covers the inputs that the trained rates can reach.
 
+mod conclusions;
 mod examination;
-mod judgement;
 mod pasts;
 mod scan;
 mod words;
@@ -15,9 +15,9 @@ use serde::Serialize;
 
 use super::probe::Probe;
 use crate::Finding;
+use conclusions::ScanConclusions;
 use examination::Examination;
 use hysid_core::error::Result;
-use judgement::Judgement;
 
 /// A way back or a jump below this share of the output's range does not matter.
 const EFFECT: f64 = 1e-6;
@@ -25,14 +25,14 @@ const EFFECT: f64 = 1e-6;
 /// In which direction the output goes while the input rises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Direction {
+pub enum OutputDirection {
     /// Upwards.
     Rising,
     /// Downwards.
     Falling,
 }
 
-impl Direction {
+impl OutputDirection {
     fn sign(self) -> f64 {
         match self {
             Self::Rising => 1.0,
@@ -53,7 +53,7 @@ pub enum PlaceKind {
 
 /// Where a model is not monotone.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Place {
+pub struct NonMonotonePlace {
     /// What is there.
     pub kind: PlaceKind,
     /// Its size, as a share of the range of the output.
@@ -101,7 +101,7 @@ pub struct Invertibility {
     #[serde(flatten)]
     pub finding: Finding,
     /// In which direction the output goes while the input rises, in most scans.
-    pub direction: Direction,
+    pub direction: OutputDirection,
     /// Outputs that can be reached in one step after each past; `None` if there are none. Of a model with a rate: in a
     /// step that is long enough for the whole trained range.
     pub always: Option<(f64, f64)>,
@@ -121,7 +121,7 @@ pub struct Invertibility {
     /// Number of jumps that were found.
     pub jumps: usize,
     /// The largest way back or jump; `None` for a verdict *yes*.
-    pub worst: Option<Place>,
+    pub worst: Option<NonMonotonePlace>,
     /// A drawing.
     #[serde(skip)]
     pub drawing: Scans,
@@ -129,6 +129,6 @@ pub struct Invertibility {
 
 impl Invertibility {
     pub(super) fn of(probe: &Probe) -> Result<Self> {
-        Ok(Judgement::of(&Examination::of(probe)?).invertibility(probe))
+        Ok(ScanConclusions::of(&Examination::of(probe)?).invertibility(probe))
     }
 }

@@ -8,7 +8,7 @@ use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::elementary::exp;
 use hysid_core::error::{Error, Result};
 use hysid_core::model::{Model, Predictor};
-use hysid_core::network::Layout;
+use hysid_core::network::ParameterLayout;
 
 /// Rows from the middle of the range to its end. Every tenth of the way falls on a row, and a branch over the
 /// whole range has few enough rows that none are averaged.
@@ -80,7 +80,7 @@ impl Probing {
 
 /// A way of the input through turning points.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Path {
+pub(super) struct ProbePath {
     pub x: Vec<f64>,
     /// Row of each turning point, the first row and the last with them.
     pub turns: Vec<usize>,
@@ -92,7 +92,7 @@ pub(super) struct Probe<'m> {
     pub model: &'m Model,
     pub centre: f64,
     pub half: f64,
-    pub speeds: Speeds,
+    pub speeds: ProbeSpeeds,
     /// Rows from the middle of the range to its end.
     pub steps: u32,
     held: Vec<f64>,
@@ -100,7 +100,7 @@ pub(super) struct Probe<'m> {
 
 /// Speeds, in the unit of the input over that of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Speeds {
+pub(super) struct ProbeSpeeds {
     pub scale: TimeScale,
     pub vanishing: f64,
     pub middle: f64,
@@ -108,7 +108,7 @@ pub(super) struct Speeds {
     one_sided: bool,
 }
 
-impl Speeds {
+impl ProbeSpeeds {
     fn of(model: &Model, half: f64) -> Self {
         let rate = model.trained_ranges().rate.map(|(low, high)| {
             let (most, least) = (high.abs().max(low.abs()), high.min(-low));
@@ -140,7 +140,7 @@ fn median_relaxation_time(model: &Model) -> Option<f64> {
         return ensemble.members().iter().find_map(median_relaxation_time);
     }
     let Predictor::Network { network, .. } = model.predictor() else { return None };
-    let ln_tau = &network.parameters()[Layout::new(*network.architecture()).ln_tau];
+    let ln_tau = &network.parameters()[ParameterLayout::new(*network.architecture()).ln_tau];
     if ln_tau.is_empty() {
         return None;
     }
@@ -160,7 +160,7 @@ impl<'m> Probe<'m> {
                 "the model was trained on inputs from {low} to {high}: there is no range to probe"
             )));
         }
-        let speeds = Speeds::of(model, half);
+        let speeds = ProbeSpeeds::of(model, half);
         Ok(Self {
             model,
             centre: middle(&ranges[0]),
@@ -197,7 +197,7 @@ impl<'m> Probe<'m> {
     }
 
     /// A path over the trained range: turning points from -1, its lower end, to 1, its upper end.
-    pub fn path(&self, turning: &[f64]) -> Path {
+    pub fn path(&self, turning: &[f64]) -> ProbePath {
         path(self.centre, self.half, turning, self.steps)
     }
 
@@ -251,11 +251,11 @@ fn origin(model: &Model) -> f64 {
 }
 
 /// A path in equal steps, `steps` to each half of the range: equal places on different ways are equal numbers.
-pub(super) fn path(centre: f64, half: f64, turning: &[f64], steps: u32) -> Path {
+pub(super) fn path(centre: f64, half: f64, turning: &[f64], steps: u32) -> ProbePath {
     let place = |turning: f64| (turning * f64::from(steps)).round() as i64;
     let input = |place: i64| centre + half * (place as f64 / f64::from(steps));
     let mut here = place(turning[0]);
-    let mut path = Path { x: vec![input(here)], turns: vec![0] };
+    let mut path = ProbePath { x: vec![input(here)], turns: vec![0] };
     for end in turning[1..].iter().map(|&turning| place(turning)) {
         while here != end {
             here += (end - here).signum();

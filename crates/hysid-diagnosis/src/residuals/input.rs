@@ -19,7 +19,7 @@ use hysid_core::linear_algebra::Symmetric;
 use hysid_core::random::mix;
 use serde::Serialize;
 
-use super::rows::Rows;
+use super::rows::ResidualRows;
 use crate::distribution::{t_quantile, t_tail};
 use crate::serial::{SerialSum, correlation_lag};
 
@@ -56,7 +56,11 @@ pub struct InputCorrelation {
 }
 
 /// Correlations with each input that varies, and with the rate of the first.
-pub(super) fn correlations(rows: &Rows, residual: &[Vec<f64>], names: &ColumnNames) -> Vec<InputCorrelation> {
+pub(super) fn correlations(
+    rows: &ResidualRows,
+    residual: &[Vec<f64>],
+    names: &ColumnNames,
+) -> Vec<InputCorrelation> {
     let input =
         |index: usize| -> Vec<&[f64]> { rows.inputs.iter().map(|inputs| inputs[index].as_slice()).collect() };
     let rate: Vec<Vec<f64>> =

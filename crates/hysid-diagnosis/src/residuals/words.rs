@@ -5,7 +5,8 @@ use hysid_core::elementary::square;
 use hysid_core::significant::Significant;
 
 use super::{
-    Group, LEVEL, Place, ResidualFinding, ResidualOptions, ResidualTest, ResidualVerdict, Residuals,
+    GroupedResiduals, LEVEL, ResidualFinding, ResidualGroup, ResidualOptions, ResidualTest, ResidualVerdict,
+    Residuals,
 };
 use crate::distribution::t_tail;
 use crate::serial::SerialSum;
@@ -61,7 +62,7 @@ pub(super) fn findings(
 }
 
 /// The smaller of both p-values of a place, for two tests.
-fn of_place(place: &Place) -> Option<f64> {
+fn of_place(place: &GroupedResiduals) -> Option<f64> {
     let smaller = place.size_p_value?.min(place.bias_p_value?);
     Some((2.0 * smaller).min(1.0))
 }
@@ -88,14 +89,14 @@ fn holm(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
 }
 
 /// A finding without its p-values.
-struct Told {
+struct PlainFinding {
     test: ResidualTest,
     input: Option<String>,
     statement: String,
     advice: Option<&'static str>,
 }
 
-impl Told {
+impl PlainFinding {
     fn finding(self, p_value: Option<f64>, adjusted_p_value: Option<f64>) -> ResidualFinding {
         let verdict = match adjusted_p_value {
             None => ResidualVerdict::NotTestable,
@@ -120,7 +121,7 @@ impl Teller<'_> {
         format!("{:.3}{}", Significant(value), suffix(self.unit))
     }
 
-    fn bias(&self, p: Option<f64>) -> Told {
+    fn bias(&self, p: Option<f64>) -> PlainFinding {
         let Residuals { bias, rms, .. } = *self.residuals;
         let share = if rms > 0.0 { 100.0 * bias.abs() / rms } else { 0.0 };
         let amount =
@@ -131,10 +132,10 @@ impl Teller<'_> {
         };
         let advice = "The output is offset against that of the training data: check the zero of the sensor and the \
                       initial state of the records.";
-        Told { test: ResidualTest::Bias, input: None, statement, advice: Some(advice) }
+        PlainFinding { test: ResidualTest::Bias, input: None, statement, advice: Some(advice) }
     }
 
-    fn whiteness(&self, p: Option<f64>) -> Told {
+    fn whiteness(&self, p: Option<f64>) -> PlainFinding {
         let Residuals { whiteness, rows, effective_rows, .. } = self.residuals;
         let lags = whiteness.degrees_of_freedom;
         let share = 100.0 * whiteness.predictable_share;
@@ -157,10 +158,10 @@ impl Teller<'_> {
                  none, it is slow noise of the sensor, or a memory that the model does not have."
             }
         };
-        Told { test: ResidualTest::Whiteness, input: None, statement, advice: Some(advice) }
+        PlainFinding { test: ResidualTest::Whiteness, input: None, statement, advice: Some(advice) }
     }
 
-    fn input(&self, at: usize, p: Option<f64>) -> Told {
+    fn input(&self, at: usize, p: Option<f64>) -> PlainFinding {
         let input = &self.residuals.inputs[at];
         let (name, _) = hysid_core::data::unit::split(&input.input);
         let what = if input.of_rate { format!("the rate of {name}") } else { name.to_string() };
@@ -191,7 +192,7 @@ impl Teller<'_> {
         };
         let test = if input.of_rate { ResidualTest::Rate } else { ResidualTest::Input };
         let input = (test == ResidualTest::Input).then(|| input.input.clone());
-        Told { test, input, statement, advice: Some(advice) }
+        PlainFinding { test, input, statement, advice: Some(advice) }
     }
 
     /// What helps against a correlation `r` with the rate in the same row.
@@ -212,7 +213,7 @@ impl Teller<'_> {
          check for a delay between the channels (diagnose the data)."
     }
 
-    fn place_of(&self, test: ResidualTest) -> Option<&Place> {
+    fn place_of(&self, test: ResidualTest) -> Option<&GroupedResiduals> {
         self.residuals.places.iter().find(|place| place.test == test)
     }
 
@@ -230,10 +231,15 @@ impl Teller<'_> {
         explained / (rows as f64 * (rms * rms - bias * bias)).max(f64::MIN_POSITIVE)
     }
 
-    fn place(&self, place: &Place, p: Option<f64>) -> Told {
+    fn place(&self, place: &GroupedResiduals, p: Option<f64>) -> PlainFinding {
         let test = place.test;
         if let Some(why) = &place.not_testable {
-            return Told { test, input: None, statement: format!("Not testable: {why}."), advice: None };
+            return PlainFinding {
+                test,
+                input: None,
+                statement: format!("Not testable: {why}."),
+                advice: None,
+            };
         }
         let mut statements = Vec::new();
         if is_found(p) {
@@ -252,16 +258,16 @@ impl Teller<'_> {
         if let (true, Some(caution)) = (is_found(p), &place.caution) {
             statements.push(format!("Note: {caution}."));
         }
-        Told { test, input: None, statement: statements.join(" "), advice: Some(self.advice(test)) }
+        PlainFinding { test, input: None, statement: statements.join(" "), advice: Some(self.advice(test)) }
     }
 
-    fn size_in_words(&self, group: &Group) -> String {
+    fn size_in_words(&self, group: &ResidualGroup) -> String {
         format!("{} ({})", self.value(group.rms), group.name)
     }
 
     /// The largest and the smallest size.
-    fn size(&self, place: &Place, p: Option<f64>) -> String {
-        let by_size = |a: &&Group, b: &&Group| a.rms.total_cmp(&b.rms);
+    fn size(&self, place: &GroupedResiduals, p: Option<f64>) -> String {
+        let by_size = |a: &&ResidualGroup, b: &&ResidualGroup| a.rms.total_cmp(&b.rms);
         let largest = place.groups.iter().max_by(by_size).expect("there are groups");
         let smallest = place.groups.iter().min_by(by_size).expect("there are groups");
         let ratio = match smallest.rms > 0.0 {
@@ -288,8 +294,8 @@ impl Teller<'_> {
         format!("The residual is {where_} {ratio} (RMS {after} against {elsewhere}; {}).", words(p))
     }
 
-    fn bias_of(&self, place: &Place, p: Option<f64>) -> String {
-        let of_group = |group: &Group| {
+    fn bias_of(&self, place: &GroupedResiduals, p: Option<f64>) -> String {
+        let of_group = |group: &ResidualGroup| {
             let sign = if group.bias > 0.0 { "+" } else { "" };
             format!("{sign}{} ({})", self.value(group.bias), group.name)
         };

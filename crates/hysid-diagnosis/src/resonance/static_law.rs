@@ -4,7 +4,7 @@ use hysid_core::data::record::Dataset;
 use hysid_core::operator::{Operator, Stop};
 
 use super::excerpt::{Excerpt, Excerpts};
-use super::linear_oscillator::Step;
+use super::linear_oscillator::OscillatorStep;
 use super::normal_equations::NormalEquations;
 
 /// Columns of two free motions, which belong to one excerpt alone.
@@ -21,7 +21,7 @@ pub(super) fn remainder(data: &Dataset, excerpts: &Excerpts, frequency: f64, dam
     let mut sum = NormalEquations::<COLUMNS>::empty();
     let mut free = [Vec::new(), Vec::new()];
     for part in &excerpts.parts {
-        let step = Step::new(frequency, damping_ratio, part.step);
+        let step = OscillatorStep::new(frequency, damping_ratio, part.step);
         step.decay([1.0, 0.0], part.rows.len(), &mut free[0]);
         step.decay([0.0, 1.0], part.rows.len(), &mut free[1]);
         free.iter_mut().for_each(|column| excerpts.compare(part, column));

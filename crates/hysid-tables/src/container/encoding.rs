@@ -6,7 +6,7 @@ use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
 use encoding_rs::{Encoding as Standard, UTF_8, UTF_16BE, UTF_16LE};
 use encoding_rs_io::DecodeReaderBytesBuilder;
 
-use crate::reading::Encoding;
+use crate::reading::TextEncoding;
 
 /// The encoding that a byte order mark tells, or the zeros of UTF-16 without a mark.
 pub fn of_marked_text(first: &[u8]) -> Option<&'static Standard> {
@@ -29,10 +29,10 @@ pub fn of_marked_text(first: &[u8]) -> Option<&'static Standard> {
 pub fn decoded(
     reader: Box<dyn Read>,
     first: &[u8],
-    chosen: Option<Encoding>,
+    chosen: Option<TextEncoding>,
 ) -> (Box<dyn Read>, &'static str) {
     let encoding = match chosen {
-        Some(Encoding(encoding)) => encoding,
+        Some(TextEncoding(encoding)) => encoding,
         None => of_marked_text(first).unwrap_or_else(|| guessed(first)),
     };
     let mark = first.starts_with(b"\xef\xbb\xbf");

@@ -33,8 +33,8 @@ pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<Sheet, String> {
         }
         let (bytes, kind) = archive::checked(&bytes)?;
         match kind {
-            archive::Kind::Excel => sheet::<Xlsx<_>, _>(bytes, chosen.as_deref()),
-            archive::Kind::OpenDocument => sheet::<Ods<_>, _>(bytes, chosen.as_deref()),
+            archive::SpreadsheetKind::Excel => sheet::<Xlsx<_>, _>(bytes, chosen.as_deref()),
+            archive::SpreadsheetKind::OpenDocument => sheet::<Ods<_>, _>(bytes, chosen.as_deref()),
         }
     })
 }

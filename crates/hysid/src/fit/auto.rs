@@ -25,11 +25,11 @@
 //! docs/accuracy.md of the repository reports the settings that were compared, on which cases, and the
 //! errors.
 
-mod beginning;
 mod candidates;
 mod combination;
 mod law;
 mod misfits;
+mod prepared_data;
 mod prior;
 mod score;
 mod selection;
@@ -43,27 +43,27 @@ use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::metrics::Errors;
-use crate::data::record::{Dataset, Record, Speeds};
+use crate::data::record::{Dataset, Record, SpeedEvidence};
 use crate::error::{Error, Result};
 use crate::fit::progress::{Fitted, HeldOutRows, Observer};
 use crate::model::input_transform::InputTransform;
 use crate::model::selection::{Beyond, FoundStates, Selection, WarmUp};
 use crate::model::{
-    Band, Ensemble, Found, Group, HeldOutRow, Model, Node, NodeKind, Predictor, Provenance, Weights,
+    Band, Ensemble, Group, HeldOutRow, Model, Node, NodeKind, Predictor, Provenance, ProvenanceDraft, Weights,
 };
 use crate::options::FitSpec;
 use crate::options::fit_spec::AutoOptions;
 use crate::options::table::check;
 use crate::termination::Termination;
 use crate::validation::{PooledErrors, folds_of_loop, folds_to_choose_by};
-use beginning::{Beginning, as_chosen};
 use candidates::{Candidate, candidates, quick, suited};
 use combination::{Combination, Leaf};
-use prior::Evidence;
+use prepared_data::{PreparedData, as_chosen};
+use prior::LoopEvidence;
 use selection::selection;
 use stages::Stages;
-use trial::{Bench, HeldOut, Trial, fit_members};
-use work::Work;
+use trial::{FoldBench, HeldOut, Trial, fit_members};
+use work::AutoWork;
 
 const MOST_FOLDS: usize = 5;
 
@@ -100,19 +100,19 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     let data = &*as_chosen(data, options)?;
     let has_inertia = candidates.iter().any(Candidate::is_dynamic);
     let few = if has_inertia { data.beginnings(ROWS_WITH_INERTIA)? } else { data.thinned(MOST_ROWS) };
-    let evidence = Evidence::of(data);
+    let evidence = LoopEvidence::of(data);
     let folds =
         if evidence.is_one_loop() { folds_of_loop(&few) } else { folds_to_choose_by(&few, MOST_FOLDS) };
-    let work = Work::new(observer, FITS_EXPECTED);
+    let work = AutoWork::new(observer, FITS_EXPECTED);
 
     // Should the observer stop everything soon, this is what there is.
     let alone = work.first_fit(first, if has_inertia { data } else { &few })?;
     let beginning = match has_inertia {
-        true => Beginning::with_inertia(&few, folds, options),
-        false => Beginning::of(&quick(options), &few, folds, options, &work),
+        true => PreparedData::with_inertia(&few, folds, options),
+        false => PreparedData::of(&quick(options), &few, folds, options, &work),
     };
     let data = &*beginning.of_all(data)?;
-    let Beginning { data: few, folds, warm_up, is_changed, found } = beginning;
+    let PreparedData { data: few, folds, warm_up, is_changed, found } = beginning;
     let candidates: Vec<Candidate> = candidates.iter().map(|one| one.warmed_up(warm_up.rows)).collect();
     let held_out: Vec<HeldOut> = folds.into_iter().map(HeldOut::of).collect();
     let is_first = warm_up.rows == 0 && !is_changed && !work.is_stopped();
@@ -122,15 +122,25 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
         return without_folds(data, fitted_to, options, &candidates[0], alone, &work);
     }
     let work = &work;
-    let bench = Bench { data: fitted_to, folds: &held_out, work };
+    let bench = FoldBench { data: fitted_to, folds: &held_out, work };
     let mut stages = Stages { bench, options, evidence, trials: Vec::new(), dropped: Vec::new() };
     stages.run(candidates, first_member);
-    if !options.always_rate && options.only.is_none() && data.speeds() == Speeds::OfAmplitude {
+    if !options.always_rate && options.only.is_none() && data.speeds() == SpeedEvidence::OfAmplitude {
         stages.drop_unearned_rates();
     }
     let Stages { trials, dropped, .. } = stages;
-    Chosen { data, options, bench, evidence, trials, dropped, left_out: Vec::new(), warm_up, found }
-        .fit(alone)
+    EnsembleSelection {
+        data,
+        options,
+        bench,
+        evidence,
+        trials,
+        dropped,
+        left_out: Vec::new(),
+        warm_up,
+        found,
+    }
+    .fit(alone)
 }
 
 /// Data too few to hold any out: the first candidate, unjudged.
@@ -140,7 +150,7 @@ fn without_folds(
     options: &AutoOptions,
     candidate: &Candidate,
     alone: Model,
-    work: &Work,
+    work: &AutoWork,
 ) -> Result<Fitted> {
     let mut trials = [Trial::of(candidate.clone())];
     let starts = if candidate.is_random() { options.starts.min(options.members) } else { 1 };
@@ -160,11 +170,11 @@ fn without_folds(
     Ok(Fitted::of(model, work.done()))
 }
 
-struct Chosen<'w, 'o, 'a> {
+struct EnsembleSelection<'w, 'o, 'a> {
     data: &'w Dataset,
     options: &'w AutoOptions,
-    bench: Bench<'w, 'o, 'a>,
-    evidence: Evidence,
+    bench: FoldBench<'w, 'o, 'a>,
+    evidence: LoopEvidence,
     trials: Vec<Trial>,
     dropped: Vec<Candidate>,
     /// Candidates that were tried and made the ensemble worse.
@@ -182,10 +192,10 @@ struct Assembled {
     model: Model,
 }
 
-impl Chosen<'_, '_, '_> {
+impl EnsembleSelection<'_, '_, '_> {
     /// The ensemble, or the single model that was requested; `alone` where nothing was tried in time.
     fn fit(mut self, alone: Model) -> Result<Fitted> {
-        let Bench { work, .. } = self.bench;
+        let FoldBench { work, .. } = self.bench;
         let fit = |model| Ok(Fitted::of(model, work.done()));
         self.drops_what_does_not_fit();
         if let Some(place) = self.place_of_law()
@@ -220,7 +230,7 @@ impl Chosen<'_, '_, '_> {
 
     /// The ensemble of all candidates that are left, its members fitted; `None` if none could be fitted in time.
     fn assembled(&mut self) -> Result<Option<Assembled>> {
-        let Bench { work, .. } = self.bench;
+        let FoldBench { work, .. } = self.bench;
         let Some(all) = self.combination(|_| true) else { return Ok(None) };
         let wanted: Vec<(usize, usize)> = all.leaves().iter().map(|leaf| (leaf.place, leaf.start)).collect();
         fit_members(&mut self.trials, &wanted, self.bench.data, work);
@@ -313,8 +323,8 @@ impl Chosen<'_, '_, '_> {
     fn band(&self, folds: &[Vec<HeldOutRow>]) -> Option<Band> {
         let band = Band::calibrate(folds)?;
         Some(match self.evidence {
-            Evidence::SeveralLoops => band,
-            Evidence::OneLoop(_) => band.wider(prior::WIDER_BAND),
+            LoopEvidence::SeveralLoops => band,
+            LoopEvidence::OneLoop(_) => band.wider(prior::WIDER_BAND),
         })
     }
 
@@ -351,7 +361,7 @@ impl Chosen<'_, '_, '_> {
         validation: Option<Errors>,
         predicted: &[Vec<f64>],
     ) -> Result<Fitted> {
-        let Bench { folds, work, .. } = self.bench;
+        let FoldBench { folds, work, .. } = self.bench;
         let mut selection = self.judged_by(selection, validation.as_ref(), predicted);
         selection.candidates.iter_mut().for_each(|candidate| candidate.members = 0);
         let provenance = provenance_of(&model, Some(selection), validation, work);
@@ -393,9 +403,9 @@ fn ensemble(
     options: &AutoOptions,
     validation: Option<Errors>,
     selection: Option<Selection>,
-    work: &Work,
+    work: &AutoWork,
 ) -> Result<Model> {
-    let found = Found {
+    let found = ProvenanceDraft {
         options: FitSpec::Auto(options.clone()),
         chosen_start: 0,
         termination: if work.is_stopped() { Termination::Stopped } else { Termination::Converged },
@@ -411,7 +421,7 @@ fn provenance_of(
     model: &Model,
     selection: Option<Selection>,
     validation: Option<Errors>,
-    work: &Work,
+    work: &AutoWork,
 ) -> Provenance {
     let provenance = model.provenance().clone();
     let termination = if work.is_stopped() { Termination::Stopped } else { provenance.termination };

@@ -28,7 +28,7 @@ use crate::diagnosis::distribution::t_quantile;
 use crate::diagnosis::serial::{Autoregression, SerialSum, correlation_lag};
 use crate::error::{Error, Result};
 use crate::fit::law::linearised as of_law;
-use crate::fit::law::linearised::{FitVariable, Linearised};
+use crate::fit::law::linearised::{FitVariable, LinearisedLaw};
 use crate::linear_algebra::{Symmetric, dot};
 use crate::model::input_transform::Transformed;
 use crate::model::{Model, ParameterInUnits};
@@ -163,8 +163,8 @@ fn as_begun(model: &Model, data: &Dataset) -> Result<Dataset> {
     begun.with_lead_ins(|_, record| record.lead_in().unwrap_or(model.lead_in()).to_vec())
 }
 
-fn intervals(parameters: &[ParameterInUnits], linearised: &Linearised) -> ParameterIntervals {
-    let spread = Spread::of(linearised);
+fn intervals(parameters: &[ParameterInUnits], linearised: &LinearisedLaw) -> ParameterIntervals {
+    let spread = ParameterSpread::of(linearised);
     let named = parameters.iter().zip(&linearised.gradients);
     let of_parameter = |(in_units, gradient): (&ParameterInUnits, &Vec<f64>)| {
         let parameter = &in_units.parameter;
@@ -192,7 +192,7 @@ fn intervals(parameters: &[ParameterInUnits], linearised: &Linearised) -> Parame
     }
 }
 
-struct Spread {
+struct ParameterSpread {
     free: Vec<usize>,
     /// Length of the column of each free variable.
     lengths: Vec<f64>,
@@ -206,9 +206,9 @@ struct Spread {
     quantile: f64,
 }
 
-impl Spread {
-    fn of(linearised: &Linearised) -> Self {
-        let Linearised { variables, residual, .. } = linearised;
+impl ParameterSpread {
+    fn of(linearised: &LinearisedLaw) -> Self {
+        let LinearisedLaw { variables, residual, .. } = linearised;
         let length = |variable: &FitVariable| dot(&variable.column, &variable.column).sqrt();
         let free: Vec<usize> = (0..variables.len()).filter(|&j| !variables[j].at_bound).collect();
         let lengths: Vec<f64> = free.iter().map(|&j| length(&variables[j])).collect();

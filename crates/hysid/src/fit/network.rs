@@ -22,7 +22,7 @@ mod soundness;
 
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::initial_state::Wanted;
+use crate::fit::initial_state::StateRequest;
 use crate::fit::progress::{Checkpoint, Fitted, Observer};
 use crate::law::facts::Origin;
 use crate::model::input_transform::Transformed;
@@ -45,9 +45,9 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
     Fitting::new(data, &seen, options.clone())?.run(observer)
 }
 
-fn wanted_of(options: &FitOptions) -> Wanted {
+fn wanted_of(options: &FitOptions) -> StateRequest {
     let FitOptions { shaping, rate, seed, .. } = *options;
-    Wanted { state: shaping.initial_state, origin: Origin::OfData, rate, seed }
+    StateRequest { state: shaping.initial_state, origin: Origin::OfData, rate, seed }
 }
 
 /// Resumes a fit of the same data. The result is the same to the last bit as without the interruption.

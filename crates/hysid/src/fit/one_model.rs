@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::initial_state::Wanted;
+use crate::fit::initial_state::StateRequest;
 use crate::fit::law;
 use crate::fit::law::random_stops::fit_random_stops;
 use crate::fit::network;
@@ -12,7 +12,7 @@ use crate::fit::progress::{Fitted, Observer, Progress, SearchProgress, SharedObs
 use crate::law::facts::Origin;
 use crate::model::history::{HistoryPoint, Phase, Run};
 use crate::model::input_transform::Transformed;
-use crate::model::{Found, Model, Predictor};
+use crate::model::{Model, Predictor, ProvenanceDraft};
 use crate::options::FitSpec;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::options::network::Method;
@@ -99,7 +99,7 @@ fn begun<'d>(
     observer: &mut Observer<'_>,
 ) -> Result<Cow<'d, Dataset>> {
     let ClassicalOptions { shaping, rate, seed, .. } = *options;
-    Wanted { state: shaping.initial_state, origin, rate, seed }.of(data, observer)
+    StateRequest { state: shaping.initial_state, origin, rate, seed }.of(data, observer)
 }
 
 fn finished(
@@ -112,7 +112,7 @@ fn finished(
     runs: Vec<Run>,
 ) -> Result<Fitted> {
     let request = FitSpec::Classical(ClassicalOptions { near: Vec::new(), ..options.clone() });
-    let found = Found { runs, ..Found::of(request, termination) };
+    let found = ProvenanceDraft { runs, ..ProvenanceDraft::of(request, termination) };
     let model = Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?;
     Ok(Fitted::of(model, evaluations))
 }

@@ -9,7 +9,7 @@
 //! matrix, `δ` the step, `μ` the damping and `D` a positive diagonal scaling; `m` and `s` are
 //! [`Rules::curvature_memory`] and [`Rules::least_curvature`].
 //!
-//! A [`Problem`] gives `F`, `g` and `B`, and solves for the step within its bounds. The descent controls the
+//! A [`LeastSquaresProblem`] gives `F`, `g` and `B`, and solves for the step within its bounds. The descent controls the
 //! damping.
 
 use hysid_core::elementary::powi;
@@ -87,7 +87,7 @@ impl Slope<Symmetric> {
 }
 
 /// A function to be minimised.
-pub trait Problem {
+pub trait LeastSquaresProblem {
     /// The function at a point, with what its slope can be computed from.
     type Value;
     /// The curvature at a point.
@@ -173,7 +173,7 @@ pub struct LevenbergMarquardt<V> {
 
 impl<V> LevenbergMarquardt<V> {
     /// Begins at `parameters`.
-    pub fn new<P: Problem<Value = V>>(problem: &P, parameters: Vec<f64>) -> Self {
+    pub fn new<P: LeastSquaresProblem<Value = V>>(problem: &P, parameters: Vec<f64>) -> Self {
         let value = problem.value(&parameters);
         Self { evaluations: 1, ..Self::at(parameters, value) }
     }
@@ -207,7 +207,7 @@ impl<V> LevenbergMarquardt<V> {
     }
 
     /// The function at the present parameters.
-    pub fn value<P: Problem<Value = V>>(&mut self, problem: &P) -> &V {
+    pub fn value<P: LeastSquaresProblem<Value = V>>(&mut self, problem: &P) -> &V {
         self.value.get_or_insert_with(|| problem.value(&self.parameters))
     }
 
@@ -217,7 +217,7 @@ impl<V> LevenbergMarquardt<V> {
     }
 
     /// One iteration. It decreases the function, or returns why the descent ends.
-    pub fn advance<P: Problem<Value = V>>(&mut self, problem: &P) -> Option<Termination> {
+    pub fn advance<P: LeastSquaresProblem<Value = V>>(&mut self, problem: &P) -> Option<Termination> {
         let Self { parameters, value, damping, stalled, evaluations } = self;
         let here = value.get_or_insert_with(|| problem.value(parameters));
         // Broken off, the iteration is thrown away.
@@ -266,7 +266,7 @@ impl Damping {
     }
 
     /// Raises the damping until a step lowers the function, then resets it by Nielsen's rule; `None` if no step does.
-    fn step<P: Problem>(
+    fn step<P: LeastSquaresProblem>(
         &mut self,
         problem: &P,
         slope: &Slope<P::Curvature>,
@@ -295,12 +295,12 @@ impl Damping {
     }
 
     /// The damped step, kept within bounds, and the fall that the quadratic model predicts for it.
-    fn candidate<P: Problem>(
+    fn candidate<P: LeastSquaresProblem>(
         &self,
         problem: &P,
         slope: &Slope<P::Curvature>,
         parameters: &[f64],
-    ) -> Option<Candidate> {
+    ) -> Option<TrialStep> {
         let damping: Vec<f64> = self.scale.iter().map(|scale| self.mu * scale).collect();
         let step = problem.step(slope, parameters, &damping)?;
         let predicted_fall = 0.5
@@ -312,11 +312,11 @@ impl Damping {
                 .sum::<f64>();
         let mut candidate: Vec<f64> = parameters.iter().zip(&step).map(|(p, d)| p + d).collect();
         problem.limit(&mut candidate);
-        (predicted_fall > 0.0).then_some(Candidate { parameters: candidate, predicted_fall })
+        (predicted_fall > 0.0).then_some(TrialStep { parameters: candidate, predicted_fall })
     }
 }
 
-struct Candidate {
+struct TrialStep {
     parameters: Vec<f64>,
     predicted_fall: f64,
 }
@@ -330,7 +330,7 @@ mod tests {
         most: f64,
     }
 
-    impl Problem for Valley {
+    impl LeastSquaresProblem for Valley {
         type Value = [f64; 2];
         type Curvature = Symmetric;
         const RULES: Rules = Rules::SMOOTH;

@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 /// Kind of a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum SegmentKind {
     /// A loop over the whole range, after which the memory is known.
     Conditioning,
     /// The same loop at two speeds.
@@ -33,7 +33,7 @@ pub enum Kind {
     Return,
 }
 
-impl Kind {
+impl SegmentKind {
     /// What it is, in a few words.
     pub fn words(self) -> &'static str {
         self.texts().0
@@ -71,7 +71,7 @@ impl Kind {
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for SegmentKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.words())
     }
@@ -81,7 +81,7 @@ impl fmt::Display for Kind {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Segment {
     /// What is run.
-    pub kind: Kind,
+    pub kind: SegmentKind,
     /// Its rows in the drive, counted from 0.
     #[serde(serialize_with = "first_and_last")]
     pub rows: Range<usize>,

@@ -81,7 +81,7 @@ pub(super) const BOUNDS: [(f64, f64); 9] = [
 
 /// `A`, `ν`, `η`, `ζ1`, `ζ2` and the centre of the pinched range at one energy.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Properties {
+pub(super) struct DegradedProperties {
     a: f64,
     nu: f64,
     eta: f64,
@@ -90,7 +90,7 @@ pub(super) struct Properties {
     centre: f64,
 }
 
-impl Properties {
+impl DegradedProperties {
     /// `dz/dx` on the way up, theory.md (8.6); `softening` is `|z/z_u|^n` with its share.
     pub fn slope(&self, z: f64, softening: f64) -> f64 {
         self.pinching(z) / self.eta * (self.a - self.nu * softening)
@@ -117,11 +117,11 @@ impl Degradation {
     }
 
     /// The properties of an element after the dissipated energy `e`.
-    pub(super) fn at(&self, n: f64, e: f64) -> Properties {
+    pub(super) fn at(&self, n: f64, e: f64) -> DegradedProperties {
         let e = limited(e);
         let nu = 1.0 + self.delta_nu * e;
         let zeta_1 = self.zeta_s * (1.0 - exp(-self.p * e));
-        Properties {
+        DegradedProperties {
             a: (1.0 - self.delta_a * e).max(0.0),
             nu,
             eta: 1.0 + self.delta_eta * e,

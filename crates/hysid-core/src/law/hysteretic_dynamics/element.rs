@@ -20,7 +20,7 @@
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
-use super::Shape;
+use super::ElementShape;
 use crate::law::tanh_layer::{layer, product};
 use crate::network::tanh::tanh;
 use crate::simd::multiply_add;
@@ -60,8 +60,8 @@ pub struct Element {
 }
 
 impl Element {
-    pub(super) fn is_consistent(&self, shape: Shape, modes: usize) -> bool {
-        let Shape { stops, states, neurons, deteriorates } = shape;
+    pub(super) fn is_consistent(&self, shape: ElementShape, modes: usize) -> bool {
+        let ElementShape { stops, states, neurons, deteriorates } = shape;
         neurons > 0
             && self.of_displacements.len() == modes
             && self.of_velocities.len() == modes
@@ -84,15 +84,15 @@ impl Element {
     }
 
     /// Numbers of its parts.
-    pub fn shape(&self) -> Shape {
+    pub fn shape(&self) -> ElementShape {
         let (stops, states) = (self.thresholds.len(), self.path_leaks.len());
         let neurons = self.force.len().saturating_sub(stops + states);
-        Shape { stops, states, neurons, deteriorates: !self.strength_losses.is_empty() }
+        ElementShape { stops, states, neurons, deteriorates: !self.strength_losses.is_empty() }
     }
 
     /// Bounds of the magnitudes of the force and of each state, which is an average of past and targets.
     pub fn bounds(&self) -> (f64, Vec<f64>) {
-        let Shape { stops, states, neurons, .. } = self.shape();
+        let ElementShape { stops, states, neurons, .. } = self.shape();
         let size = |weights: &[f64]| weights.iter().map(|w| w.abs()).sum::<f64>();
         let of_state = |i: usize| {
             let row = i * neurons..(i + 1) * neurons;
@@ -171,7 +171,7 @@ impl StateWeights {
 }
 
 impl PathPoint {
-    fn zero(shape: Shape) -> Self {
+    fn zero(shape: ElementShape) -> Self {
         Self {
             inputs: vec![0.0; shape.inputs()],
             neurons: vec![0.0; shape.neurons],

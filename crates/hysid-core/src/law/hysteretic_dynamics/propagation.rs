@@ -106,7 +106,7 @@ impl PropagationSlopes {
             };
         }
         let ratio = Dual { value: damping, by: [0.0, 1.0] };
-        let weights = Weights::new(Dual { value: theta, by: [1.0, 0.0] }, ratio);
+        let weights = ForceWeights::new(Dual { value: theta, by: [1.0, 0.0] }, ratio);
         let factors = weights.factors(ratio);
         let of = |pick: &dyn Fn(Dual) -> f64| Propagation {
             displacement: factors[0].map(pick),
@@ -122,12 +122,12 @@ impl PropagationSlopes {
 
 /// The weights of the forces at both ends of a step, from which all factors follow.
 #[derive(Clone, Copy)]
-struct Weights {
+struct ForceWeights {
     alpha: [Dual; 2],
     beta: [Dual; 2],
 }
 
-impl Weights {
+impl ForceWeights {
     fn new(angle: Dual, ratio: Dual) -> Self {
         let mut part = angle;
         while part.value * (1.0 + 2.0 * ratio.value) >= SHORT {

@@ -27,7 +27,7 @@ const TOLERANCE: f64 = 1e-12;
 
 /// The state of modes and elements, with the intermediate results of the last step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Motion {
+pub struct DynamicsMotion {
     /// Displacement `q` and velocity `p` of each mode.
     pub(super) displacements: Vec<f64>,
     pub(super) velocities: Vec<f64>,
@@ -66,7 +66,7 @@ pub(super) struct RowSteps {
     pub length: f64,
 }
 
-impl Motion {
+impl DynamicsMotion {
     pub(super) fn virgin(dynamics: &Dynamics) -> Self {
         let (modes, elements) = (dynamics.modes.len(), &dynamics.elements);
         let points: Vec<PathPoint> = elements.iter().map(PathPoint::virgin).collect();

@@ -5,7 +5,7 @@ use hysid_core::error::Result;
 use hysid_core::model::Stepper;
 
 use super::EFFECT;
-use super::pasts::{Past, Way, drive, ways};
+use super::pasts::{ModelPast, Way, drive, ways};
 use super::scan::Scan;
 use crate::model::probe::{Probe, STEPS, extent};
 use crate::model::properties::PROTOCOL;
@@ -34,7 +34,7 @@ pub(super) struct Examined {
 /// All scans of a model.
 #[derive(Debug)]
 pub(super) struct Examination {
-    pub pasts: Vec<Past>,
+    pub pasts: Vec<ModelPast>,
     pub scans: Vec<Examined>,
     /// Largest less smallest output of the protocol.
     pub range: f64,
@@ -43,7 +43,7 @@ pub(super) struct Examination {
 }
 
 /// A speed of pasts, and the time steps after them.
-struct Pace {
+struct ProbePace {
     speed: f64,
     time_steps: Vec<f64>,
     is_worn: bool,
@@ -63,7 +63,7 @@ impl Examination {
             fastest_step: row(probe, probe.speeds.tried()[3]),
         };
         let mut stepper = probe.model.stepper();
-        let virgin = Past {
+        let virgin = ModelPast {
             path: "initial state",
             row: None,
             time: 0.0,
@@ -84,7 +84,7 @@ impl Examination {
         probe: &Probe<'m>,
         stepper: &mut Stepper<'m>,
         way: &Way,
-        pace: &Pace,
+        pace: &ProbePace,
     ) -> Result<()> {
         drive(probe, stepper, way, pace.speed, &mut |stepper, past| {
             self.take(probe, stepper, past, &pace.time_steps)
@@ -96,7 +96,7 @@ impl Examination {
         &mut self,
         probe: &Probe<'m>,
         stepper: &mut Stepper<'m>,
-        past: Past,
+        past: ModelPast,
         time_steps: &[f64],
     ) -> Result<()> {
         let (low, high) = (probe.centre - probe.half, probe.centre + probe.half);
@@ -137,17 +137,17 @@ fn row(probe: &Probe, speed: f64) -> f64 {
     probe.half / f64::from(probe.steps) / speed
 }
 
-fn paces(probe: &Probe) -> Vec<Pace> {
+fn paces(probe: &Probe) -> Vec<ProbePace> {
     let speeds = &probe.speeds;
     let middle = row(probe, speeds.middle);
     if !speeds.matter() {
-        return vec![Pace { speed: speeds.middle, time_steps: vec![middle], is_worn: true }];
+        return vec![ProbePace { speed: speeds.middle, time_steps: vec![middle], is_worn: true }];
     }
     let steps = DOUBLINGS.map(|power| middle * powi(2.0, power)).collect();
-    let own = |speed: f64| Pace { speed, time_steps: vec![row(probe, speed)], is_worn: false };
+    let own = |speed: f64| ProbePace { speed, time_steps: vec![row(probe, speed)], is_worn: false };
     vec![
         own(speeds.vanishing),
-        Pace { speed: speeds.middle, time_steps: steps, is_worn: true },
+        ProbePace { speed: speeds.middle, time_steps: steps, is_worn: true },
         own(speeds.tried()[3]),
     ]
 }

@@ -21,7 +21,7 @@ const DESCRIBED: usize = 2;
 
 /// A state of the model, with the path that led to it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Past {
+pub(super) struct ModelPast {
     pub path: &'static str,
     /// Row of the path that was the last sample, counted from 0; `None` before the first sample.
     pub row: Option<usize>,
@@ -69,7 +69,7 @@ pub(super) fn drive<'m>(
     stepper: &mut Stepper<'m>,
     way: &Way,
     speed: f64,
-    examine: &mut impl FnMut(&mut Stepper<'m>, Past) -> Result<()>,
+    examine: &mut impl FnMut(&mut Stepper<'m>, ModelPast) -> Result<()>,
 ) -> Result<()> {
     let path = probe.path(&way.turning);
     let time = times(&path.x, speed);
@@ -85,7 +85,7 @@ pub(super) fn drive<'m>(
             let before: Vec<f64> =
                 path.turns.iter().filter(|&&turn| turn <= row).map(|&turn| path.x[turn]).collect();
             let turning_points = before[before.len().saturating_sub(DESCRIBED)..].to_vec();
-            examine(stepper, Past { path: way.name, row: Some(row), time, input: x, turning_points })?;
+            examine(stepper, ModelPast { path: way.name, row: Some(row), time, input: x, turning_points })?;
             stepper.revert();
         }
         if moments.peek().is_none() {

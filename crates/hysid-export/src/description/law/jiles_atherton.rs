@@ -2,7 +2,7 @@
 
 use hysid_core::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::Builder;
 use crate::program::expression::Real;
 
@@ -18,7 +18,7 @@ const LEAST_PINNING: f64 = 0.02;
 const LARGEST_FEEDBACK: f64 = 0.98;
 
 /// `y = c0 + μ H + M` (theory.md (8.22))
-pub(super) fn step(builder: &mut Builder, name: &str, law: &JilesAtherton, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &JilesAtherton, sample: &PartInputs) -> Real {
     let field = builder.state(&format!("{name}_field"), vec![0.0]);
     let magnetisation = builder.state(&format!("{name}_magnetisation"), vec![0.0]);
     let h = limited(builder, &sample.inputs[0]);

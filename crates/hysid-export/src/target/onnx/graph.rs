@@ -4,12 +4,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::program::expression::{
-    Binary, Comparison, Real, RealVariable, Truth, Unary, Whole, WholeVariable,
-};
+use crate::program::expression::{Binary, Real, RealVariable, Relation, Truth, Unary, Whole, WholeVariable};
 use crate::program::{Array, Program, Statement, Storage, every};
 use crate::target::onnx::lanes;
-use crate::target::onnx::messages::{Attribute, BOOL, DOUBLE, Graph, INT64, Node, Tensor, ValueInfo};
+use crate::target::onnx::messages::{Attribute, BOOL, DOUBLE, Graph, INT64, OnnxNode, Tensor, ValueInfo};
 
 /// Loops of at most so many passes are unrolled.
 const UNROLLED: i64 = 64;
@@ -55,7 +53,7 @@ pub(super) fn step(program: &Program, arguments: &[String], with_slope: bool) ->
     Graph { name: "step".into(), initializers, inputs, outputs, nodes }
 }
 
-fn names_read<'n>(nodes: &'n [Node], names: &mut BTreeSet<&'n str>) {
+fn names_read<'n>(nodes: &'n [OnnxNode], names: &mut BTreeSet<&'n str>) {
     for node in nodes {
         names.extend(node.inputs.iter().map(String::as_str));
         let graphs = node.attributes.iter().filter_map(|attribute| attribute.graph.as_ref());
@@ -79,7 +77,7 @@ fn row_of_wholes(name: &str, values: &[i64]) -> Tensor {
 
 /// Names of the present values.
 #[derive(Clone, Default)]
-struct Values {
+struct GraphValues {
     reals: BTreeMap<RealVariable, String>,
     wholes: BTreeMap<WholeVariable, String>,
     arrays: BTreeMap<Array, String>,
@@ -101,12 +99,12 @@ struct Compiler<'a> {
     program: &'a Program,
     arguments: &'a [String],
     /// Nodes of the graphs that are open, outermost first.
-    nodes: Vec<Vec<Node>>,
+    nodes: Vec<Vec<OnnxNode>>,
     initializers: Vec<Tensor>,
     /// Constants by their bits, whole ones by their value.
     constants: BTreeMap<(bool, u64), String>,
     names: usize,
-    values: Values,
+    values: GraphValues,
 }
 
 impl<'a> Compiler<'a> {
@@ -118,7 +116,7 @@ impl<'a> Compiler<'a> {
             initializers: Vec::new(),
             constants: BTreeMap::new(),
             names: 0,
-            values: Values::default(),
+            values: GraphValues::default(),
         };
         for (index, declaration) in program.arrays.iter().enumerate() {
             let values = match &declaration.storage {
@@ -152,7 +150,7 @@ impl<'a> Compiler<'a> {
 
     fn add(&mut self, operation: &str, inputs: &[&str], outputs: Vec<String>, attributes: Vec<Attribute>) {
         let inputs = inputs.iter().map(ToString::to_string).collect();
-        let node = Node { inputs, outputs, operation: operation.into(), attributes };
+        let node = OnnxNode { inputs, outputs, operation: operation.into(), attributes };
         if let Some(nodes) = self.nodes.last_mut() {
             nodes.push(node);
         }
@@ -319,7 +317,7 @@ impl<'a> Compiler<'a> {
             }
         }
         let arrays = std::mem::take(&mut self.values.arrays);
-        self.values = Values { arrays, ..before };
+        self.values = GraphValues { arrays, ..before };
         self.values.reals.extend(sums);
     }
 
@@ -669,10 +667,10 @@ impl<'a> Compiler<'a> {
     }
 
     fn truth(&mut self, condition: &Truth) -> String {
-        let operation = |comparison: &Comparison| match comparison {
-            Comparison::Below => "Less",
-            Comparison::AtMost => "LessOrEqual",
-            Comparison::Equal => "Equal",
+        let operation = |comparison: &Relation| match comparison {
+            Relation::Below => "Less",
+            Relation::AtMost => "LessOrEqual",
+            Relation::Equal => "Equal",
         };
         match condition {
             Truth::Real(comparison, a, b) => {

@@ -2,9 +2,9 @@
 //! candidates, on the data and on the folds. Whatever the data do not show, it predicts better than a combination of
 //! networks: its numbers cannot follow the data by chance, and a Preisach plane wipes out and is congruent everywhere.
 
-use super::Chosen;
+use super::EnsembleSelection;
 use crate::error::Result;
-use crate::fit::auto::candidates::Kind;
+use crate::fit::auto::candidates::CandidateKind;
 use crate::fit::auto::trial::Trial;
 use crate::fit::progress::Fitted;
 use crate::model::selection::SingleModel;
@@ -40,7 +40,7 @@ struct Judged {
     score: f64,
 }
 
-impl Chosen<'_, '_, '_> {
+impl EnsembleSelection<'_, '_, '_> {
     /// The place of the best such law; `None` if there is none, if the user decided, or for one loop, on which laws that
     /// differ elsewhere are alike.
     pub(super) fn place_of_law(&self) -> Option<usize> {
@@ -70,7 +70,7 @@ impl Chosen<'_, '_, '_> {
     fn judged(&self, place: usize, trial: &Trial) -> Judged {
         Judged {
             place,
-            is_law: trial.candidate.kind == Kind::Classical,
+            is_law: trial.candidate.kind == CandidateKind::Classical,
             is_preisach: trial.candidate.asked().model() == ModelName::Classical(ClassicalModel::Preisach),
             numbers: trial.members.values().map(|model| model.parameters()).max().unwrap_or(usize::MAX),
             training: trial.training_error(),

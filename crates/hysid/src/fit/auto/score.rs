@@ -7,7 +7,7 @@
 
 use hysid_core::elementary::{exp, hypot, ln};
 
-use crate::fit::auto::trial::{HeldOut, Rows};
+use crate::fit::auto::trial::{FoldRows, HeldOut};
 use crate::model::Weights;
 
 /// Rows of a class in a fold below which it says nothing of the class.
@@ -104,7 +104,7 @@ impl Score {
 }
 
 /// Squared error of each row, and how far outside the trained range it is.
-fn squares<'a>(predicted: &'a [f64], fold: &'a Rows) -> impl Iterator<Item = (f64, f64)> + 'a {
+fn squares<'a>(predicted: &'a [f64], fold: &'a FoldRows) -> impl Iterator<Item = (f64, f64)> + 'a {
     let rows = predicted.iter().zip(&fold.measured).zip(&fold.outside);
     rows.map(|((predicted, measured), outside)| ((predicted - measured) * (predicted - measured), *outside))
 }

@@ -5,11 +5,11 @@
 
 use hysid_core::elementary::{exp, ln};
 
-use crate::fit::auto::candidates::{Candidate, Kind};
+use crate::fit::auto::candidates::{Candidate, CandidateKind};
 use crate::fit::auto::combination::Combination;
-use crate::fit::auto::prior::Evidence;
+use crate::fit::auto::prior::LoopEvidence;
 use crate::fit::auto::score::Score;
-use crate::fit::auto::trial::{Bench, Trial};
+use crate::fit::auto::trial::{FoldBench, Trial};
 use crate::fit::progress::{Standing, Tried};
 use crate::model::Model;
 use crate::optimise::parallel;
@@ -43,9 +43,9 @@ const REFINED: usize = 2;
 const WITHOUT_NOISE: f64 = 0.01;
 
 pub(super) struct Stages<'w, 'o, 'a> {
-    pub bench: Bench<'w, 'o, 'a>,
+    pub bench: FoldBench<'w, 'o, 'a>,
     pub options: &'w AutoOptions,
-    pub evidence: Evidence,
+    pub evidence: LoopEvidence,
     pub trials: Vec<Trial>,
     /// Candidates that were dropped.
     pub dropped: Vec<Candidate>,
@@ -142,7 +142,7 @@ impl Stages<'_, '_, '_> {
     }
 
     fn tell(&self, places: &[usize], standing: Standing) {
-        let Bench { folds, work, .. } = self.bench;
+        let FoldBench { folds, work, .. } = self.bench;
         for trial in places.iter().map(|&place| &self.trials[place]) {
             let (predicted, judged) = match standing {
                 Standing::Complete => (trial.predicted.clone(), (0..folds.len()).collect()),
@@ -175,7 +175,7 @@ impl Stages<'_, '_, '_> {
         let above = |score: &Score| (score.inside - best.inside).min(score.outside - best.outside);
         scored.retain(|(_, score)| above(score) <= ln(HOPELESS));
         scored.sort_by(|(_, a), (_, b)| above(a).total_cmp(&above(b)));
-        let mut of_kinds = [0; Kind::ALL.len()];
+        let mut of_kinds = [0; CandidateKind::ALL.len()];
         scored.retain(|(place, _)| {
             let of_kind = &mut of_kinds[self.trials[*place].candidate.kind as usize];
             *of_kind += 1;
@@ -217,7 +217,8 @@ impl Stages<'_, '_, '_> {
         {
             return Vec::new();
         }
-        let is_network = |trial: &&Trial| trial.is_complete() && trial.candidate.kind == Kind::Networks;
+        let is_network =
+            |trial: &&Trial| trial.is_complete() && trial.candidate.kind == CandidateKind::Networks;
         let score = |trial: &&Trial| Score::of(&trial.predicted, self.bench.folds, |_| true).sum();
         let mut networks: Vec<&Trial> = self.trials.iter().filter(is_network).collect();
         networks.sort_by(|a, b| score(a).total_cmp(&score(b)));
@@ -230,7 +231,7 @@ impl Stages<'_, '_, '_> {
     fn screened(&mut self, laws: Vec<Candidate>) -> Vec<Trial> {
         let all: Vec<usize> = (0..self.bench.folds.len()).collect();
         let Some(best) = self.best(&all) else { return laws.into_iter().map(Trial::of).collect() };
-        let (Bench { data, work, .. }, evidence) = (self.bench, self.evidence);
+        let (FoldBench { data, work, .. }, evidence) = (self.bench, self.evidence);
         let least = if best.inside < ln(WITHOUT_NOISE) { NEARLY_EXACT } else { 0.0 };
         let most_percent = |law: &Candidate| {
             let (most, unseen) = (WORTH_A_TRIAL * exp(best.inside), evidence.unseen_error(law.asked()));
@@ -273,7 +274,7 @@ impl Stages<'_, '_, '_> {
     }
 
     fn further_starts(&mut self) {
-        let Bench { folds, work, .. } = self.bench;
+        let FoldBench { folds, work, .. } = self.bench;
         let Some(combination) = Combination::of(&self.trials, folds, self.evidence, |_| true) else { return };
         let is_random = |place: &usize| self.trials[*place].candidate.is_random();
         let places = combination.shares().into_iter().map(|(place, _)| place);

@@ -17,9 +17,9 @@ use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
 use crate::fit::initial_state::quick;
-use crate::fit::law::preisach::Problem;
+use crate::fit::law::preisach::PreisachProblem;
 use crate::fit::law::random_stops::Drawn;
-use crate::fit::sums::{Gatherer, Sums};
+use crate::fit::sums::{SumGatherer, Sums};
 use crate::law::facts::Origin;
 use crate::law::series::Series;
 use crate::model::input_transform::Transformed;
@@ -70,7 +70,7 @@ pub(super) fn lead_ins(
             Err(Error::Stopped) => return Ok(None),
             sums => sums?,
         };
-        let search = Search { features: &features, sums: &sums, before: before.as_ref(), stop };
+        let search = StateSearch { features: &features, sums: &sums, before: before.as_ref(), stop };
         let Some(chosen) = search.lowest() else { return Ok(None) };
         for (&record, &place) in records.iter().zip(&chosen) {
             found[record].clone_from(&tried[place]);
@@ -90,7 +90,7 @@ struct Features {
     rate: Option<RateMethod>,
     scaling: Scaling,
     drawn: Drawn,
-    relays: Problem,
+    relays: PreisachProblem,
     penalty: Penalty,
 }
 
@@ -99,7 +99,8 @@ impl Features {
         let seen = Transformed::of(data, &InputOptions::default(), rate, Origin::OfData)?;
         let options = ClassicalOptions { rate: seen.rate, seed, operators: Some(STOPS), ..quick() };
         let drawn = Drawn::of(&seen.data, &options)?;
-        let relays = Problem::of(&Series::all(&seen.data, None)?, seen.data.input_range(0), INTERVALS);
+        let relays =
+            PreisachProblem::of(&Series::all(&seen.data, None)?, seen.data.input_range(0), INTERVALS);
         let features = drawn.features() + relays.features() - 1;
         let penalty = Penalty::ridge((0..features).map(|i| f64::from(u8::from(i > 0))));
         Ok(Self { rate, scaling: Scaling::of(&seen.data, seen.rate)?, drawn, relays, penalty })
@@ -121,7 +122,7 @@ impl Features {
         let stops = self.drawn.rows(record, &self.scaling, rate, stop)?;
         let relays = self.relays.rows(&Series::of(record, None)?, &self.scaling, stop)?;
         let features = self.drawn.features();
-        let mut gatherer = Gatherer::new(features + self.relays.features() - 1, &RowFolds::one(), stop);
+        let mut gatherer = SumGatherer::new(features + self.relays.features() - 1, &RowFolds::one(), stop);
         let mut both = vec![0.0; features + self.relays.features() - 1];
         for (row, of_relays) in relays.iter().enumerate() {
             both.iter_mut().zip(&stops[..features]).for_each(|(value, column)| *value = column[row]);
@@ -142,7 +143,7 @@ impl Features {
     }
 }
 
-struct Search<'s> {
+struct StateSearch<'s> {
     features: &'s Features,
     /// Of each record with each lead-in.
     sums: &'s [Vec<Sums>],
@@ -150,7 +151,7 @@ struct Search<'s> {
     stop: StopCheck<'s>,
 }
 
-impl Search<'_> {
+impl StateSearch<'_> {
     /// The places of the lead-ins with the lowest `J` of all beginnings; `None` once stopped.
     fn lowest(&self) -> Option<Vec<usize>> {
         let beginnings = match self.before {

@@ -31,7 +31,7 @@ use crate::fit::law::linearised::LawFamily;
 use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
 use crate::law::series::Series;
 use crate::law::{Classical, Law};
-use crate::optimise::multi_start::{MultiStart, Plan};
+use crate::optimise::multi_start::{MultiStart, RoundPlan};
 use crate::optimise::parallel;
 use crate::optimise::random::generator;
 use crate::options::classical::ClassicalOptions;
@@ -39,10 +39,10 @@ use crate::options::table::check;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use descent::Descent;
-pub(crate) use projection::Columns;
+pub(crate) use projection::FeatureColumns;
 use projection::{Projection, UNFINISHED};
 
-pub(crate) use rows::{Memory, measured, spread, thinned, thinned_to};
+pub(crate) use rows::{MemoryKind, measured, spread, thinned, thinned_to};
 
 /// Random points looked at for each start.
 const DRAWS_PER_START: usize = 24;
@@ -57,14 +57,14 @@ const FINALISTS: usize = 2;
 
 /// Bounds of a searched parameter and the scale it is searched on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Variable {
+pub(crate) struct SearchVariable {
     pub low: f64,
     pub high: f64,
     /// Searched by its logarithm; needs `low > 0`.
     pub logarithmic: bool,
 }
 
-impl Variable {
+impl SearchVariable {
     pub fn linear(low: f64, high: f64) -> Self {
         Self { low, high, logarithmic: false }
     }
@@ -84,7 +84,7 @@ impl Variable {
         value.clamp(self.low, self.high)
     }
 
-    /// The inverse of [`Variable::value`].
+    /// The inverse of [`SearchVariable::value`].
     pub fn place(self, value: f64) -> f64 {
         let u = if self.logarithmic {
             ln(value / self.low) / ln(self.high / self.low)
@@ -97,17 +97,17 @@ impl Variable {
 
 /// What is searched, and whether the weight of each feature must not be negative.
 pub(crate) struct Unknowns {
-    pub variables: Vec<Variable>,
+    pub variables: Vec<SearchVariable>,
     pub non_negative: Vec<bool>,
 }
 
 /// A family of laws, in the form of the search. The search knows it by reference only, so that the compiler makes one
 /// search for all families: a call costs nothing beside the run over a record that it asks for.
-pub(crate) trait Family: Sync {
+pub(crate) trait SearchFamily: Sync {
     fn unknowns(&self) -> &Unknowns;
 
-    /// Appends the features of every row with an output; ends early once [`Columns::is_over`].
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>);
+    /// Appends the features of every row with an output; ends early once [`FeatureColumns::is_over`].
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>);
 
     /// Starting points that the data suggest, better than random ones.
     fn suggestions(&self) -> Vec<Vec<f64>> {
@@ -120,7 +120,7 @@ type MakesLaw<'a> = dyn Fn(&[f64], &[f64]) -> Option<Classical> + Sync + 'a;
 
 /// An identified law with the result of its search.
 #[derive(Debug, Clone)]
-pub struct Identified<L> {
+pub struct IdentifiedLaw<L> {
     /// The law.
     pub law: L,
     /// Error over the training rows, in percent of the standard deviation of the output.
@@ -133,16 +133,16 @@ pub struct Identified<L> {
     pub searched: Vec<f64>,
 }
 
-impl<L> Identified<L> {
+impl<L> IdentifiedLaw<L> {
     /// A law that least squares found from one start, without rounds.
     pub(crate) fn by_least_squares(law: L) -> Self {
         let (termination, searched) = (Termination::Converged, Vec::new());
         Self { law, train_nrmse_percent: f64::NAN, evaluations: 1, termination, searched }
     }
 
-    pub(crate) fn try_map<M>(self, make: impl FnOnce(L) -> Result<M>) -> Result<Identified<M>> {
+    pub(crate) fn try_map<M>(self, make: impl FnOnce(L) -> Result<M>) -> Result<IdentifiedLaw<M>> {
         let Self { law, train_nrmse_percent, evaluations, termination, searched } = self;
-        Ok(Identified { law: make(law)?, train_nrmse_percent, evaluations, termination, searched })
+        Ok(IdentifiedLaw { law: make(law)?, train_nrmse_percent, evaluations, termination, searched })
     }
 }
 
@@ -151,15 +151,15 @@ pub(crate) fn check_effort(options: &ClassicalOptions) -> Result<()> {
 }
 
 /// The squared residual over the variance of the output, as a function of `u`.
-pub(super) struct Objective<'a> {
-    family: &'a dyn Family,
+pub(super) struct LawObjective<'a> {
+    family: &'a dyn SearchFamily,
     series: &'a [Series],
     target: Vec<f64>,
     variation: f64,
     stop: StopCheck<'a>,
 }
 
-impl Objective<'_> {
+impl LawObjective<'_> {
     fn parameters(&self, u: &[f64]) -> Vec<f64> {
         self.family.unknowns().variables.iter().zip(u).map(|(variable, &u)| variable.value(u)).collect()
     }
@@ -170,7 +170,7 @@ impl Objective<'_> {
         }
         let parameters = self.parameters(u);
         let non_negative = &self.family.unknowns().non_negative;
-        let mut columns = Columns::new(non_negative.len(), self.target.len(), self.stop);
+        let mut columns = FeatureColumns::new(non_negative.len(), self.target.len(), self.stop);
         for series in self.series {
             self.family.features(&parameters, series, &mut columns);
         }
@@ -194,7 +194,7 @@ pub(crate) fn search<F: LawFamily>(
     options: &ClassicalOptions,
     observer: &mut SearchObserver<'_>,
     stop: StopCheck<'_>,
-) -> Result<Identified<F::Law>>
+) -> Result<IdentifiedLaw<F::Law>>
 where
     F::Law: Into<Classical>,
 {
@@ -207,18 +207,18 @@ where
 
 /// Searches parameters and weights; `law` is made of both for an observer that asks for it.
 fn search_parameters(
-    family: &dyn Family,
+    family: &dyn SearchFamily,
     law: &MakesLaw<'_>,
     series: &[Series],
     options: &ClassicalOptions,
     observer: &mut SearchObserver<'_>,
     stop: StopCheck<'_>,
-) -> Result<Identified<Vec<f64>>> {
+) -> Result<IdentifiedLaw<Vec<f64>>> {
     check_effort(options)?;
     let target = measured(series);
     let (_, deviation) = spread(&target);
     let variation = target.len() as f64 * deviation * deviation;
-    let objective = Objective { family, series, target, variation, stop };
+    let objective = LawObjective { family, series, target, variation, stop };
 
     let begun = beginnings(&objective, options);
     if begun.first().is_none_or(|best| best.value().square_residual == UNFINISHED) {
@@ -226,7 +226,7 @@ fn search_parameters(
     }
     let drawn = options.starts() * DRAWS_PER_START;
     let rounds = options.epochs();
-    let plan = Plan { rounds, spared: 0, to_prove_itself: ROUNDS_TO_PROVE_ITSELF, finalists: FINALISTS };
+    let plan = RoundPlan { rounds, spared: 0, to_prove_itself: ROUNDS_TO_PROVE_ITSELF, finalists: FINALISTS };
     let mut descents = MultiStart::new(begun);
     let tell = |descents: &MultiStart<Descent>, round| {
         let best = descents.best();
@@ -242,7 +242,7 @@ fn search_parameters(
     };
     let termination = descents.run(plan, |descent, _| descent.advance(&objective), tell);
     let best = descents.best();
-    Ok(Identified {
+    Ok(IdentifiedLaw {
         law: best.value().weights.clone(),
         searched: objective.parameters(best.u()),
         train_nrmse_percent: objective.nrmse_percent(best.value()),
@@ -252,7 +252,7 @@ fn search_parameters(
 }
 
 /// The best of many points that lie apart: those of a similar fit, suggested and random ones.
-fn beginnings(objective: &Objective<'_>, options: &ClassicalOptions) -> Vec<Descent> {
+fn beginnings(objective: &LawObjective<'_>, options: &ClassicalOptions) -> Vec<Descent> {
     let variables = &objective.family.unknowns().variables;
     let starts = options.starts();
     let mut suggested = objective.family.suggestions();

@@ -27,7 +27,7 @@ pub(crate) fn has_few_rows(parameters: usize, features: usize, rows: usize) -> b
 pub enum Curvature {
     /// The Gauss-Newton matrix with decay.
     Matrix(Symmetric),
-    Rows(Rows),
+    Rows(CurvatureRows),
 }
 
 impl Curvature {
@@ -49,7 +49,7 @@ impl Curvature {
 }
 
 /// `U` with the residual `v` and the decay.
-pub struct Rows {
+pub struct CurvatureRows {
     /// Rows of `U`: those of the data, then one for each feature.
     height: usize,
     /// `U`, parameter by parameter.
@@ -60,7 +60,7 @@ pub struct Rows {
     pull: Vec<f64>,
 }
 
-impl Rows {
+impl CurvatureRows {
     /// From the columns of features, target and Jacobian and the output weights; `None` once stopped.
     pub fn new(
         columns: Vec<Vec<f64>>,

@@ -3,7 +3,7 @@
 use pulp::Simd;
 
 use super::Ends;
-use crate::law::hysteretic_dynamics::Shape;
+use crate::law::hysteretic_dynamics::ElementShape;
 use crate::law::tanh_layer::{add_multiple, add_two};
 
 /// Derivatives of stops: rows with one number for each parameter.
@@ -22,7 +22,7 @@ pub(super) struct OfStops {
 }
 
 impl OfStops {
-    pub fn new(shape: Shape, width: usize) -> Self {
+    pub fn new(shape: ElementShape, width: usize) -> Self {
         let rows = || vec![0.0; shape.stops * width];
         let by_end = || vec![[0.0; 2]; shape.stops];
         Self {

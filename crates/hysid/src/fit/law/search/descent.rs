@@ -3,13 +3,15 @@
 use std::cmp::Ordering;
 
 use crate::linear_algebra::Symmetric;
-use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, step_within};
-use crate::optimise::multi_start::Start;
+use crate::optimise::levenberg_marquardt::{
+    LeastSquaresProblem, LevenbergMarquardt, Rules, Slope, step_within,
+};
+use crate::optimise::multi_start::SearchStart;
 use crate::optimise::parallel;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
-use super::Objective;
+use super::LawObjective;
 use super::projection::Projection;
 
 /// Step of a finite difference in `u`.
@@ -37,14 +39,14 @@ impl Descent {
     }
 
     /// One iteration, which lowers the residual unless there is no way on.
-    pub fn advance(&mut self, objective: &Objective<'_>) {
+    pub fn advance(&mut self, objective: &LawObjective<'_>) {
         if self.ended.is_none() {
             self.ended = self.search.advance(objective);
         }
     }
 }
 
-impl Start for Descent {
+impl SearchStart for Descent {
     fn order(&self, other: &Self) -> Ordering {
         self.value().square_residual.total_cmp(&other.value().square_residual)
     }
@@ -58,7 +60,7 @@ impl Start for Descent {
     }
 }
 
-impl Problem for Objective<'_> {
+impl LeastSquaresProblem for LawObjective<'_> {
     type Value = Projection;
     type Curvature = Symmetric;
     const RULES: Rules = Rules::KINKED;

@@ -2,7 +2,7 @@
 
 use super::examination::{Examination, Examined};
 use super::words::Words;
-use super::{AtTimeStep, Direction, EFFECT, Invertibility, Place, PlaceKind, Scans};
+use super::{AtTimeStep, EFFECT, Invertibility, NonMonotonePlace, OutputDirection, PlaceKind, Scans};
 use crate::model::probe::Probe;
 use crate::{Evidence, Finding, Piece, Property, Verdict};
 
@@ -22,15 +22,15 @@ const EXPERIMENT: &str = "fit the model to a record whose output follows the inp
 const WITHOUT_INERTIA: &str = "fit a model without inertia to a record well below the resonance";
 
 /// The scans, with what is common to all conclusions.
-pub(super) struct Judgement<'e> {
+pub(super) struct ScanConclusions<'e> {
     examined: &'e Examination,
     /// The scans that decide: not those with very short time steps.
     deciding: Vec<&'e Examined>,
-    direction: Direction,
+    direction: OutputDirection,
     tolerance: f64,
 }
 
-impl<'e> Judgement<'e> {
+impl<'e> ScanConclusions<'e> {
     pub fn of(examined: &'e Examination) -> Self {
         let shortest = examined.fastest_step * (1.0 - SAME_STEP);
         let deciding: Vec<&Examined> = examined
@@ -46,7 +46,7 @@ impl<'e> Judgement<'e> {
         Self {
             examined,
             deciding,
-            direction: if change < 0.0 { Direction::Falling } else { Direction::Rising },
+            direction: if change < 0.0 { OutputDirection::Falling } else { OutputDirection::Rising },
             tolerance: (EFFECT * examined.range).max(LARGE_OUTPUT * largest),
         }
     }
@@ -124,7 +124,7 @@ impl<'e> Judgement<'e> {
     }
 
     /// The largest way back or jump, and where it is.
-    fn worst(&self) -> (f64, Option<(&'e Examined, Place)>) {
+    fn worst(&self) -> (f64, Option<(&'e Examined, NonMonotonePlace)>) {
         let places = self.deciding.iter().flat_map(|examined| {
             let reversal = examined.scan.reversal(self.direction.sign());
             let jumps = examined.scan.jumps.iter();
@@ -139,7 +139,7 @@ impl<'e> Judgement<'e> {
         let worst = places.reduce(|a, b| if size(b.3) > size(a.3) { b } else { a });
         let Some((examined, kind, inputs, outputs)) = worst else { return (0.0, None) };
         let past = &self.examined.pasts[examined.past];
-        let place = Place {
+        let place = NonMonotonePlace {
             kind,
             size: size(outputs) / self.examined.range,
             path: past.path.into(),

@@ -12,9 +12,9 @@ use crate::data::record::{Dataset, Record};
 use crate::error::Result;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::score::Score;
-use crate::fit::auto::trial::{Bench, HeldOut, Trial};
+use crate::fit::auto::trial::{FoldBench, HeldOut, Trial};
 use crate::fit::auto::warm_up::better;
-use crate::fit::auto::work::Work;
+use crate::fit::auto::work::AutoWork;
 use crate::fit::initial_state::{self, QUICK_INTERVALS, found_on, known};
 use crate::fit::law::hysteretic_dynamics::first_second_difference;
 use crate::law::facts::Origin;
@@ -39,7 +39,7 @@ const AFTER_A_JUMP: f64 = 0.1;
 /// A second difference of the input in the first rows above this share of its range is a jump. Designed.
 const JUMP: f64 = 0.01;
 
-pub(super) struct Beginning {
+pub(super) struct PreparedData {
     pub data: Dataset,
     pub folds: Vec<Fold>,
     pub warm_up: WarmUp,
@@ -57,14 +57,14 @@ pub(super) fn as_chosen<'d>(data: &'d Dataset, options: &AutoOptions) -> Result<
     }
 }
 
-impl Beginning {
+impl PreparedData {
     /// How the records of these data begin.
     pub fn of(
         quick: &Candidate,
         data: &Dataset,
         folds: Vec<Fold>,
         options: &AutoOptions,
-        work: &Work,
+        work: &AutoWork,
     ) -> Self {
         let has_lead_in = |record: &Record| record.lead_in().is_some();
         let is_open = options.initial_state.is_none() && !data.records().iter().any(has_lead_in);
@@ -153,7 +153,7 @@ struct Ways<'a, 'o, 'w> {
     data: &'a Dataset,
     folds: &'a [Fold],
     options: &'a AutoOptions,
-    work: &'a Work<'o, 'w>,
+    work: &'a AutoWork<'o, 'w>,
 }
 
 impl Ways<'_, '_, '_> {
@@ -205,7 +205,7 @@ impl Ways<'_, '_, '_> {
         let judges = std::iter::once(self.quick.clone()).chain(self.relays());
         let mut trials: Vec<Trial> = judges.map(Trial::of).collect();
         let places: Vec<usize> = (0..trials.len()).collect();
-        Bench { data, folds: &held_out, work: self.work }.try_start(&mut trials, &places, 0);
+        FoldBench { data, folds: &held_out, work: self.work }.try_start(&mut trials, &places, 0);
         let tried = trials.iter().filter(|trial| !trial.starts.is_empty());
         let errors = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).mean_percent());
         errors.min_by(f64::total_cmp)
