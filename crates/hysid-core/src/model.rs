@@ -74,7 +74,7 @@ pub struct Model {
     provenance: Provenance,
 }
 
-/// What simulates.
+/// Network, law or ensemble that simulates.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Predictor {
     /// A network in scaled units, with its scale factors.
@@ -383,7 +383,7 @@ impl Model {
         self.provenance.options.model()
     }
 
-    /// What simulates.
+    /// Network, law or ensemble that simulates.
     pub fn predictor(&self) -> &Predictor {
         &self.body
     }

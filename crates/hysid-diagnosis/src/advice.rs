@@ -31,7 +31,7 @@ fn by_name<S: Serializer>(model: &Option<ModelName>, serializer: S) -> Result<S:
     model.map(ModelName::name).serialize(serializer)
 }
 
-/// What the data say about the properties that decide.
+/// Findings on the properties that decide.
 struct DecidingProperties {
     static_hysteresis: Verdict,
     rate_dependence: Verdict,
@@ -208,7 +208,7 @@ fn law(found: &DecidingProperties) -> Option<&'static str> {
     )
 }
 
-/// What was not testable and is taken for granted.
+/// Assumptions on properties that were not testable.
 fn assumptions(found: &DecidingProperties) -> Vec<String> {
     let mut assumed = Vec::new();
     let mut assume = |verdict: Verdict, what: &str| {

@@ -21,7 +21,7 @@ const CLOSE: f64 = 0.6;
 /// Deviations by which a difference may be larger than it was found.
 const UP_TO: f64 = 1.28;
 
-/// What reading between rows and other causes add may be so many times as large as estimated.
+/// Factor by which reading between rows and other causes may exceed their estimate.
 const UNSURE: f64 = 2.5;
 
 /// Independent numbers in a gap, and in a difference of shapes: a branch is smoothed over up to a fifth of it, and its
@@ -45,11 +45,11 @@ pub(crate) struct Comparison {
     pub index: f64,
     /// Standard deviation of the noise in it.
     pub deviation: f64,
-    /// What reading between rows may add to it.
+    /// Largest error of it from reading between rows.
     pub bend: f64,
     /// Independent numbers in it: 1 for a gap, several for a shape.
     pub freedom: f64,
-    /// What other causes may add to it: turning points between rows, wear.
+    /// Largest error of it from other causes: turning points between rows, wear.
     pub other: f64,
     pub pieces: Vec<Piece>,
     pub curves: Vec<PictureCurve>,
@@ -77,7 +77,7 @@ pub(crate) struct PropertyResult {
     pub verdict: Verdict,
     /// The difference that decides.
     pub index: f64,
-    /// What noise alone gives.
+    /// Size that noise alone gives.
     pub noise: f64,
     /// The difference beyond which the property does not hold.
     pub threshold: f64,

@@ -26,7 +26,7 @@ const NEARLY_LARGEST: f64 = 0.95;
 
 const EXPERIMENT: &str = "repeat a large loop five times or more, without changing its ends";
 
-/// What the cycles between two inputs say.
+/// Loss of energy over the cycles between two inputs.
 struct CycleTrend<'c> {
     cycles: Vec<&'c Cycle>,
     /// All of them, with a first one that is left out.

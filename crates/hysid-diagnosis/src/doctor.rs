@@ -34,7 +34,7 @@ use hysid_core::significant::Significant;
 /// Complaints of one kind are told one by one up to this many.
 const TOLD: usize = 2;
 
-/// What may be wrong with data.
+/// Kind of a problem in the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DataIssueKind {
@@ -99,13 +99,13 @@ pub enum Severity {
 /// Something in the data that would mislead.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DataIssue {
-    /// What it is.
+    /// Kind of the problem.
     pub kind: DataIssueKind,
     /// Name of the record; `None` for all of them together.
     pub record: Option<String>,
     /// How much it matters.
     pub severity: Severity,
-    /// What was found, and what helps, in words.
+    /// Problem and remedy, in words.
     pub statement: String,
     /// The number that tells how much.
     pub value: Option<f64>,
@@ -179,7 +179,7 @@ pub(crate) fn examine(
     told
 }
 
-/// What of the values themselves should be known before any fit: marks of missing values, and clipped channels.
+/// Problems of the values themselves to report before any fit: marks of missing values, and clipped channels.
 ///
 /// # Errors
 /// Data that nothing can be said about: a constant input or output, hardly any rows.

@@ -1,4 +1,4 @@
-//! What kind of hysteresis is this? Properties of a measured record or of a fitted model, each with its
+//! Kinds of hysteresis: properties of a measured record or of a fitted model, each with its
 //! evidence.
 //!
 //! The input is cut into branches between turning points; a property is a statement about branches that
@@ -93,7 +93,7 @@ impl DiagnosisOptions {
     }
 }
 
-/// What a test of a property says.
+/// Verdict on a property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 pub enum Verdict {
     /// It has the property.
@@ -123,7 +123,7 @@ pub struct Finding {
     /// The property.
     #[serde(rename = "name")]
     pub property: Property,
-    /// What the test says.
+    /// Verdict on the property.
     pub verdict: Verdict,
     /// The measure that decides, a share without unit.
     pub index: Option<f64>,
@@ -133,7 +133,7 @@ pub struct Finding {
     pub noise: Option<f64>,
     /// How many comparisons it is the largest of.
     pub comparisons: usize,
-    /// What was found, in words.
+    /// Result in words.
     pub statement: String,
     /// Where the data do not tell: the experiment that would.
     pub experiment: Option<String>,
@@ -189,9 +189,9 @@ impl Piece {
 /// Curves that show a verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    /// What is drawn to the right; empty for the input.
+    /// Label of the horizontal axis; empty for the input.
     pub x_label: String,
-    /// What is drawn upwards; empty for the output.
+    /// Label of the vertical axis; empty for the output.
     pub y_label: String,
     /// The curves.
     pub curves: Vec<PictureCurve>,
@@ -200,7 +200,7 @@ pub struct Picture {
 /// A curve of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureCurve {
-    /// What it is; empty for what is there for comparison only.
+    /// Label of the curve; empty if it is there for comparison only.
     pub label: String,
     /// Its points.
     pub points: Vec<(f64, f64)>,
@@ -232,7 +232,7 @@ pub struct Diagnosis {
     /// The cycles of the first input: the table of `hysid cycles`.
     #[serde(flatten)]
     pub cycles: CycleTable,
-    /// What in the data would mislead a fit, warnings first.
+    /// Problems of the data that would mislead a fit, warnings first.
     pub doctor: Vec<DataIssue>,
     /// The simplest model that can hold what was found.
     pub advice: Advice,

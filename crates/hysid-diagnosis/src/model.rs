@@ -1,5 +1,5 @@
-//! What kind of hysteresis has a fitted model learnt? The properties of measured data, found by driving the
-//! model with probes chosen for each, and what its equations promise beside that.
+//! Kind of hysteresis of a fitted model: the properties of measured data, found by driving the
+//! model with probes chosen for each, and those that its equations guarantee.
 //!
 //! A probe stays within the input range and the rates that the model was trained on; further inputs are held in
 //! the middle of theirs. What is a property of memory is asked at a vanishing speed. Definitions: theory.md,
@@ -50,13 +50,13 @@ pub use structure::StructuralProperty;
 pub struct ModelDiagnosis {
     /// Which model it is.
     pub model: ModelName,
-    /// What it was driven with.
+    /// Drives of the model.
     pub probing: Probing,
     /// The properties, in the order of [`Property::ALL`], found by driving it.
     pub properties: Vec<Finding>,
     /// Whether it can be inverted sample by sample; serialized as the last of the properties.
     pub invertibility: Invertibility,
-    /// What its equations promise.
+    /// Properties that its equations guarantee.
     pub promises: Vec<StructuralProperty>,
     /// Widths of its loops, the paper's `K` and `P`.
     pub loop_widths: LoopWidths,

@@ -247,7 +247,7 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
     (survey.finding(Property::RateDependence, &judgement, &comparisons, statement, EXPERIMENT), explained)
 }
 
-/// What laws with and without the rate say, where no path was run at two speeds.
+/// Compares laws with and without the rate, where no path was run at two speeds.
 fn of_varying_speed(survey: &BranchSet) -> Finding {
     let statement = "no input path was run at two speeds";
     let untold = Finding::not_testable(Property::RateDependence, statement, EXPERIMENT);

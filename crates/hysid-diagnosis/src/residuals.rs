@@ -1,4 +1,4 @@
-//! What a model leaves unexplained: tests of its residual, the measured minus the simulated output of a free run.
+//! Structure that a model leaves unexplained: tests of its residual, measured minus simulated output of a free run.
 //!
 //! A residual that contains structure can be predicted, so a better model exists. Three questions are asked, each with
 //! a p-value that respects the autocorrelation of the residual (theory.md section 13):
@@ -52,7 +52,7 @@ pub const FEWEST_ROWS: usize = 50;
 /// Most rows that are tested; of more, evenly spaced stretches.
 pub const MOST_ROWS: usize = 200_000;
 
-/// What the words of findings depend on.
+/// Options that the words of findings depend on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResidualOptions {
     /// True if the model already uses the rate of the input.
@@ -113,7 +113,7 @@ impl ResidualTest {
     }
 }
 
-/// What a test of the residual says.
+/// Verdict of a test of the residual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 pub enum ResidualVerdict {
     /// There is structure.
@@ -135,15 +135,15 @@ pub struct ResidualFinding {
     /// The input that it is about, for [`ResidualTest::Input`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub input: Option<String>,
-    /// What it says at [`LEVEL`], after the correction for the number of tests.
+    /// Verdict at [`LEVEL`], after the correction for the number of tests.
     pub verdict: ResidualVerdict,
     /// Probability of a statistic as large without structure; `None` if not testable.
     pub p_value: Option<f64>,
     /// The same, corrected for the number of tests.
     pub adjusted_p_value: Option<f64>,
-    /// What was found, in a sentence.
+    /// Result in a sentence.
     pub statement: String,
-    /// What helps, in a sentence; `None` if nothing was found.
+    /// Remedy in a sentence; `None` if nothing was found.
     pub advice: Option<String>,
 }
 
@@ -172,9 +172,9 @@ pub struct Residuals {
     pub inputs: Vec<InputCorrelation>,
     /// Size and bias by place.
     pub places: Vec<GroupedResiduals>,
-    /// What limits all tests, in a sentence; `None` if nothing does.
+    /// Limitation of all tests, in a sentence; `None` if there is none.
     pub caution: Option<String>,
-    /// What the tests say, in the order of [`ResidualTest`].
+    /// Results of the tests, in the order of [`ResidualTest`].
     pub findings: Vec<ResidualFinding>,
 }
 

@@ -94,7 +94,7 @@ pub struct ReversalCurves {
     pub smoothing_is_chosen: bool,
     /// The nodes, curve by curve.
     pub nodes: Vec<ReversalNode>,
-    /// What to know of them.
+    /// Notes on the curves for the reader.
     pub notes: Vec<String>,
 }
 

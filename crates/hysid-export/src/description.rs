@@ -25,7 +25,7 @@ pub enum RateSource {
     Argument,
 }
 
-/// What a step is given.
+/// Argument of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Argument {
     /// The input with this index.
@@ -57,7 +57,7 @@ pub struct Description {
     pub arguments: Vec<Argument>,
 }
 
-/// What a part of a model sees of one row: transformed inputs and rate, in their units.
+/// Inputs of a part of a model in one row: transformed inputs and rate, in their units.
 #[derive(Debug, Clone)]
 struct PartInputs {
     inputs: Vec<Real>,
@@ -133,7 +133,7 @@ struct InputRow<'a> {
 /// Name of the array of the state with half the width of the band.
 pub const HALF_WIDTH: &str = "half_width";
 
-/// What a model consists of: itself, or its members.
+/// Models that a model consists of: itself, or its members.
 struct ModelParts<'m>(Vec<&'m Model>);
 
 impl<'m> ModelParts<'m> {

@@ -16,7 +16,7 @@ use crate::target::{Target, TargetFiles};
 pub struct Export {
     /// The files that belong in one folder.
     pub files: Vec<ExportFile>,
-    /// What the user must know.
+    /// Note for the user.
     pub note: Option<String>,
 }
 

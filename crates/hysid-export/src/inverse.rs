@@ -31,7 +31,7 @@ pub(crate) struct ExportedInverse {
     /// Deviation that counts as reached where no number between two inputs is left, as a multiple of the tolerance.
     pub accepted: f64,
     pub arguments: Vec<Argument>,
-    /// What its steps must give.
+    /// Test vectors of its steps.
     pub vectors: Vec<InverseVector>,
 }
 

@@ -30,13 +30,13 @@ impl Array {
 pub(crate) enum Storage {
     /// Numbers that never change.
     Constant(Vec<f64>),
-    /// What is remembered from one step to the next, with the values before the first.
+    /// Memory kept from one step to the next, with the values before the first.
     State(Vec<f64>),
-    /// What one step needs. Its content before the step means nothing.
+    /// Scratch space of one step. Its content before the step means nothing.
     Scratch(usize),
-    /// What a step is given.
+    /// Arguments of a step.
     Argument(usize),
-    /// What a step gives.
+    /// Results of a step.
     Output(usize),
 }
 

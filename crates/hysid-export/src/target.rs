@@ -43,7 +43,7 @@ impl Target {
         self.back_end().name
     }
 
-    /// What it is, in a few words.
+    /// Names the target, in a few words.
     pub fn what(self) -> &'static str {
         match self {
             Self::C => "C99 source code with a test",
@@ -83,7 +83,7 @@ pub(crate) struct BackEnd {
 
 pub(crate) struct TargetFiles {
     pub files: Vec<ExportFile>,
-    /// What the user must know.
+    /// Note for the user.
     pub note: Option<String>,
 }
 

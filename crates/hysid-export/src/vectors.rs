@@ -21,7 +21,7 @@ const TRIED: usize = 5;
 const SAVED: usize = 120;
 const REPEATED: usize = 25;
 
-/// What is done with a model.
+/// Call to a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
     /// To the initial state.

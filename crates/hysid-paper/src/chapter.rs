@@ -1,4 +1,4 @@
-//! What an experiment comes to: a chapter of text, tables and charts, as data.
+//! Result of an experiment: a chapter of text, tables and charts, as data.
 
 use hysid_document::{Chart, Part, Table};
 
@@ -9,17 +9,17 @@ pub struct Chapter {
     pub name: String,
     /// Headline.
     pub title: String,
-    /// What a reader should take away, in a sentence.
+    /// Conclusion for the reader, in a sentence.
     pub verdict: String,
     /// Text, tables and charts in their order.
     pub parts: Vec<Part>,
-    /// What was to be reached, and what was.
+    /// Targets and the results beside them.
     pub targets: Vec<ChapterTarget>,
     /// Further files, by name.
     pub files: Vec<(String, Content)>,
 }
 
-/// What is in a further file.
+/// Content of a further file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Content {
     /// A table as CSV.
@@ -93,11 +93,11 @@ pub struct ChapterTarget {
     pub figure: String,
     /// Whose target it is.
     pub source: TargetSource,
-    /// What was asked for.
+    /// Limit of the target, in words.
     pub wanted: String,
-    /// What one network reached: median and range of the seeds.
+    /// Result of one network: median and range of the seeds.
     pub one: String,
-    /// What the median of several networks reached, likewise.
+    /// Result of the median of several networks, likewise.
     pub several: Option<String>,
     /// Was it reached?
     pub verdict: TargetVerdict,

@@ -59,7 +59,7 @@ impl Neuron {
         DeterioratingStop::new(1.0, self.capacity).expect("capacities are above 0")
     }
 
-    /// What the stop sees of a sine of amplitude 1 at a phase in rad; at rate 0 it sees no rate.
+    /// Input of the stop for a sine of amplitude 1 at a phase in rad; at rate 0 the rate is 0.
     fn drive(self, rate: f64, phase: f64) -> f64 {
         self.weight * sin(phase) + self.rate_weight * TAU * rate * cos(phase)
     }

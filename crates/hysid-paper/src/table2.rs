@@ -110,7 +110,7 @@ fn place_of_xpnn() -> usize {
     Family::ALL.iter().position(|&family| family == Family::Xpnn).unwrap_or_default()
 }
 
-/// What the paper's count of parameters leaves out.
+/// Explains which parameters the paper's count leaves out.
 const COUNT: &str = "The paper's count of free parameters is that of the weights between the layers, without the output weights, which follow by least squares. It leaves out the capacity β of each stop, which is trained as well.";
 
 const WHY: &str = "On a minor loop the stops that slide run the same cycle whatever came before; those that do not slide differ by a constant that history has set. A linear readout adds that constant to the output, which shifts the loop and leaves its shape: such models are congruent. A tanh neuron over several stops moves with that constant along its own curve, so the loop changes its shape: the Preisach neural network wipes out, but it is not congruent, and no deterioration is needed for that. Deterioration is needed where loops do not close.";

@@ -25,7 +25,7 @@ use hysid_tables::{Head, Table, is_record};
 /// Name by which a choice of the time column says that there is none.
 pub const NO_TIME: &str = "none";
 
-/// What is said of the columns; what is not said is guessed.
+/// Roles of columns that the user chose; all others are guessed.
 #[derive(Debug, Clone, Default)]
 pub struct ColumnChoice {
     /// Tells the records apart.
@@ -87,7 +87,7 @@ impl RateOption {
         })
     }
 
-    /// What options of a fit ask for, with these data.
+    /// Fit specification from the options, for these data.
     pub fn request(&self, chosen: &NamedOptions, data: &Dataset) -> Result<FitSpec> {
         let is_decided = !matches!(self, Self::Choice(RateChoice::Auto | RateChoice::None));
         Ok(chosen.request(self.method(data, chosen.model())?, is_decided))
@@ -104,13 +104,13 @@ pub struct Roles {
     /// Given rate of the first input.
     pub rate: Option<String>,
     pub output: String,
-    /// What no option decided, in words; `None` if nothing.
+    /// Roles that no option decided, in words; `None` if there are none.
     pub guessed: Option<&'static str>,
     /// Columns that have no role although no option says so, each with the reason.
     pub set_aside: Vec<(String, String)>,
     /// A condition of the test with few values, which divide the rows of each table into records.
     pub condition: Option<String>,
-    /// What was taken against the names of the columns, in a sentence.
+    /// Roles that contradict the names of the columns, in a sentence.
     pub note: Option<String>,
 }
 

@@ -27,7 +27,7 @@ pub struct Data {
     pub roles: Roles,
     /// Where each record stands.
     pub source: DataSource,
-    /// What was changed on the way, in words.
+    /// Changes made to the data while reading, in words.
     pub warnings: Vec<String>,
 }
 
@@ -216,7 +216,7 @@ fn of_options(error: hysid_core::Error) -> anyhow::Error {
     }
 }
 
-/// What helps on the command line.
+/// Advice for the command line.
 fn advice(problem: &DataProblem) -> &'static str {
     match problem {
         DataProblem::NoTime => " (name one with --time, or use --rate none)",
@@ -273,7 +273,7 @@ pub fn places_of(table: &Table, roles: &Roles, time: Option<&[f64]>) -> Result<V
     places(table, roles, &Naming { table: 0, stem: &stems[0], has_others: false }, time)
 }
 
-/// What the records of a table are named after.
+/// Source of the names of a table's records.
 struct Naming<'n> {
     /// Place of the table among all.
     table: usize,
@@ -406,16 +406,16 @@ impl NumberColumns {
     }
 }
 
-/// What a command needs of the cells of a column, and what helps where one is wrong, in the words of that command.
+/// Cells that a command needs in a column, with its advice where one is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CellNeed {
     /// A cell may be blank where nothing was measured.
     Optional,
     /// Every row needs a number.
     Required {
-        /// What helps where a cell is blank.
+        /// Advice where a cell is blank.
         if_blank: &'static str,
-        /// What helps where the first cell is no number, so that the column may be the wrong one.
+        /// Advice where the first cell is no number, so that the column may be the wrong one.
         if_no_number: Option<&'static str>,
     },
 }

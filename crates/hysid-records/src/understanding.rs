@@ -1,4 +1,4 @@
-//! What the program understood of the data, said before the work begins.
+//! How the program read the data, reported before the work begins.
 
 use hysid_core::data::rate::RateMethod;
 use hysid_core::data::record::{ProtocolDifference, RepeatedProtocol, SpeedEvidence, protocols};
@@ -22,7 +22,7 @@ const MOST_REPEATS: usize = 5;
 
 const MOST_INPUTS: usize = 20;
 
-/// What was understood of data and request, label and text, line by line.
+/// Describes data and request as labels and texts, line by line.
 pub fn understanding(
     data: &Data,
     summary: &Summary,
@@ -112,7 +112,7 @@ pub fn labelled(label: &str, text: &str) -> String {
     lines
 }
 
-/// What an automatic model chooses among, in words.
+/// Candidates of an automatic model, in words.
 pub fn choice(options: &AutoOptions) -> String {
     match &options.only {
         Some(request) => format!(": at most {} fits of {}", options.members, request.model().name()),
@@ -163,7 +163,7 @@ fn samples(summary: &Summary) -> String {
     format!("{}, {scored}, in {records}", summary.rows)
 }
 
-/// What repeats what, and the noise that this shows; of many protocols the first few.
+/// Repeated protocols, and the noise that they show; the first few if there are many.
 fn repeats(data: &Data) -> Vec<String> {
     let records = data.set.records();
     let (low, high) = data.set.output_range();

@@ -1,4 +1,4 @@
-//! What cannot be done as it was asked.
+//! Invalid requests.
 
 use std::fmt;
 

@@ -179,7 +179,7 @@ impl BoucWenBaberNoori {
     }
 }
 
-/// What the element remembers beside its displacement.
+/// Memory of the element beside its displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct JointMemory {
     z: f64,

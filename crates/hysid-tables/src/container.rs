@@ -91,7 +91,7 @@ pub fn is_json(bytes: &[u8]) -> bool {
     bytes.trim_ascii_start().starts_with(b"{")
 }
 
-/// What is said of a file with a byte that no text has.
+/// Message on a file with a byte that no text has.
 pub const BINARY: &str = "is a binary file, not a table of numbers";
 
 /// Refuses what is clearly no table.

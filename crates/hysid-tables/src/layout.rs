@@ -1,4 +1,4 @@
-//! What a table in a text looks like: where it begins, what separates its cells, what its columns are called, and how its
+//! Layout of a table in a text: where it begins, what separates its cells, what its columns are called, and how its
 //! numbers are written. The table begins where columns of numbers begin; what stands above them with as many cells are
 //! their names and units, and everything before is a preamble.
 
@@ -31,7 +31,7 @@ pub fn is_record(name: &str) -> bool {
 /// Rows with names that are a table, and no part of a preamble.
 const FEWEST_ROWS: usize = 3;
 
-/// What a table looks like.
+/// Layout of a table in a text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
     pub delimiter: Delimiter,
@@ -188,7 +188,7 @@ fn table(
     tables.find(has_names).map_or(settled_best, Ok)
 }
 
-/// What is said of a row with more or fewer cells than the table has columns.
+/// Message on a row with more or fewer cells than the table has columns.
 pub fn width_problem(found: usize, expected: usize, row: &[&str], delimiter: Delimiter) -> String {
     let hint = match delimiter {
         _ if row.iter().any(|cell| cell.contains(['\n', '\r'])) => " (is a quotation mark not closed?)",

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use hysid_document::visible::clipped;
 pub use thousands::ThousandsWatch;
 
-/// What stands before the decimals of a number.
+/// Sign before the decimals of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DecimalSign {
     Point,
@@ -123,7 +123,7 @@ fn plain(text: &str, decimal: Option<DecimalSign>) -> Option<f64> {
     number.ok().filter(|number| number.is_finite())
 }
 
-/// What is wrong with the number in a cell.
+/// Why a cell is not a valid number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberProblem {
     /// It has this decimal sign, the file another.

@@ -1,4 +1,4 @@
-//! What a user may say about a file that does not tell it itself.
+//! Options of reading a file that override detection.
 
 use std::str::FromStr;
 
@@ -75,7 +75,7 @@ impl FromStr for RowSelection {
     }
 }
 
-/// What separates the cells of a line.
+/// Separator of the cells of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Delimiter {
     /// An ASCII character other than a blank.

@@ -62,7 +62,7 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// What was left out, in words; `None` if nothing was.
+    /// Number and kind of the lines left out, in words; `None` if there were none.
     pub fn described(&self) -> Option<String> {
         let comments = (self.comments > 0).then(|| counted(self.comments, "comment line", "among the rows"));
         let end = self

@@ -39,7 +39,7 @@ pub use protocol::{Protocol, ProtocolOptions};
 pub use segment::{Segment, SegmentKind};
 pub use survey::Gap;
 
-/// What a plan is to be.
+/// Options of a plan from data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanOptions {
     /// Limits other than those of the data.
@@ -71,7 +71,7 @@ pub struct Plan {
     pub input: Vec<f64>,
     /// The segments; the first row belongs to none.
     pub segments: Vec<Segment>,
-    /// What the data do not cover.
+    /// Gaps in the data.
     pub gaps: Vec<Gap>,
     /// Sources of a protocol; empty for a plan from data.
     pub sources: Vec<&'static str>,

@@ -14,7 +14,7 @@ const FEW_TURNING_POINTS: usize = 2;
 /// Ratio of the longest to the shortest time step of a record above which there is a warning.
 const WILD_STEPS: f64 = 100.0;
 
-/// What a data set contains.
+/// Counts and ranges of a data set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// Rows.

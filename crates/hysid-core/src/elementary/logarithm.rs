@@ -32,7 +32,7 @@ const CUBE_AND_UP: [f64; 6] = [
     0.3333333333333391,
 ];
 
-/// What the logarithm of a number is computed from.
+/// Reduced argument of a logarithm.
 pub(super) struct Reduced {
     /// `k`
     pub exponent: f64,
@@ -63,7 +63,7 @@ pub(super) fn exponent_and_fraction(x: f64) -> (i64, f64) {
     (exponent, f64::from_bits(bits.wrapping_sub((exponent as u64) << 52)))
 }
 
-/// What the logarithm of `2^exponent z` is computed from.
+/// Reduces `2^exponent z` for its logarithm.
 #[inline(always)]
 pub(super) fn reduced(exponent: i64, z: f64) -> Reduced {
     let shifted = z + ROUND;

@@ -69,7 +69,7 @@ pub struct Tables {
     /// `i`, the sum of the weights of row `i` between columns `j` and `i`, and that of column `j` between rows `j` and
     /// `i`. All are 0 above the diagonal.
     pub cells: Vec<[f64; 4]>,
-    /// What the virgin curve switches upwards and downwards: magnitudes of the input, rising from 0, and for each the
+    /// Output along the virgin curve upwards and downwards: magnitudes of the input, rising from 0, and for each the
     /// coefficients of a parabola in the distance from there; the last is constant.
     pub virgin: [(Vec<f64>, Vec<[f64; 3]>); 2],
     /// Reversible output at each line, without `k x`.

@@ -3,7 +3,7 @@
 use crate::data::warning::Warning;
 use crate::model::Model;
 
-/// What the rows so far are compared with.
+/// Trained ranges, and the ranges of the rows so far.
 #[derive(Debug, Clone)]
 pub(super) struct Ranges {
     inputs: Vec<InputReach>,

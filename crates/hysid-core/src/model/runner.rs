@@ -41,7 +41,7 @@ pub(super) struct Runner<'m> {
     is_periodic: bool,
     /// The memory has been driven along the lead-in of the record.
     is_begun: bool,
-    /// What the trained ranges are compared with, if that is wanted: its rate is that of this method.
+    /// Trained ranges to compare with, if requested, and the method for the rate.
     ranges: Option<(Ranges, Option<RateMethod>)>,
 }
 

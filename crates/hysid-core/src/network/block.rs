@@ -3,7 +3,7 @@
 use crate::network::Architecture;
 use crate::network::memory::{BLOCK, BlockValues, MemorySlopes};
 
-/// What the memory and the readout compute for some rows together.
+/// Intermediate results of memory and readout for a block of rows.
 pub(crate) struct Block {
     /// Scaled inputs by channel; of rows with slopes only.
     pub u: Vec<BlockValues>,

@@ -556,7 +556,7 @@ impl FitOption {
 }
 
 impl OptionValues {
-    /// What is needed, in words.
+    /// Valid values, in words.
     pub fn needed(&self) -> String {
         match self {
             Self::Count(low, high) => format!("choose a whole number from {low} to {high}"),

@@ -61,7 +61,7 @@ impl Field {
         matches!(self, Self::Actuator | Self::General)
     }
 
-    /// What `∮ y dx` is multiplied by to be the energy lost. The work on a magnet is `∮ H dB = -∮ B dH`.
+    /// Factor that turns `∮ y dx` into the energy lost. The work on a magnet is `∮ H dB = -∮ B dH`.
     pub(super) fn sense_of_energy(self) -> f64 {
         if self == Self::Magnet { -1.0 } else { 1.0 }
     }

@@ -6,7 +6,7 @@ use FigureQuantity::{Creep, Energy, Frequency, Input, Output, Percent, Power, St
 use super::field::Field;
 use super::row::CycleRow;
 
-/// What the unit of a figure is made of.
+/// Quantity whose unit a figure has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FigureQuantity {
     /// In the unit of the input.
@@ -34,9 +34,9 @@ pub enum FigureQuantity {
 pub struct Figure {
     /// Its name in tables, in JSON and in Python.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// Name of the figure, in a few words.
     pub label: &'static str,
-    /// What its unit is made of.
+    /// Quantity whose unit it has.
     pub quantity: FigureQuantity,
     /// The fields in whose tables it is; [`Field::General`] has all.
     pub fields: &'static [Field],

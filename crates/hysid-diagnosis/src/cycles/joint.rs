@@ -34,7 +34,7 @@ const SURE: f64 = 6.0 * SQRT_2;
 /// Rows on each side that a step is compared with.
 const BESIDE: usize = 4;
 
-/// What jumps, and by how much.
+/// Channel that jumps, and by how much.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Joint {
     /// The input, between two rows.

@@ -9,7 +9,7 @@
 
 use hysid_core::data::record::Record;
 
-/// What each row of a loop counts in its area.
+/// Weights of the outputs of a loop's rows in its area.
 pub(super) fn weights(x: &[f64]) -> Vec<f64> {
     let n = x.len();
     (0..n).map(|row| 0.5 * (x[(row + 1) % n] - x[(row + n - 1) % n])).collect()
@@ -32,7 +32,7 @@ pub(super) struct CyclePath {
     turns: (usize, usize),
 }
 
-/// What of a path is its loop.
+/// Part of a path that is its loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Closure {
     /// All of it.

@@ -5,7 +5,7 @@ use hysid_core::data::unit;
 
 use super::FigureQuantity;
 
-/// What the loops are loops of.
+/// Names of the columns that the loops are of.
 pub struct Quantities {
     /// Name of the input's column.
     pub input: String,

@@ -141,7 +141,7 @@ pub struct CycleTable {
     pub backbone: Vec<BackbonePoint>,
     /// Losses by amplitude and frequency, for data with time.
     pub losses: Vec<LossAtFrequency>,
-    /// What concerns the whole table: why figures are missing in every row.
+    /// Notes on the whole table: why figures are missing in every row.
     pub notes: Vec<String>,
 }
 
@@ -484,7 +484,7 @@ impl CycleReader<'_> {
         strand
     }
 
-    /// What is read where both ways pass a level: residual inputs, coercive input, remanence.
+    /// Reads the figures where both ways pass a level: residual inputs, coercive input, remanence.
     fn read_levels(&self, row: &mut CycleRow, falling: &Strand, rising: &Strand) {
         if self.field.has_structures() {
             row.residual_after_peak = falling.crossings(0.0).first().copied();
@@ -734,7 +734,7 @@ fn damping(energy: f64, stiffness: f64, swing: f64) -> Option<f64> {
     (stored > 0.0 && energy >= 0.0).then(|| energy / (4.0 * PI * stored))
 }
 
-/// What every row lacks, and why.
+/// Figures that every row lacks, and why.
 fn notes(survey: &BranchSet, cycles: &[CycleRow], (field, division): (Field, Division)) -> Vec<String> {
     let mut notes = Vec::new();
     let complete = cycles.iter().filter(|row| row.complete).count();
@@ -764,7 +764,7 @@ fn notes(survey: &BranchSet, cycles: &[CycleRow], (field, division): (Field, Div
     notes
 }
 
-/// What in a table contradicts itself: rows that do not follow each other, amplitudes that are not those of the reversals.
+/// Contradictions in a table: rows that do not follow each other, amplitudes that are not those of the reversals.
 fn check(cycles: &[CycleRow], division: Division) -> Vec<String> {
     let mut notes = Vec::new();
     let follows = |pair: &[CycleRow]| {

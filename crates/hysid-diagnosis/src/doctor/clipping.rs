@@ -83,7 +83,7 @@ struct LimitRun {
     rows: Range<usize>,
 }
 
-/// What is clipped at one end of a channel.
+/// Clipped runs at one end of a channel, and their value.
 struct Clipped {
     runs: Vec<LimitRun>,
     value: f64,

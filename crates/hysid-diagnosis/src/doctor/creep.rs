@@ -12,7 +12,7 @@ const STILL: f64 = 1e-4;
 /// A movement of the output that matters, as a share of its range.
 const EFFECT: f64 = 0.01;
 
-/// What the input still moves explains no more than this many times as much, as shares of the ranges.
+/// Largest slope that residual input motion may explain, as shares of the ranges.
 const STEEPEST: f64 = 30.0;
 
 /// A creep goes on: no quarter of the hold has more than this share of it.

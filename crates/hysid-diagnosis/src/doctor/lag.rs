@@ -95,8 +95,8 @@ impl Lag {
     }
 }
 
-/// What is said about a lag: of whole branches at several speeds, if a delay makes them agree, which know it better
-/// than their ends do; otherwise of turning points.
+/// Problems of a lag: from whole branches at several speeds, if a delay makes them agree, since that is more precise
+/// than their ends; otherwise from turning points.
 pub(super) fn complaints(survey: &BranchSet, delay: Option<&Delay>) -> Vec<DataIssue> {
     match delay {
         Some(delay) => vec![between_speeds(survey, delay)],

@@ -41,7 +41,7 @@ impl OutputDirection {
     }
 }
 
-/// What prevents an inverse.
+/// Obstacle to an inverse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlaceKind {
@@ -54,7 +54,7 @@ pub enum PlaceKind {
 /// Where a model is not monotone.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NonMonotonePlace {
-    /// What is there.
+    /// Obstacle at this place.
     pub kind: PlaceKind,
     /// Its size, as a share of the range of the output.
     pub size: f64,
@@ -76,7 +76,7 @@ pub struct NonMonotonePlace {
     pub outputs: (f64, f64),
 }
 
-/// What a time step does.
+/// Lack of monotonicity at a time step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtTimeStep {
     /// Time to the next sample, in its unit.
@@ -110,7 +110,7 @@ pub struct Invertibility {
     pub monotone_outputs: Option<(f64, f64)>,
     /// Shortest time step from which on all scans are monotone; `None` if there is none, or if time does not matter.
     pub shortest_time_step: Option<f64>,
-    /// What each time step does, the shortest first; empty if time does not matter.
+    /// Results of each time step, the shortest first; empty if time does not matter.
     pub time_steps: Vec<AtTimeStep>,
     /// Number of pasts.
     pub pasts: usize,

@@ -47,7 +47,7 @@ pub enum TimeScale {
     None,
 }
 
-/// What a model was driven with.
+/// Drives of a model: ranges, speeds and rows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Probing {
     /// Smallest and largest input, in its unit: the trained range.
@@ -62,12 +62,12 @@ pub struct Probing {
     pub speeds: Vec<f64>,
     /// Rows from the middle of the range to its end: 160, or fewer of a model whose rows need much work.
     pub steps: u32,
-    /// What was outside of what the model was trained on, in words, if anything had to be.
+    /// Excursions of the drives beyond the trained ranges, in words, if there had to be any.
     pub outside: Option<String>,
 }
 
 impl Probing {
-    /// What a reader must know of the rows, where they are fewer than usual.
+    /// Note on the rows, where they are fewer than usual.
     pub fn rows_in_words(&self) -> Option<String> {
         let steps = self.steps;
         (steps < STEPS).then(|| {
@@ -216,7 +216,7 @@ impl<'m> Probe<'m> {
         Record::new(name, vec![x.to_vec()], record.output().to_vec())
     }
 
-    /// What the model is driven with: all inputs, time, the rate where it has to be given. No output.
+    /// Record that drives the model: all inputs, time, the rate where it has to be given. No output.
     pub fn record(&self, name: &str, x: &[f64], time: &[f64]) -> Result<Record> {
         let mut inputs = vec![x.to_vec()];
         inputs.extend(self.held.iter().map(|&value| vec![value; x.len()]));

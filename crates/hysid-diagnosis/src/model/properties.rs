@@ -79,7 +79,7 @@ pub(super) fn findings(probe: &Probe) -> Result<Vec<Finding>> {
     Ok(findings)
 }
 
-/// What a model remembers, at a vanishing speed.
+/// Findings on the memory of a model, at a vanishing speed.
 fn of_memory(probe: &Probe, memory: &Dataset) -> Result<Vec<Finding>> {
     let survey = survey(memory);
     let mut findings = vec![

@@ -267,7 +267,7 @@ fn shares(differences: &[DifferenceVariance], correlations: &[Correlation]) -> V
     shares
 }
 
-/// What a difference is measured by: itself, but not less than rounding.
+/// Scale of a difference: its own size, but not less than rounding.
 fn floor(difference: &DifferenceVariance, all: &[DifferenceVariance]) -> f64 {
     const ROUNDING: f64 = 1e-24;
     let largest = all.iter().map(|d| d.variance).fold(0.0, f64::max);

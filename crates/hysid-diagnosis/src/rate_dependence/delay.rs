@@ -24,7 +24,7 @@ const MOST: usize = 40;
 pub struct Delay {
     /// By which the output lags behind the input, in the unit of time; negative if it leads.
     pub time: f64,
-    /// What of the difference between speeds is left after the shift, as a share of the output's range.
+    /// Difference between speeds that is left after the shift, as a share of the output's range.
     pub remains: f64,
 }
 

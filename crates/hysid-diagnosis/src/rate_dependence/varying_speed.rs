@@ -53,7 +53,7 @@ const SLOWEST: f64 = 0.01;
 /// Ridge for nearly collinear columns.
 const RIDGE: f64 = 1e-7;
 
-/// What laws leave of branches that they were not fitted to: root mean squares as shares of the output's range.
+/// Residuals of laws on branches that they were not fitted to: root mean squares as shares of the output's range.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Remainders {
     /// Ratio of the speed of the fast branches to that of the slow ones.

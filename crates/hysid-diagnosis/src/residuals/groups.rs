@@ -41,14 +41,14 @@ pub struct GroupedResiduals {
     pub bias_p_value: Option<f64>,
     /// Why it is not testable.
     pub not_testable: Option<String>,
-    /// What the groups may mean beside their name.
+    /// Other causes that the groups may point to, beside their name.
     pub caution: Option<String>,
 }
 
 /// Rows of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResidualGroup {
-    /// What the rows have in common.
+    /// Common property of the rows.
     pub name: String,
     /// Number of rows.
     pub rows: usize,

@@ -1,4 +1,4 @@
-//! What the tests say, in sentences.
+//! Results of the tests, in sentences.
 
 use hysid_core::data::unit::suffix;
 use hysid_core::elementary::square;
@@ -22,7 +22,7 @@ const OTHER_RATE_DEPENDENCE: &str = "The rate dependence of the model is not tha
     another form. Compare it on held-out data with a model without the rate and with one with relaxation neurons (xpnn+), \
     and check for a delay between the channels (diagnose the data).";
 
-/// What limits all tests.
+/// Limitation of all tests.
 pub(super) fn caution(residuals: &Residuals, options: &ResidualOptions) -> Option<String> {
     let Residuals { rows, effective_rows, .. } = *residuals;
     let few = (effective_rows < FEW_ROWS).then(|| {
@@ -195,7 +195,7 @@ impl Teller<'_> {
         PlainFinding { test, input, statement, advice: Some(advice) }
     }
 
-    /// What helps against a correlation `r` with the rate in the same row.
+    /// Remedy for a correlation `r` with the rate in the same row.
     fn advice_of_rate(&self, r: f64) -> &'static str {
         if self.is_of_one_speed() {
             return "All half cycles have about the same speed, so that a dependence on the rate, loops of a wrong width and a \
@@ -303,7 +303,7 @@ impl Teller<'_> {
         format!("Its mean is {} ({}).", all.join(", "), words(p))
     }
 
-    /// What helps against structure by a place.
+    /// Remedy for structure by a place.
     fn advice(&self, test: ResidualTest) -> &'static str {
         match test {
             ResidualTest::TurningPoints => {

@@ -49,7 +49,7 @@ pub(super) struct Excerpt {
     pub input: Vec<f64>,
     /// 1 in a row with an output, otherwise 0.
     scored: Vec<f64>,
-    /// What is compared of the scaled output, of the scaled input, and of the constant 1.
+    /// Signal compared, from the scaled output, from the scaled input, and from the constant 1.
     pub output_column: Vec<f64>,
     pub input_column: Vec<f64>,
     pub constant_column: Vec<f64>,

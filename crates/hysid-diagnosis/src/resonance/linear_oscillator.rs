@@ -26,7 +26,7 @@ pub struct LinearOscillator {
     pub direct: f64,
     /// Output at rest under zero input, `c`. Not determined if changes were compared; do not use it then.
     pub offset: f64,
-    /// What was compared with the oscillator: the output or its changes from row to row.
+    /// Signal compared with the oscillator: the output or its changes from row to row.
     pub compared: ComparedSignal,
     /// Root mean square error of a free run, in the unit of the output: of the output or of its changes, see `compared`.
     pub residual: f64,

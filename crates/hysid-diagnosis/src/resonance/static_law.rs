@@ -1,4 +1,4 @@
-//! What a law without inertia leaves of the output: powers of the input, its rate, and stops.
+//! Residual of the output after a law without inertia: powers of the input, its rate, and stops.
 
 use hysid_core::data::record::Dataset;
 use hysid_core::operator::{Operator, Stop};

@@ -18,7 +18,7 @@ const STEPS: f64 = 20.0;
 const SAVED: usize = 90;
 const REPEATED: usize = 20;
 
-/// What is done with an inverse: reset, step, save or restore.
+/// Call to an inverse: reset, step, save or restore.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct InverseVector {
     pub action: Action,

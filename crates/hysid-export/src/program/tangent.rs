@@ -52,7 +52,7 @@ pub fn with_tangent(program: &Program) -> Program {
     tangent
 }
 
-/// What depends on the first argument.
+/// Variables and arrays that depend on the first argument.
 #[derive(Default)]
 struct Active {
     variables: BTreeSet<RealVariable>,

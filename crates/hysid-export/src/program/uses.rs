@@ -1,11 +1,11 @@
-//! What programs read, and the functions that they use.
+//! Variables, arrays and functions that programs use.
 
 use std::collections::BTreeSet;
 
 use crate::program::expression::{AnyExpression, Binary, Real, RealVariable, Unary, Whole, WholeVariable};
 use crate::program::{Array, Program, Statement, every};
 
-/// What the expressions of programs contain.
+/// Variables, arrays and operations in the expressions of programs.
 #[derive(Default)]
 pub(crate) struct Uses {
     pub reals: BTreeSet<RealVariable>,

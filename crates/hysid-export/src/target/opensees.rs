@@ -19,7 +19,7 @@ pub(super) const BACK_END: BackEnd = BackEnd {
     usage,
 };
 
-/// What a model becomes.
+/// Kind of thing that a model is exported as.
 const MATERIAL: &str = "a uniaxialMaterial of OpenSees";
 
 fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {

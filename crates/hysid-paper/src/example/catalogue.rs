@@ -10,11 +10,11 @@ use crate::fitting::FoldKind;
 pub struct Example {
     /// Name on the command line.
     pub name: &'static str,
-    /// What it is about.
+    /// Title of the example.
     pub title: &'static str,
-    /// What the paper reports, on measured data that are not public.
+    /// Result that the paper reports, on measured data that are not public.
     pub paper: &'static str,
-    /// What stands in for these.
+    /// Specimens that stand in for these data.
     pub cases: &'static [ExampleCase],
     /// Why targets are missed, as far as the cases show it: a paragraph each.
     pub causes: &'static [&'static str],
@@ -31,7 +31,7 @@ pub struct ExampleCase {
     pub folds: FoldKind,
     /// Fitted to the same data; ratios are to the first of them.
     pub opponents: &'static [Opponent],
-    /// What is to be reached.
+    /// Figures with their limits.
     pub wanted: &'static [FigureLimit],
 }
 

@@ -18,7 +18,7 @@ const LONGEST_HISTORY: usize = 1200;
 /// Smallest error on the logarithmic axis, in percent.
 const LOWEST_PERCENT: f64 = 1e-4;
 
-/// What a model makes of a set of data.
+/// Outputs of a model for a set of data.
 pub struct FigureLine<'a> {
     /// The model.
     pub name: &'a str,

@@ -49,7 +49,7 @@ struct ChoiceTrial {
     percents: Vec<f64>,
 }
 
-/// What was chosen, and from what.
+/// Chosen training, and the trials behind it.
 #[derive(Debug, Clone)]
 pub struct ChoiceResult {
     pub choice: TrainingChoice,
@@ -209,7 +209,7 @@ impl ChoiceResult {
         format!("{name}: {}{by}. {}", self.choice.words(), self.why_rate)
     }
 
-    /// What was tried, with the errors on the folds; `None` if there was nothing to choose from.
+    /// Table of the trials, with the errors on the folds; `None` if there was nothing to choose from.
     pub fn table(&self, heading: &str) -> Option<Table> {
         let folds = self.trials.first()?.percents.len();
         let columns = ["tried", "training", "mean"].map(String::from).into_iter();

@@ -1,4 +1,4 @@
-//! What the comparison of trainers comes to: tables, figures, and the sentence on the paper's claim.
+//! Result of the comparison of trainers: tables, figures, and the sentence on the paper's claim.
 
 use hysid::elementary::square;
 use hysid::options::network::Trainer;
@@ -75,7 +75,7 @@ pub fn chapter(protocol: &TrainingProtocol, repetitions: &[Repetition]) -> Chapt
     }
 }
 
-/// What the words of the tables mean.
+/// Explains the words of the tables.
 const WORDS: &str = "Every trainer minimises the same objective on the same record, output weights by least \
                      squares. From the same seed the genetic algorithm and the hybrid begin with the same \
                      population, the sub-gradient method and Levenberg-Marquardt with the same random \

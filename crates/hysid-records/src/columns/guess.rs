@@ -44,7 +44,7 @@ pub struct Guess<'t> {
     pub set_aside: Vec<(String, String)>,
     /// A condition that divides the rows into records.
     pub condition: Option<String>,
-    /// What is taken against the names, in a sentence.
+    /// Roles that contradict the names, in a sentence.
     pub note: Option<String>,
 }
 

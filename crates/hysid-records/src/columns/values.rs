@@ -1,4 +1,4 @@
-//! What the values of a column tell of its role: time grows, a counter counts, a condition keeps few values for long.
+//! Roles of columns from their values: time grows, a counter counts, a condition keeps few values for long.
 
 use std::ops::Range;
 
@@ -23,7 +23,7 @@ const HELD: f64 = 0.03;
 /// Share of a record's duration within which time starts again where the record began.
 const SAME_BEGINNING: f64 = 0.02;
 
-/// What the values of a column are like.
+/// Statistics of a column's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Seen {
     /// How they change from row to row.

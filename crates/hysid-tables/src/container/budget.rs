@@ -1,4 +1,4 @@
-//! What a file of some length may become: a small one may claim any size, and compression gives a thousandfold.
+//! Limits on the unpacked size of a file: a small one may claim any size, and compression gives a thousandfold.
 
 use std::cell::Cell;
 use std::io::{self, Read};
@@ -20,13 +20,13 @@ const FREE_NUMBERS: u64 = 1 << 20;
 const FREE_TIME: Duration = Duration::from_secs(10);
 const TIME_PER_MEGABYTE: Duration = Duration::from_secs(2);
 
-/// What is said of a file whose content is not as its format asks.
+/// Message on a file whose content violates its format.
 pub const DAMAGED: &str = "it is damaged or cut off";
 
 /// Name of the threads that run libraries. What panics there is an error of the file.
 pub const THREAD: &str = "hysid-container";
 
-/// What a file of some length may become.
+/// Bytes and cells that a file may unpack to, by its length.
 #[derive(Debug, Clone, Copy)]
 pub struct Budget {
     length: u64,
@@ -89,7 +89,7 @@ impl Budget {
     }
 }
 
-/// What is said of a file that unpacks to more than its budget.
+/// Message on a file that unpacks to more than its budget.
 pub fn too_much() -> String {
     format!(
         "it unpacks to more than {BYTES_PER_BYTE} times its size, and {} MB are free: unpack it beforehand, or save it as CSV",

@@ -17,7 +17,7 @@ pub struct LineCell<'t> {
     pub is_quoted: bool,
 }
 
-/// What a cell is.
+/// Kind of a cell's content.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CellKind {
     /// Empty, or a word for a missing value.
@@ -31,7 +31,7 @@ pub enum CellKind {
 }
 
 impl LineCell<'_> {
-    /// What the cell is.
+    /// Classifies the content.
     pub fn kind(&self) -> CellKind {
         let text = self.text.trim();
         if number::is_missing(text) {

@@ -38,7 +38,7 @@ impl<'t> TextLine<'t> {
 /// Comments that are kept: names and units stand in the first or the last of them.
 const MOST_COMMENTS: usize = 10_000;
 
-/// What comments begin with.
+/// Beginnings of comments.
 const COMMENTS: [&str; 4] = ["#", "%", "//", "!"];
 
 /// True for a line that begins like a comment.

@@ -6,7 +6,7 @@ use super::run::LineRun;
 use crate::number::{self, DecimalSign, NumberFormat, ThousandsWatch};
 use crate::reading::Reading;
 
-/// What the user chose.
+/// Number format that the user chose.
 pub fn chosen(reading: &Reading) -> NumberFormat {
     NumberFormat {
         decimal: reading.decimal,

@@ -15,7 +15,7 @@ const MOST_CELLS: usize = 80;
 /// Lines of numbers one after another with equally many cells; blank lines and comments may stand between.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineRun {
-    /// What separates the cells.
+    /// Separator of the cells.
     pub delimiter: Delimiter,
     /// Cells of a row.
     pub width: usize,
@@ -28,7 +28,7 @@ pub struct LineRun {
     ends_empty: bool,
 }
 
-/// What the cells of a column are.
+/// Counts of the kinds of cells in a column.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ColumnCells {
     /// Cells that are numbers, time stamps, and text.

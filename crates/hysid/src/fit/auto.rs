@@ -76,7 +76,7 @@ const ROWS_WITH_INERTIA: usize = 6000;
 /// Fits expected before anything is known.
 const FITS_EXPECTED: usize = 200;
 
-/// What is fitted to the data, each from its first start.
+/// Specifications of all candidates, each for its first start.
 pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<FitSpec> {
     wanted(data, options).iter().map(|candidate| candidate.request(0)).collect()
 }

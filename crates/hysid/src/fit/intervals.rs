@@ -46,7 +46,7 @@ const NO_EFFECT: f64 = 1e-9;
 /// A parameter changes along a direction if this share of its gradient, or more, is in it.
 const CHANGES: f64 = 1e-3;
 
-/// What can be said of a parameter.
+/// Whether a parameter has an interval, and why not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum IntervalStatus {
     /// It has an interval.
@@ -86,7 +86,7 @@ pub struct ParameterInterval {
     pub symbol: String,
     /// Its value, in the user's units.
     pub value: f64,
-    /// What can be said of it.
+    /// Whether it has an interval, and why not.
     pub status: IntervalStatus,
     /// Lower end, in the user's units; `None` without an interval.
     pub low: Option<f64>,
@@ -268,7 +268,7 @@ impl ParameterSpread {
         self.covariances.iter().map(|covariance| dot(scaled, &covariance.times(scaled))).fold(0.0, f64::max)
     }
 
-    /// What can be said of a parameter with these derivatives, and its standard error.
+    /// Status and standard error of a parameter with these derivatives.
     fn of_parameter(&self, gradient: &[f64], variables: &[FitVariable]) -> (IntervalStatus, Option<f64>) {
         if gradient.iter().all(|slope| *slope == 0.0) {
             return (IntervalStatus::NotFitted, None);

@@ -37,9 +37,9 @@ const MOST_PARAMETERS_OF_A_LAW: usize = 40;
 pub struct MemoryNeed {
     /// Bytes.
     pub bytes: f64,
-    /// What needs most of it, in words.
+    /// Largest part of it, in words.
     pub taken_by: String,
-    /// What reduces it, in words.
+    /// How to reduce it, in words.
     pub advice: &'static str,
 }
 

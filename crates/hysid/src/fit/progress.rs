@@ -1,4 +1,4 @@
-//! What a fit tells while it runs, and what it gives.
+//! Progress and results of a fit.
 
 mod checkpoint;
 mod held_out;
@@ -41,7 +41,7 @@ pub struct Progress<'a> {
     pub train_nrmse_percent: f64,
     /// Completed share of the work, 0 to 1, if every start takes all its epochs.
     pub done: f64,
-    /// What has just become known of a candidate of `auto`; `None` if this tells of a fit on its way.
+    /// News of a candidate of `auto`; `None` while a fit is on its way.
     pub tried: Option<Tried<'a>>,
     pub(crate) present: Option<Present<'a>>,
 }

@@ -1,4 +1,4 @@
-//! What a machine may do: range, start, sampling step, largest rate and length of a drive.
+//! Limits of a machine: range, start, sampling step, largest rate and length of a drive.
 
 use serde::Serialize;
 
@@ -39,7 +39,7 @@ pub struct Limits {
     pub rows: usize,
 }
 
-/// What the user wants of the limits; `None` is what the data have.
+/// Limits chosen by the user; `None` takes that of the data.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LimitOptions {
     /// Lowest and highest input.

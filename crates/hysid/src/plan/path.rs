@@ -50,7 +50,7 @@ pub enum Leg {
 /// Makes the rows of legs, within the limits.
 #[derive(Debug, Clone, Copy)]
 pub struct DrivePath {
-    /// What the machine may do.
+    /// Limits of the machine.
     pub limits: Limits,
     /// Shape of swings.
     pub wave: Wave,

@@ -27,7 +27,7 @@ pub enum Protocol {
     Magnet,
 }
 
-/// What a protocol is made for.
+/// Options of a protocol for a specimen without data.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ProtocolOptions {
     /// Limits; the range is needed.

@@ -34,12 +34,12 @@ pub enum SegmentKind {
 }
 
 impl SegmentKind {
-    /// What it is, in a few words.
+    /// Names the kind, in a few words.
     pub fn words(self) -> &'static str {
         self.texts().0
     }
 
-    /// What it adds, in a few words.
+    /// Purpose of the segment, in a few words.
     pub fn purpose(self) -> &'static str {
         self.texts().1
     }
@@ -80,7 +80,7 @@ impl fmt::Display for SegmentKind {
 /// A segment of a drive. Inputs and outputs are in the units of the data.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Segment {
-    /// What is run.
+    /// Kind of the segment.
     pub kind: SegmentKind,
     /// Its rows in the drive, counted from 0.
     #[serde(serialize_with = "first_and_last")]

@@ -1,4 +1,4 @@
-//! What data do not cover: properties that they cannot test, and swings, reversals and rates that were not run.
+//! Gaps in data: properties that they cannot test, and swings, reversals and rates that were not run.
 
 use hysid_diagnosis::cycles::Field;
 use hysid_diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
@@ -34,13 +34,13 @@ const STILL: f64 = 1e-3;
 /// Something that data do not cover.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Gap {
-    /// What: a property, or `amplitudes`, `minor-loops`, `turning-points`, `speeds`, `holds`.
+    /// A property, or `amplitudes`, `minor-loops`, `turning-points`, `speeds`, `holds`.
     pub what: &'static str,
     /// In words.
     pub statement: String,
 }
 
-/// What is known of data before a plan.
+/// Summary of the data before a plan.
 #[derive(Debug, Clone)]
 pub(super) struct Survey {
     pub gaps: Vec<Gap>,

@@ -19,7 +19,7 @@ const FEW: f64 = 0.1;
 /// Reversals below this share of the range do not end a half cycle. Designed.
 const SMALLEST_REVERSAL: f64 = 0.05;
 
-/// What the speeds of the first input in the data can tell of a dependence on the rate.
+/// Whether the speeds of the first input can show a dependence on the rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpeedEvidence {
     /// Nothing: there are no time stamps, or one speed at each place.
@@ -42,7 +42,7 @@ impl Record {
 }
 
 impl Dataset {
-    /// What the speeds of the first input can tell of a dependence on the rate.
+    /// Whether the speeds of the first input can show a dependence on the rate.
     pub fn speeds(&self) -> SpeedEvidence {
         if !self.has_time() {
             return SpeedEvidence::One;

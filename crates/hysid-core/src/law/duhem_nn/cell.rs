@@ -88,7 +88,7 @@ pub struct Input {
 /// The state of a cell, with the intermediate results of the last sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellMemory {
-    /// What the output weights multiply: `1, x, v, e, s, h`.
+    /// Factors of the output weights: `1, x, v, e, s, h`.
     pub(super) terms: Vec<f64>,
     pub(super) plays: Vec<f64>,
     pub(super) plays_before: Vec<f64>,

@@ -195,7 +195,7 @@ struct MotionSensitivities<'l> {
     alone: Vec<f64>,
     /// `∂r` of each element.
     forces: Vec<f64>,
-    /// What the forces are without their own influence, then the new `∂r`.
+    /// Forces without their own influence, then the new `∂r`.
     new_forces: Vec<f64>,
     elements: Vec<OfElement>,
     /// `∂δ` and `∂ν` at the end of the step.

@@ -34,7 +34,7 @@ pub struct DynamicsMotion {
     /// The same before the last step.
     pub(super) displacements_before: Vec<f64>,
     pub(super) velocities_before: Vec<f64>,
-    /// What the modes do in a step without the forces at its end.
+    /// Displacements and velocities of the modes after a step without the forces at its end.
     displacements_alone: Vec<f64>,
     velocities_alone: Vec<f64>,
     pub(super) points: Vec<PathPoint>,

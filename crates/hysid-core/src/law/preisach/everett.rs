@@ -50,7 +50,7 @@ struct EverettCell {
     along_column: f64,
 }
 
-/// What the virgin curve switches on one side of 0, by the magnitude of the input.
+/// Output along the virgin curve on one side of 0, by the magnitude of the input.
 #[derive(Debug, Clone, PartialEq)]
 struct VirginCurve {
     knots: Vec<f64>,
@@ -136,7 +136,7 @@ impl EverettTables {
         }
     }
 
-    /// What the virgin curve up or down to `h` switches.
+    /// Output along the virgin curve up or down to `h`.
     #[inline]
     pub fn virgin(&self, h: f64) -> f64 {
         let curve = &self.virgin[usize::from(h < 0.0)];

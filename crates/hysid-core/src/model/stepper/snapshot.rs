@@ -1,4 +1,4 @@
-//! What a stepper remembers at one moment, without the weights of its networks.
+//! Memory of a stepper at one moment, without the weights of its networks.
 
 use crate::law::ClassicalState;
 use crate::model::ensemble::Excursion;

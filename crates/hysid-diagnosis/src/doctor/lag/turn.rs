@@ -24,7 +24,7 @@ const COLUMNS: usize = 2 * POWERS + 3;
 /// A column whose own part is below this share of it says nothing new.
 const DEPENDENT: f64 = 1e-13;
 
-/// What is fitted beside the law.
+/// Effect fitted beside the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Beside {
     /// Nothing: the output is this much later than the input.

@@ -1,4 +1,4 @@
-//! What the scans of a model say of its inverse.
+//! Conclusions from the scans of a model about its inverse.
 
 use super::examination::{Examination, Examined};
 use super::words::Words;
@@ -9,7 +9,7 @@ use crate::{Evidence, Finding, Piece, Property, Verdict};
 /// Time steps that differ by this share are the same.
 const SAME_STEP: f64 = 1e-9;
 
-/// What outputs with a large constant part round to, as a share of the output.
+/// Rounding of outputs with a large constant part, as a share of the output.
 const LARGE_OUTPUT: f64 = 64.0 * f64::EPSILON;
 
 /// A slope below this share of the mean one is flat.
@@ -187,7 +187,7 @@ impl<'e> ScanConclusions<'e> {
         (widest.1 - widest.0 > self.tolerance).then_some(widest)
     }
 
-    /// What each time step does, the shortest first, those that do not decide with them.
+    /// Results of each time step, the shortest first, those that do not decide with them.
     fn time_steps(&self) -> Vec<AtTimeStep> {
         let timed = self.examined.scans.iter();
         let mut all: Vec<AtTimeStep> = timed

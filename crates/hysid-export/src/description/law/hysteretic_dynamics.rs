@@ -43,7 +43,7 @@ struct DynamicsParts<'l> {
     /// Displacement `q` and velocity `p` of each mode.
     displacements: Array,
     velocities: Array,
-    /// What they are without the forces at the end of a step.
+    /// Displacements without the forces at the end of a step.
     displacements_alone: Array,
     velocities_alone: Array,
     gains: Array,

@@ -146,7 +146,7 @@ impl PlaneTables {
     }
 }
 
-/// What the virgin curve switches on one side of 0.
+/// Output along the virgin curve on one side of 0.
 struct VirginTables {
     knots: Array,
     length: usize,

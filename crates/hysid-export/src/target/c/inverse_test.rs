@@ -6,7 +6,7 @@ use crate::subject::ExportSubject;
 use crate::target::c::inverse::literal;
 use crate::target::template::filled;
 
-/// What the self-test prints.
+/// Code that prints the results of the self-test, in double and in single precision.
 const SAID: &str = r#"    printf("%d of %d numbers of the inverse differ, its outputs by at most %.1e of half the trained range; "
            "%d endings differ; %d outputs are not those of the model\n",
            different, compared, (double)largest, reaches, wrong);

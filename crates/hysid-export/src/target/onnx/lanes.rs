@@ -32,7 +32,7 @@ fn sums_are_apart(body: &[Statement]) -> bool {
     sums.iter().all(|sum| is_distinct(sum) && !body.iter().any(|statement| reads(statement, *sum)))
 }
 
-/// What a sum adds: `E` of `v + E` or `E + v`, and `a * b` of `a * b + v`.
+/// Addend of a sum: `E` of `v + E` or `E + v`, and `a * b` of `a * b + v`.
 pub(super) fn addend(variable: RealVariable, value: &Real) -> Option<Real> {
     let is_it = |value: &Real| *value == Real::Variable(variable);
     match value {

@@ -175,7 +175,7 @@ fn lengths_of_strings(content: &[u8], budget: Budget) -> Result<Vec<u64>, String
     Ok(lengths)
 }
 
-/// What the sheets ask for so far.
+/// Cells and bytes of the sheets so far, within the budget.
 struct SheetReferences {
     budget: Budget,
     cells: u64,

@@ -131,12 +131,12 @@ impl Candidate {
         }
     }
 
-    /// What is asked for.
+    /// Specification of the first start.
     pub fn asked(&self) -> &FitSpec {
         &self.request
     }
 
-    /// What is asked for, for a start of its own.
+    /// Specification of one of its starts.
     pub fn request(&self, start: usize) -> FitSpec {
         let mut request = self.request.clone();
         let seed = match &mut request {
@@ -235,7 +235,7 @@ impl Candidate {
         Cow::Borrowed(data)
     }
 
-    /// What it is, in a few words.
+    /// Name of the candidate, in a few words.
     pub fn name(&self) -> String {
         self.request.label()
     }

@@ -86,7 +86,7 @@ impl Combination {
         self.leaves.iter().filter(|leaf| leaf.place == place).count()
     }
 
-    /// What each candidate counts in the whole, by its place.
+    /// Weights of the candidates in the ensemble, each with the candidate's place.
     pub fn shares(&self) -> Vec<(usize, Weights)> {
         let mut shares: Vec<(usize, Weights)> = Vec::new();
         for (leaf, weights) in self.group.shares() {
@@ -128,7 +128,7 @@ impl Combination {
         }
     }
 
-    /// What it predicts of the rows of each fold.
+    /// Predictions of the ensemble for the rows of each fold.
     pub fn predictions(&self, trials: &[Trial], folds: &[HeldOut]) -> Vec<Vec<f64>> {
         let of_leaf = |leaf: usize, fold: usize, row: usize| self.predicted(trials, leaf, fold)[row];
         predictions(&self.group, of_leaf, folds)
@@ -216,7 +216,7 @@ impl Combination {
     }
 }
 
-/// What a tree predicts of the rows of each fold; `of_member` gives that of a member, by fold and row.
+/// Predictions of a tree for the rows of each fold; `of_member` gives those of a member, by fold and row.
 fn predictions(
     group: &Group,
     of_member: impl Fn(usize, usize, usize) -> f64,

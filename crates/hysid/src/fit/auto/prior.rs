@@ -1,4 +1,4 @@
-//! What is known of candidates that the data cannot distinguish.
+//! Prior preference among candidates that the data cannot distinguish.
 //!
 //! Data of one loop between two ends contain no information about smaller loops inside it: candidates with equal errors on
 //! the loop differ by factors of a hundred there. The error to be expected inside the loop follows from the family of

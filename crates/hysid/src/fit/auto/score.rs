@@ -16,7 +16,7 @@ const FEWEST_ROWS: usize = 5;
 /// Share of a fold's rows below which a class says nothing.
 const LEAST_SHARE: f64 = 0.05;
 
-/// What the rows of its own class count for a score; the rest goes to the other class. Designed.
+/// Weight of the rows of the own class in a score; the rest is the other class's. Designed.
 const OWN_CLASS: f64 = 0.75;
 
 /// Errors that scores tell apart, as shares of the standard deviation.

@@ -224,7 +224,7 @@ fn deviation(data: &Dataset) -> f64 {
     spread(&measured).1.max(f64::MIN_POSITIVE)
 }
 
-/// What the start with the lowest training error predicts on each fold.
+/// Predictions for each fold by the start with the lowest training error.
 fn plain_predictions(trial: &Trial) -> Vec<Vec<f64>> {
     let lowest = |fold: usize| {
         let starts = trial.starts.iter().map(|folds| &folds[fold]);

@@ -59,7 +59,7 @@ impl FoldRows {
 #[derive(Debug, Clone)]
 pub(super) struct FoldTrial {
     pub model: Model,
-    /// What it predicts of each row held out.
+    /// Prediction of each held-out row.
     pub predicted: Vec<f64>,
 }
 

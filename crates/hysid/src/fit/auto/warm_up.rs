@@ -12,7 +12,7 @@ use crate::validation::Fold;
 /// Share of the shortest record that is left out of the training. Designed.
 const SHARE: f64 = 0.05;
 
-/// What leaving rows out must better the error by to be worth it. Designed.
+/// Factor on the error that leaving rows out must reach to be worth it. Designed.
 const WORTH: f64 = 0.9;
 
 /// Rows to leave out at the beginning of each record: 0 or a share of the shortest, judged on the same later rows.

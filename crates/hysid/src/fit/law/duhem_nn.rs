@@ -86,7 +86,7 @@ impl Identify for DuhemNn {
 }
 
 struct DuhemTraining<'a> {
-    /// What they are trained on, and what judges them.
+    /// Training and validation data.
     kept: &'a DuhemTask<'a>,
     held: Option<&'a DuhemTask<'a>>,
     walks: MultiStart<DuhemWalk>,
@@ -216,7 +216,7 @@ impl DuhemFrame {
     }
 }
 
-/// What a start is trained on or judged by: scaled records.
+/// Scaled records that a start is trained or validated on.
 struct DuhemTask<'a> {
     frame: &'a DuhemFrame,
     drives: Vec<Vec<Input>>,

@@ -194,7 +194,7 @@ pub(super) fn identify(
     })
 }
 
-/// What sets a start apart, beside its random weights.
+/// Distinguishes a start, beside its random weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct StartKind {
     /// True if the input drives the elements (an actuator), false if the displacement does (a structure).

@@ -50,7 +50,7 @@ impl Identify for JilesAtherton {
     }
 }
 
-/// What is searched, and the rows that it is compared with.
+/// Search variables and the rows to fit.
 fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Materials, Vec<Series>)> {
     let series = thinned(Series::all(data, None)?, MemoryKind::TurningPoints);
     let (low, high) = data.input_range(0);

@@ -127,7 +127,7 @@ impl Identify for ModifiedPrandtlIshlinskii {
 
 const RIDGES: usize = 7;
 
-/// What is believed of the plays beforehand.
+/// Prior of the plays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Prior {
     sign: Sign,

@@ -68,7 +68,7 @@ impl Identify for NeuroMadelung {
 }
 
 struct MadelungTraining<'a> {
-    /// What they are trained on, and what judges them.
+    /// Training and validation data.
     kept: &'a MadelungTask<'a>,
     held: &'a MadelungTask<'a>,
     walks: MultiStart<MadelungWalk>,
@@ -196,7 +196,7 @@ fn frame(data: &Dataset, options: &ClassicalOptions) -> Result<NeuroMadelung> {
     })
 }
 
-/// What a start is trained on or judged by: scaled records.
+/// Scaled records that a start is trained or validated on.
 struct MadelungTask<'a> {
     frame: &'a NeuroMadelung,
     series: Vec<Series>,

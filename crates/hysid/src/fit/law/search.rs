@@ -95,7 +95,7 @@ impl SearchVariable {
     }
 }
 
-/// What is searched, and whether the weight of each feature must not be negative.
+/// Search variables, and for each feature whether its weight must not be negative.
 pub(crate) struct Unknowns {
     pub variables: Vec<SearchVariable>,
     pub non_negative: Vec<bool>,

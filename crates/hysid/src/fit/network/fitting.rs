@@ -130,7 +130,7 @@ impl<'a> TrainingPart<'a> {
         Objective::new(self.data, &self.scaling, architecture, &options)
     }
 
-    /// What a network predicts of the rows of a fold that are held out, in the user's unit.
+    /// Predictions of a network for the held-out rows of a fold, in the user's unit.
     fn predicted(&self, network: &Network, fold: &Fold, rate: Option<RateMethod>) -> Result<Vec<f64>> {
         let (seen, rate) = self.preprocessing.data(&fold.held_out, rate)?;
         let mut run = FreeRun::new(network, &self.scaling, rate);
@@ -199,7 +199,7 @@ impl<'a> Fitting<'a> {
         Ok(Fitted::of(model, evaluations).with_held_out(validation.held_out))
     }
 
-    /// What is known of a run on everything.
+    /// Provenance of a run on all data, without its errors.
     fn found(&self, run: &TrainingRun, penalties: Regularisation) -> ProvenanceDraft {
         ProvenanceDraft {
             chosen_start: run.start(),
@@ -330,7 +330,7 @@ impl<'a> Fitting<'a> {
         self.drive(&stage, beginnings, observer)
     }
 
-    /// What runs predict of the folds, as many of each, fold by fold. Their output weights are those of all rows.
+    /// Predictions of runs for the folds, as many of each, fold by fold. Their output weights are those of all rows.
     fn on_folds(
         &self,
         runs: &[TrainingRun],
@@ -545,7 +545,7 @@ struct FoldStage {
     penalties: Regularisation,
 }
 
-/// What a run on the training part of a fold predicts of what is held out.
+/// Predictions for the held-out rows of a fold by a run on its training part.
 struct FoldPredictions {
     predicted: Vec<f64>,
     errors: Option<Errors>,

@@ -331,7 +331,7 @@ impl TrainingRun {
         self.termination.unwrap_or(Termination::Stopped)
     }
 
-    /// What became of each method.
+    /// History of each method.
     pub fn runs(&self) -> &[Run] {
         &self.runs
     }

@@ -1,4 +1,4 @@
-//! What a start is trained on: the error of the free run over records, with a penalty on weights.
+//! Objective of a start: the error of the free run over records, with a penalty on weights.
 
 use std::ops::Range;
 
@@ -27,7 +27,7 @@ const LARGEST_SHIFT: f64 = 30.0;
 #[derive(Clone, Copy)]
 pub(super) struct DynamicsTask<'a> {
     pub layout: &'a DynamicsLayout,
-    /// What is not searched.
+    /// Model with all coefficients that are not searched.
     pub template: &'a Dynamics,
     pub records: &'a [DrivenRecord],
     /// `N`.
