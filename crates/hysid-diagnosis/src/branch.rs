@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::noise::{self, ChannelRun, Noise, resolution};
 use super::significance;
-use super::smoothing::{BranchRow, Parabola, Points, Smoothed, choose_window, smooth_where_straight};
+use super::smoothing::{BranchRow, Parabola, Points, SmoothedRow, choose_window, smooth_where_straight};
 use super::{DiagnosisOptions, PictureCurve, Piece};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::elementary::hypot;
@@ -475,7 +475,7 @@ impl BranchReader<'_> {
     /// The output over the input along a branch, with what its noise and that of the input leave.
     fn curve(&self, points: &Points, window: usize) -> BranchCurve {
         let smoothed = smooth_where_straight(points, window);
-        let place = |(place, value): (&BranchRow, &Smoothed)| self.curve_point(points, place, value);
+        let place = |(place, value): (&BranchRow, &SmoothedRow)| self.curve_point(points, place, value);
         let mut points: Vec<CurvePoint> = points.places.iter().zip(&smoothed).map(place).collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         let deviations: Vec<(f64, f64)> =
@@ -488,7 +488,7 @@ impl BranchReader<'_> {
     }
 
     /// A point without what the input's noise adds.
-    fn curve_point(&self, points: &Points, place: &BranchRow, value: &Smoothed) -> CurvePoint {
+    fn curve_point(&self, points: &Points, place: &BranchRow, value: &SmoothedRow) -> CurvePoint {
         let jitters = self.by_rows;
         if points.output_noise.is_white() && !jitters {
             let deviation = value.deviation * points.output_noise.deviation();

@@ -39,7 +39,7 @@ struct CycleTrend<'c> {
     variance: f64,
 }
 
-pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
     let groups = repeated(survey, cycles);
     let largest = groups.iter().flatten().map(|cycle| cycle.area).fold(0.0, f64::max);
     let trends: Vec<CycleTrend> = groups.iter().filter_map(|group| trend(survey, group, largest)).collect();

@@ -261,10 +261,10 @@ impl Diagnosis {
         let survey = sound.as_ref().map(|data| cycles::survey(data, options));
         let survey = survey.as_ref().unwrap_or(&measured);
         let cycles = cycles::cycles(survey);
-        let (rate, delay) = rate_dependence::test(survey);
+        let (rate, delay) = rate_dependence::verdict(survey);
         // Branches of different speed say nothing about memory where the speed matters, or may matter.
         let equal_speed = data.has_time() && rate.verdict != Verdict::No;
-        let wear = deterioration::test(survey, &cycles);
+        let wear = deterioration::verdict(survey, &cycles);
         // Memory that fades keeps loops open at first, but loses no energy.
         let may_fade = equal_speed && wear.verdict != Verdict::Yes;
         let at_rest =
@@ -272,13 +272,13 @@ impl Diagnosis {
         let has_loops = at_rest.verdict != Verdict::No;
         let mut properties = vec![
             at_rest,
-            orientation::test(survey),
+            orientation::verdict(survey),
             rate,
-            wiping_out::test(survey, equal_speed),
-            congruency::test(survey, equal_speed, has_loops),
-            masing::test(survey, equal_speed),
-            odd_symmetry::test(survey, equal_speed),
-            saturation::test(survey),
+            wiping_out::verdict(survey, equal_speed),
+            congruency::verdict(survey, equal_speed, has_loops),
+            masing::verdict(survey, equal_speed),
+            odd_symmetry::verdict(survey, equal_speed),
+            saturation::verdict(survey),
             wear,
             loop_closure::test(survey, &cycles, may_fade),
         ];
@@ -288,10 +288,10 @@ impl Diagnosis {
         let resonance = Resonance::of(data).filter(Resonance::is_found);
         let explanations =
             artifact::withhold(survey, options, &mut properties, |corrected, property| match property {
-                Property::WipingOut => wiping_out::test(corrected, equal_speed),
-                Property::Congruency => congruency::test(corrected, equal_speed, has_loops),
-                Property::Masing => masing::test(corrected, equal_speed),
-                Property::OddSymmetry => odd_symmetry::test(corrected, equal_speed),
+                Property::WipingOut => wiping_out::verdict(corrected, equal_speed),
+                Property::Congruency => congruency::verdict(corrected, equal_speed, has_loops),
+                Property::Masing => masing::verdict(corrected, equal_speed),
+                Property::OddSymmetry => odd_symmetry::verdict(corrected, equal_speed),
                 _ => loop_closure::test(corrected, &cycles::cycles(corrected), may_fade),
             });
         let table = CycleTable::of(data, &options.of_cycles())?;
@@ -301,8 +301,8 @@ impl Diagnosis {
         };
         if is_member {
             let rate = properties[2].verdict;
-            properties.push(strength_loss::test(survey, &table.cycles, rate));
-            properties.push(pinching::test(survey, &table.cycles));
+            properties.push(strength_loss::verdict(survey, &table.cycles, rate));
+            properties.push(pinching::verdict(survey, &table.cycles));
         }
         if resonance.is_some() {
             artifact::withhold_what_inertia_makes(&mut properties);

@@ -50,7 +50,7 @@ impl OwnPart<'_> {
     }
 }
 
-pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet, equal_speed: bool) -> Finding {
     let mut parts: Vec<OwnPart> =
         survey.branches.iter().filter_map(|branch| own_part(survey, branch)).collect();
     parts.sort_by(|a, b| b.length.total_cmp(&a.length));

@@ -178,7 +178,7 @@ impl SpeedPair<'_> {
 }
 
 /// Tests for rate dependence; with the delay that explains what looks like it, if one does.
-pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
+pub(crate) fn verdict(survey: &BranchSet) -> (Finding, Option<Delay>) {
     if !survey.data.has_time() {
         let statement = "the data have no time stamps";
         return (Finding::not_testable(Property::RateDependence, statement, EXPERIMENT), None);

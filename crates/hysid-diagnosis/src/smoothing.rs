@@ -33,7 +33,7 @@ const JUDGED: usize = 60;
 
 /// A row on the parabola through its neighbours.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Smoothed {
+pub(crate) struct SmoothedRow {
     pub y: f64,
     /// Deviation of `y` for white noise of deviation 1.
     pub deviation: f64,
@@ -61,11 +61,11 @@ pub(crate) struct Points {
 
 /// Each row on the parabola of least squares over the stations of the `window` nearest rows; a window at an
 /// end of the branch lies on one side of its row, and none is longer than a share of the branch.
-pub(crate) fn smooth(places: &[BranchRow], window: usize) -> Vec<Smoothed> {
+pub(crate) fn smooth(places: &[BranchRow], window: usize) -> Vec<SmoothedRow> {
     // An odd number of rows.
     let window = window.min((places.len() as f64 * LONGEST) as usize / 2 * 2 + 1);
     if window < SHORTEST {
-        let alone = |(row, place): (usize, &BranchRow)| Smoothed {
+        let alone = |(row, place): (usize, &BranchRow)| SmoothedRow {
             y: place.y,
             deviation: 1.0,
             bend: 0.0,
@@ -78,26 +78,26 @@ pub(crate) fn smooth(places: &[BranchRow], window: usize) -> Vec<Smoothed> {
             let first = row.saturating_sub(window / 2).min(places.len() - window);
             let rows = first..first + window;
             let (y, deviation) = parabola_at(&places[rows.clone()], &places[row]);
-            Smoothed { y, deviation, bend: 0.0, rows }
+            SmoothedRow { y, deviation, bend: 0.0, rows }
         })
         .collect()
 }
 
 /// As [`smooth`], with shorter windows where a longer one bends the course: at each row the longest that agrees
 /// with those half and a quarter as long, as far as noise goes.
-pub(crate) fn smooth_where_straight(points: &Points, window: usize) -> Vec<Smoothed> {
+pub(crate) fn smooth_where_straight(points: &Points, window: usize) -> Vec<SmoothedRow> {
     let lengths = [window / 4, window / 2, window].map(|length| length / 2 * 2 + 1);
     let [mut chosen, half, whole] = lengths.map(|length| smooth(&points.places, length));
     // What is taken for white noise is smoothed out, no more: coloured noise stays, and is allowed for.
     let noise = points.output_noise.roughness();
-    let agree = |a: &Smoothed, b: &Smoothed| (a.y - b.y).abs() <= AGREE * noise * a.deviation;
+    let agree = |a: &SmoothedRow, b: &SmoothedRow| (a.y - b.y).abs() <= AGREE * noise * a.deviation;
     for (row, chosen) in chosen.iter_mut().enumerate() {
         for longer in [&half[row], &whole[row]] {
             if !agree(chosen, longer) {
                 break;
             }
             let apart = (longer.y - chosen.y).abs() - 0.5 * noise * chosen.deviation;
-            *chosen = Smoothed { bend: apart.max(0.0), ..longer.clone() };
+            *chosen = SmoothedRow { bend: apart.max(0.0), ..longer.clone() };
         }
     }
     chosen

@@ -61,7 +61,11 @@ const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten tim
 /// Tests whether loops remain at speed 0. At a single speed, `longest_lag` is the time by which the output may be
 /// late at the turning points: a lag `τ` makes a loop of the width `2 τ |x'|`. `rate` says whether the output depends on
 /// the speed: if so, what loops do at speed 0 is known only where they grow with the speed, and not in proportion.
-pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce() -> Option<f64>) -> Finding {
+pub(crate) fn verdict(
+    survey: &BranchSet,
+    rate: Verdict,
+    longest_lag: impl FnOnce() -> Option<f64>,
+) -> Finding {
     let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
     let mut large: Vec<&Opening> =
         survey.openings.iter().filter(|opening| opening.swing > WIDE * widest).collect();
@@ -215,13 +219,13 @@ fn may_be_a_lag(survey: &BranchSet, loops: &[&Opening], small: f64) -> bool {
     most < UNLIKE_A_LAG * least || shifted::closes(survey, loops, FURTHER * most, small)
 }
 
-/// [`test`] for a measured record: withholds a "yes" if a law without loops at speed 0 also explains the record.
+/// [`verdict`] for a measured record: withholds a "yes" if a law without loops at speed 0 also explains the record.
 pub(crate) fn test_of_measured(
     survey: &BranchSet,
     rate: Verdict,
     longest_lag: impl FnOnce() -> Option<f64>,
 ) -> Finding {
-    let mut finding = test(survey, rate, longest_lag);
+    let mut finding = verdict(survey, rate, longest_lag);
     if finding.verdict == Verdict::Yes && survey.data.has_time() && viscous::may_be_viscous(survey) {
         finding.verdict = Verdict::NotTestable;
         finding.statement +=

@@ -30,7 +30,7 @@ struct EnvelopeTip<'r> {
 }
 
 /// Tests for strength loss; `rate` says whether the output depends on the speed.
-pub(crate) fn test(survey: &BranchSet, cycles: &[CycleRow], rate: Verdict) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet, cycles: &[CycleRow], rate: Verdict) -> Finding {
     let not_testable = |why: String| Finding::not_testable(Property::StrengthLoss, why, EXPERIMENT);
     if rate == Verdict::Yes {
         return not_testable(

@@ -40,20 +40,20 @@ struct Contestant {
     history: Vec<history::Run>,
 }
 
-struct Played<'a> {
+struct PlayedCase<'a> {
     case: &'a ExampleCase,
     specimen: &'static Specimen,
     train: Dataset,
     unseen: Dataset,
     /// Rows at the beginning of the training data whose outputs no model is fitted to.
     blanked: usize,
-    contestants: Vec<Trained>,
+    contestants: Vec<TrainedModels>,
     /// How the networks were trained, with their names.
     chosen: Vec<(String, ChoiceResult)>,
 }
 
 /// A kind of model as one model, and as the median of several if it begins at random.
-struct Trained {
+struct TrainedModels {
     one: Contestant,
     several: Option<Contestant>,
 }
@@ -61,7 +61,7 @@ struct Trained {
 /// Runs an example.
 pub fn chapter(example: &Example, settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
     let played = example.cases.iter().map(|case| play(example, case, settings, observer));
-    let played: Vec<Played> = played.collect::<Result<_>>()?;
+    let played: Vec<PlayedCase> = played.collect::<Result<_>>()?;
     let mut parts = vec![Part::paragraph(format!("The paper reports {}", example.paper))];
     parts.extend(played.iter().flat_map(|played| played.parts(example)));
     parts.extend(example.causes.iter().map(|&cause| Part::paragraph(cause)));
@@ -69,9 +69,9 @@ pub fn chapter(example: &Example, settings: Settings, observer: &dyn Observer) -
     Ok(Chapter {
         name: example.name.into(),
         title: format!("the paper's {}: {}", spaced(example.name), example.title),
-        verdict: played.iter().map(Played::verdict).collect::<Vec<String>>().join(" "),
+        verdict: played.iter().map(PlayedCase::verdict).collect::<Vec<String>>().join(" "),
         parts,
-        targets: played.iter().flat_map(Played::targets).collect(),
+        targets: played.iter().flat_map(PlayedCase::targets).collect(),
         files: Vec::new(),
     })
 }
@@ -94,7 +94,7 @@ fn play<'a>(
     case: &'a ExampleCase,
     settings: Settings,
     observer: &dyn Observer,
-) -> Result<Played<'a>> {
+) -> Result<PlayedCase<'a>> {
     let specimen = Specimen::named(case.specimen).expect("the specimen is in the catalogue");
     let whole = specimen.train();
     let (train, blanked) = beginning::trained_on(whole.clone())?;
@@ -136,7 +136,7 @@ fn play<'a>(
         let choice = chosen[0].1.choice;
         contestants.push(bench.networks("XPNN, all rows", Family::Xpnn, choice, &whole)?);
     }
-    Ok(Played { case, specimen, contestants, chosen, train, unseen, blanked })
+    Ok(PlayedCase { case, specimen, contestants, chosen, train, unseen, blanked })
 }
 
 /// The training records with the outputs of the unseen ones, which are the same records with other rows blank.
@@ -163,7 +163,7 @@ impl ExampleBench<'_> {
         family: Family,
         choice: TrainingChoice,
         fitted_to: &Dataset,
-    ) -> Result<Trained> {
+    ) -> Result<TrainedModels> {
         let starts = fitting::effort(self.settings).starts;
         let members = MEMBERS.min(starts);
         let mut one = Contestant::new(name);
@@ -185,10 +185,10 @@ impl ExampleBench<'_> {
                 one.add(is_train, runs.into_iter().next().expect("there is at least one start"));
             }
         }
-        Ok(Trained { one, several: Some(several) })
+        Ok(TrainedModels { one, several: Some(several) })
     }
 
-    fn law(&self, name: &str, request: impl Fn(u64) -> FitSpec) -> Result<Trained> {
+    fn law(&self, name: &str, request: impl Fn(u64) -> FitSpec) -> Result<TrainedModels> {
         let mut one = Contestant::new(name);
         for seed in fitting::seeds(self.settings) {
             let request = fitting::rival(request(seed), self.settings);
@@ -198,7 +198,7 @@ impl ExampleBench<'_> {
             one.add(true, run(&models[0], self.train)?);
             one.add(false, run(&models[0], self.unseen)?);
         }
-        Ok(Trained { one, several: None })
+        Ok(TrainedModels { one, several: None })
     }
 
     fn timed(&self, name: &str, seed: u64, fit: impl FnOnce() -> Result<Vec<Model>>) -> Result<Vec<Model>> {
@@ -265,8 +265,8 @@ fn ratio(other: &Errors, xpnn: &Errors) -> f64 {
     if has_diverged { f64::INFINITY } else { other.mse / xpnn.mse }
 }
 
-impl Played<'_> {
-    fn xpnn(&self) -> &Trained {
+impl PlayedCase<'_> {
+    fn xpnn(&self) -> &TrainedModels {
         &self.contestants[0]
     }
 
@@ -352,7 +352,7 @@ impl Played<'_> {
             text +=
                 &format!("; the median of several networks has {} %", percent(CaseFigure::Unseen, several));
         }
-        for Trained { one: rival, .. } in &self.contestants[1..] {
+        for TrainedModels { one: rival, .. } in &self.contestants[1..] {
             text += &format!(
                 ", {} {} % and {} %",
                 rival.name,
@@ -402,7 +402,7 @@ impl Played<'_> {
 
     /// Outputs of the XPNN and its rival from the first seed on a set, with their names.
     fn lines<'p>(&'p self, set: impl Fn(&'p Contestant) -> &'p Vec<SeedRun>) -> Vec<figures::FigureLine<'p>> {
-        let line = |trained: &'p Trained| figures::FigureLine {
+        let line = |trained: &'p TrainedModels| figures::FigureLine {
             name: &trained.one.name,
             simulated: &set(&trained.one)[0].simulated,
         };

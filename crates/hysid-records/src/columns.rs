@@ -15,7 +15,7 @@ use hysid_core::options::chosen::{NamedOptions, RateChoice};
 use hysid_core::options::{FitSpec, ModelName};
 
 use self::guess::Guess;
-use self::values::{Seen, TimeCheck, numbers};
+use self::values::{TimeCheck, ValueStatistics, numbers};
 use crate::usage::Usage;
 use hysid_core::data::unit::{self, Conversion};
 use hysid_document::shell::option;
@@ -341,7 +341,7 @@ impl Roles {
 /// The column that is named like time. Of one that falls as a field or a temperature does, only the user can say it.
 fn time_by_name(table: &Table, free: &[&String], records: &[Range<usize>]) -> Result<Option<String>> {
     for name in free.iter().filter(|name| unit::is_time(name)) {
-        let running = numbers(table, name).map(|values| Seen::of(&values, records).running);
+        let running = numbers(table, name).map(|values| ValueStatistics::of(&values, records).running);
         // A single T is a temperature as often.
         let is_temperature =
             name.trim() == "T" && !matches!(running, Some(TimeCheck::Strictly | TimeCheck::WithEqualStamps));

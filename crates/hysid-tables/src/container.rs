@@ -16,7 +16,7 @@ use hysid_files::unreadable;
 
 use crate::reading::Reading;
 pub use budget::THREAD;
-use budget::Unpacking;
+use budget::UnpackingReader;
 
 /// Bytes that tell what a file is.
 const FIRST: usize = 1 << 16;
@@ -48,7 +48,7 @@ impl DecodedText {
         let mut packed = "";
         if first.starts_with(b"\x1f\x8b") {
             packed = ", gzip";
-            (reader, first) = peeked(&file, Box::new(Unpacking::of(reader, MultiGzDecoder::new)))?;
+            (reader, first) = peeked(&file, Box::new(UnpackingReader::of(reader, MultiGzDecoder::new)))?;
         }
         let failed =
             |what: &str, problem: String| anyhow!("{file}: is {what} that cannot be read: {problem}");

@@ -128,7 +128,7 @@ pub fn common_magnitude(mut magnitudes: Vec<f64>) -> f64 {
 }
 
 /// Transformed data, and the method of their rate.
-pub struct Transformed<'d> {
+pub struct TransformedData<'d> {
     /// The input transform.
     pub preprocessing: InputTransform,
     /// The transformed data.
@@ -137,7 +137,7 @@ pub struct Transformed<'d> {
     pub rate: Option<RateMethod>,
 }
 
-impl<'d> Transformed<'d> {
+impl<'d> TransformedData<'d> {
     /// The data as seen by a model; an error for unusable data or shares, or a rate that cannot be computed.
     pub fn of(
         data: &'d Dataset,

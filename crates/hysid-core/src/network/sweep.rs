@@ -139,7 +139,7 @@ impl<'a> Workspace<'a> {
                 None => simd.vectorize(Advance { memory, state, block, steps, rows }),
             }
             if wanted == BLOCK && self.filled == 0 {
-                simd.vectorize(HandOn { readout: &self.readout, block: &mut self.block, rows, to });
+                simd.vectorize(BlockCompletion { readout: &self.readout, block: &mut self.block, rows, to });
                 continue;
             }
             if wanted == 0 {
@@ -162,7 +162,7 @@ impl<'a> Workspace<'a> {
     fn flush<S: Simd>(&mut self, simd: S, to: &mut impl TakeBlock) {
         let rows = std::mem::take(&mut self.filled);
         if rows > 0 {
-            simd.vectorize(HandOn { readout: &self.readout, block: &mut self.pending, rows, to });
+            simd.vectorize(BlockCompletion { readout: &self.readout, block: &mut self.pending, rows, to });
         }
     }
 }
@@ -208,14 +208,14 @@ impl WithSimd for AdvanceWithSlopes<'_> {
 }
 
 /// Completes a block of rows with a target and hands it on.
-struct HandOn<'w, T> {
+struct BlockCompletion<'w, T> {
     readout: &'w Readout,
     block: &'w mut Block,
     rows: usize,
     to: &'w mut T,
 }
 
-impl<T: TakeBlock> WithSimd for HandOn<'_, T> {
+impl<T: TakeBlock> WithSimd for BlockCompletion<'_, T> {
     type Output = ();
 
     #[inline(always)]

@@ -46,7 +46,7 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     let mut found = Vec::new();
     for of_output in [true, false] {
         for sign in [1.0, -1.0] {
-            let Some(Clipped { runs, value }) = clipped(survey, of_output, sign) else {
+            let Some(ClippedEnd { runs, value }) = clipped(survey, of_output, sign) else {
                 continue;
             };
             let count: usize = runs.iter().map(|run| run.rows.len()).sum();
@@ -84,13 +84,13 @@ struct LimitRun {
 }
 
 /// Clipped runs at one end of a channel, and their value.
-struct Clipped {
+struct ClippedEnd {
     runs: Vec<LimitRun>,
     value: f64,
 }
 
 /// Runs of rows at the largest value of a channel (or the smallest, for sign -1) that are clipped.
-fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<Clipped> {
+fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<ClippedEnd> {
     let range = if of_output { survey.output } else { survey.input };
     let extreme = if sign > 0.0 { range.1 } else { range.0 };
     let resolution = if of_output { resolution(survey) } else { 0.0 };
@@ -113,7 +113,7 @@ fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<Clipped> {
             row += length.max(1);
         }
     }
-    (!runs.is_empty()).then_some(Clipped { runs, value: extreme })
+    (!runs.is_empty()).then_some(ClippedEnd { runs, value: extreme })
 }
 
 fn resolution(survey: &BranchSet) -> f64 {

@@ -8,7 +8,7 @@
 mod turn;
 
 use hysid_core::elementary::{hypot, ln, powf, powi, square};
-use turn::{Beside, TurnBranches, TurnWindow};
+use turn::{LagEffect, TurnBranches, TurnWindow};
 
 use super::{ColumnUnits, DataIssue, DataIssueKind, Severity};
 use crate::Delay;
@@ -193,12 +193,12 @@ impl<'t, 'd> Turns<'t, 'd> {
         Self { turns, windows }
     }
 
-    fn remainder(&self, beside: Beside) -> f64 {
+    fn remainder(&self, beside: LagEffect) -> f64 {
         self.turns.iter().zip(&self.windows).map(|(turn, window)| turn.remainder(window, beside)).sum()
     }
 
     fn lag(&self, centre: f64, reach: f64) -> f64 {
-        lowest(&|lag| self.remainder(Beside::Lag(lag)), centre, reach, PLACES)
+        lowest(&|lag| self.remainder(LagEffect::Lag(lag)), centre, reach, PLACES)
     }
 
     /// The lag and its deviation, from that of parts of the turning points.
@@ -208,7 +208,7 @@ impl<'t, 'd> Turns<'t, 'd> {
         let part = |number: usize| {
             let of_part = |lag: f64| -> f64 {
                 let pairs = self.turns.iter().zip(&self.windows).skip(number).step_by(parts);
-                pairs.map(|(turn, window)| turn.remainder(window, Beside::Lag(lag))).sum()
+                pairs.map(|(turn, window)| turn.remainder(window, LagEffect::Lag(lag))).sum()
             };
             lowest(&of_part, time, 0.6 * reach, PLACES)
         };
@@ -231,9 +231,9 @@ impl<'t, 'd> Turns<'t, 'd> {
 
     /// Logarithm of the likelihood ratio of a lag, theory.md (10.22).
     fn margin(&self, lag: f64, noise: f64) -> f64 {
-        let left = self.remainder(Beside::Lag(lag));
+        let left = self.remainder(LagEffect::Lag(lag));
         let independent = if self.leaves_noise(left, noise) { self.rows() } else { ROWS_OF_A_LAW };
-        let without = self.remainder(Beside::Step).min(self.remainder(Beside::Rate));
+        let without = self.remainder(LagEffect::Step).min(self.remainder(LagEffect::Rate));
         0.5 * independent * ln((without / left.max(f64::MIN_POSITIVE)).max(f64::MIN_POSITIVE))
     }
 }
@@ -320,6 +320,6 @@ fn first_search(turns: &[&TurnBranches], reach: f64) -> Option<f64> {
     }
     let ends = found.iter().fold((0.0, 0.0), |(a, b): (f64, f64), &lag| (a.min(lag), b.max(lag)));
     let near = Turns::new(turns, narrowest?, ends);
-    let left = |lag: &f64| near.remainder(Beside::Lag(*lag));
+    let left = |lag: &f64| near.remainder(LagEffect::Lag(*lag));
     found.into_iter().min_by(|a, b| left(a).total_cmp(&left(b)))
 }

@@ -52,7 +52,7 @@ pub(super) fn findings(
     p_values.extend(residuals.inputs.iter().map(|input| Some(input.p_value)));
     p_values.extend(residuals.places.iter().map(of_place));
     let adjusted = holm(&p_values);
-    let teller = Teller { residuals, unit, options };
+    let teller = FindingWriter { residuals, unit, options };
     let mut told = vec![teller.bias(adjusted[0]), teller.whiteness(adjusted[1])];
     let (of_inputs, of_places) = adjusted[2..].split_at(residuals.inputs.len());
     told.extend((0..of_inputs.len()).map(|at| teller.input(at, of_inputs[at])));
@@ -110,13 +110,13 @@ impl PlainFinding {
 }
 
 /// Tells what was found.
-struct Teller<'a> {
+struct FindingWriter<'a> {
     residuals: &'a Residuals,
     unit: Option<&'a str>,
     options: &'a ResidualOptions,
 }
 
-impl Teller<'_> {
+impl FindingWriter<'_> {
     fn value(&self, value: f64) -> String {
         format!("{:.3}{}", Significant(value), suffix(self.unit))
     }

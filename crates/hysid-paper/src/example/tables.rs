@@ -3,18 +3,18 @@
 use hysid_document::{Cell, Table, unit};
 
 use super::catalogue::Example;
-use super::{Contestant, Played, SeedRun, Trained, errors, largest, spaced};
+use super::{Contestant, PlayedCase, SeedRun, TrainedModels, errors, largest, spaced};
 use crate::chapter::stands_in;
 use crate::spread::Spread;
 
-impl Played<'_> {
+impl PlayedCase<'_> {
     pub(super) fn heading(&self, example: &Example, of: &str) -> String {
         format!("{}: {of}", stands_in(self.specimen.name, &spaced(example.name)))
     }
 
     /// Every model by itself, and the medians of several.
     fn all(&self) -> impl Iterator<Item = &Contestant> {
-        self.contestants.iter().flat_map(|Trained { one, several }| std::iter::once(one).chain(several))
+        self.contestants.iter().flat_map(|TrainedModels { one, several }| std::iter::once(one).chain(several))
     }
 
     pub(super) fn errors_table(&self, example: &Example) -> Table {

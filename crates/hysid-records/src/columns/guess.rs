@@ -13,7 +13,7 @@ use hysid_document::visible::{clipped, listed};
 use hysid_tables::Table;
 
 use super::kind::{self, ColumnKind};
-use super::values::{self, Seen, TimeCheck, numbers};
+use super::values::{self, TimeCheck, ValueStatistics, numbers};
 
 /// More columns than this are not all inputs.
 const MOST_INPUTS: usize = 4;
@@ -66,7 +66,7 @@ enum Rank {
 }
 
 /// A column that may be set aside.
-struct Doubt<'t> {
+struct DoubtfulColumn<'t> {
     name: &'t String,
     rank: Rank,
     reason: String,
@@ -116,15 +116,15 @@ impl<'t> Guess<'t> {
         usize::from(self.output.is_none()) + usize::from(!self.has_inputs())
     }
 
-    fn see(&self) -> Vec<(&'t String, Option<Seen>)> {
+    fn see(&self) -> Vec<(&'t String, Option<ValueStatistics>)> {
         let see = |name: &&'t String| {
-            let seen = numbers(self.table, name).map(|values| Seen::of(&values, &self.records));
+            let seen = numbers(self.table, name).map(|values| ValueStatistics::of(&values, &self.records));
             (*name, seen)
         };
         self.free.iter().map(see).collect()
     }
 
-    fn find_time(&mut self, seen: &[(&'t String, Option<Seen>)]) {
+    fn find_time(&mut self, seen: &[(&'t String, Option<ValueStatistics>)]) {
         for (name, seen) in seen {
             let Some(seen) = seen else { continue };
             let is_named = unit::may_be_time(name);
@@ -154,8 +154,8 @@ impl<'t> Guess<'t> {
 
     /// Sets aside, the surest first, what is no input and no output, as long as there is more than what is needed. Gives
     /// the weakest reason.
-    fn set_aside_what_accompanies(&mut self, seen: &[(&'t String, Option<Seen>)]) -> Option<Rank> {
-        let mut doubts: Vec<Doubt<'t>> = Vec::new();
+    fn set_aside_what_accompanies(&mut self, seen: &[(&'t String, Option<ValueStatistics>)]) -> Option<Rank> {
+        let mut doubts: Vec<DoubtfulColumn<'t>> = Vec::new();
         for (name, seen) in seen.iter().filter(|(name, _)| self.free.contains(name)) {
             doubts.extend(self.doubt(name, *seen));
         }
@@ -171,10 +171,11 @@ impl<'t> Guess<'t> {
         weakest
     }
 
-    fn doubt(&self, name: &'t String, seen: Option<Seen>) -> Option<Doubt<'t>> {
+    fn doubt(&self, name: &'t String, seen: Option<ValueStatistics>) -> Option<DoubtfulColumn<'t>> {
         let kind = ColumnKind::of(name);
-        let doubt =
-            |rank: Rank, reason: &str| Some(Doubt { name, rank, reason: reason.into(), divides: false });
+        let doubt = |rank: Rank, reason: &str| {
+            Some(DoubtfulColumn { name, rank, reason: reason.into(), divides: false })
+        };
         let by_name = |rank: Rank| doubt(rank, kind.accompanies().unwrap_or_default());
         let Some(seen) = seen else {
             let is_time = unit::may_be_time(name) && self.time.is_none() && !self.no_time;
@@ -216,7 +217,7 @@ impl<'t> Guess<'t> {
                 let divides = self.record.is_none() && self.records.len() == 1;
                 let more = if divides { ", which divide the rows into records" } else { "" };
                 let reason = format!("a condition of the test, with few values{more}");
-                Some(Doubt { name, rank: Rank::Kept, reason, divides })
+                Some(DoubtfulColumn { name, rank: Rank::Kept, reason, divides })
             }
             ColumnKind::Condition => by_name(Rank::Condition),
             ColumnKind::Unknown
@@ -251,11 +252,11 @@ impl<'t> Guess<'t> {
     }
 
     /// Refuses a column that only grows, which has no hysteresis, beside others; alone, it may be what is wanted.
-    fn refuse_growing(&self, seen: &[(&'t String, Option<Seen>)]) -> Result<()> {
+    fn refuse_growing(&self, seen: &[(&'t String, Option<ValueStatistics>)]) -> Result<()> {
         if self.has_inputs() || self.free.len() <= self.needed() {
             return Ok(());
         }
-        let grows = |seen: &Seen| seen.course == Course::Grows || seen.never_falls;
+        let grows = |seen: &ValueStatistics| seen.course == Course::Grows || seen.never_falls;
         let unclear =
             seen.iter().find(|(name, seen)| self.free.contains(name) && seen.as_ref().is_some_and(grows));
         let Some((name, _)) = unclear else { return Ok(()) };
@@ -472,7 +473,8 @@ impl<'t> Guess<'t> {
         // A field of few values beside a temperature that varies: which one drives?
         if let [input] = self.free.as_slice()
             && weakest == Some(Rank::Condition)
-            && numbers(self.table, input).is_some_and(|values| Seen::of(&values, &self.records).is_kept)
+            && numbers(self.table, input)
+                .is_some_and(|values| ValueStatistics::of(&values, &self.records).is_kept)
         {
             return Err(
                 self.question(&format!("\"{}\" keeps few values, and a condition varies", clipped(input)))

@@ -25,7 +25,7 @@ const SAME_BEGINNING: f64 = 0.02;
 
 /// Statistics of a column's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Seen {
+pub struct ValueStatistics {
     /// How they change from row to row.
     pub course: Course,
     /// Whether they may be time stamps.
@@ -40,7 +40,7 @@ pub struct Seen {
     pub is_held: bool,
 }
 
-impl Seen {
+impl ValueStatistics {
     /// Of the values of a column, in records.
     pub fn of(values: &[f64], records: &[Range<usize>]) -> Self {
         let parts: Vec<&[f64]> = records.iter().map(|rows| &values[rows.clone()]).collect();
@@ -201,9 +201,9 @@ mod tests {
 
     use super::*;
 
-    fn seen(value: impl Fn(f64) -> f64, rows: u32) -> Seen {
+    fn seen(value: impl Fn(f64) -> f64, rows: u32) -> ValueStatistics {
         let values: Vec<f64> = (0..rows).map(|k| value(f64::from(k))).collect();
-        Seen::of(&values, std::slice::from_ref(&(0..values.len())))
+        ValueStatistics::of(&values, std::slice::from_ref(&(0..values.len())))
     }
 
     /// A sequence between -1 and 1 that turns as noise does.

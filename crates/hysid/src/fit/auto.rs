@@ -184,7 +184,7 @@ struct EnsembleSelection<'w, 'o, 'a> {
 }
 
 /// An ensemble, and what is known of it from the folds.
-struct Assembled {
+struct ValidatedEnsemble {
     combination: Combination,
     rows: Vec<Vec<HeldOutRow>>,
     predicted: Vec<Vec<f64>>,
@@ -210,7 +210,7 @@ impl EnsembleSelection<'_, '_, '_> {
                 _ => break,
             }
         }
-        let Some(Assembled { combination, rows, predicted, selection, model }) = assembled else {
+        let Some(ValidatedEnsemble { combination, rows, predicted, selection, model }) = assembled else {
             let model = self.without_validation(alone);
             if self.combination(|_| true).is_some() {
                 return fit(model);
@@ -229,7 +229,7 @@ impl EnsembleSelection<'_, '_, '_> {
     }
 
     /// The ensemble of all candidates that are left, its members fitted; `None` if none could be fitted in time.
-    fn assembled(&mut self) -> Result<Option<Assembled>> {
+    fn assembled(&mut self) -> Result<Option<ValidatedEnsemble>> {
         let FoldBench { work, .. } = self.bench;
         let Some(all) = self.combination(|_| true) else { return Ok(None) };
         let wanted: Vec<(usize, usize)> = all.leaves().iter().map(|leaf| (leaf.place, leaf.start)).collect();
@@ -244,7 +244,7 @@ impl EnsembleSelection<'_, '_, '_> {
         let members = |place: usize, start: usize| self.trials[place].members.get(&start).cloned();
         let body = Predictor::Ensemble(combination.ensemble(members, self.data.input_range(0))?);
         let model = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
-        Ok(Some(Assembled { combination, rows, predicted, selection, model }))
+        Ok(Some(ValidatedEnsemble { combination, rows, predicted, selection, model }))
     }
 
     fn predicted(&self, rows: &[Vec<HeldOutRow>]) -> Vec<Vec<f64>> {
@@ -346,7 +346,8 @@ impl EnsembleSelection<'_, '_, '_> {
         mut selection: Selection,
     ) -> Result<Option<Fitted>> {
         let Self { options, bench, evidence, .. } = *self;
-        let makers = single::Makers { trials: &mut self.trials, bench, combination, evidence, options };
+        let makers =
+            single::SingleSources { trials: &mut self.trials, bench, combination, evidence, options };
         let Some(found) = makers.single(ensemble)? else { return Ok(None) };
         selection.single = Some(found.how);
         let validation = self.errors_held_out(&found.predicted);

@@ -30,7 +30,7 @@ use crate::error::{Error, Result};
 use crate::fit::law::linearised as of_law;
 use crate::fit::law::linearised::{FitVariable, LinearisedLaw};
 use crate::linear_algebra::{Symmetric, dot};
-use crate::model::input_transform::Transformed;
+use crate::model::input_transform::TransformedData;
 use crate::model::{Model, ParameterInUnits};
 use crate::options::FitSpec;
 use eigenvectors::Eigenvectors;
@@ -129,7 +129,7 @@ impl ParameterIntervals {
         }
         check_trained_on(model, data)?;
         let begun = as_begun(model, data)?;
-        let seen = Transformed::of(&begun, &options.shaping, options.rate, options.model.facts().origin)?;
+        let seen = TransformedData::of(&begun, &options.shaping, options.rate, options.model.facts().origin)?;
         let options = crate::options::classical::ClassicalOptions { rate: seen.rate, ..options.clone() };
         let Some(linearised) = of_law(law, &seen.data, &options)? else { return Ok(None) };
         if linearised.variables.len() > MOST_VARIABLES {

@@ -25,7 +25,7 @@ use crate::error::Result;
 use crate::fit::initial_state::StateRequest;
 use crate::fit::progress::{Checkpoint, Fitted, Observer};
 use crate::law::facts::Origin;
-use crate::model::input_transform::Transformed;
+use crate::model::input_transform::TransformedData;
 use crate::options::network::FitOptions;
 use fitting::Fitting;
 
@@ -41,7 +41,7 @@ use fitting::Fitting;
 pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     let begun = wanted_of(options).of(data, observer)?;
     let data = begun.as_ref();
-    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let seen = TransformedData::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options.clone())?.run(observer)
 }
 
@@ -58,6 +58,6 @@ pub fn resume(data: &Dataset, checkpoint: Checkpoint, observer: &mut Observer<'_
     let begun = wanted_of(checkpoint.options()).of(data, observer)?;
     let data = begun.as_ref();
     let (options, state) = checkpoint.for_data(data)?;
-    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let seen = TransformedData::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options)?.from(state)?.run(observer)
 }

@@ -11,7 +11,7 @@ use crate::fit::network;
 use crate::fit::progress::{Fitted, Observer, Progress, SearchProgress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::model::history::{HistoryPoint, Phase, Run};
-use crate::model::input_transform::Transformed;
+use crate::model::input_transform::TransformedData;
 use crate::model::{Model, Predictor, ProvenanceDraft};
 use crate::options::FitSpec;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -34,7 +34,7 @@ pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) 
 fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     let begun = begun(data, options, Origin::OfData, observer)?;
     let data = begun.as_ref();
-    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let seen = TransformedData::of(data, &options.shaping, options.rate, Origin::OfData)?;
     let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
     let stop = StopCheck::new(&is_to_stop);
@@ -49,7 +49,7 @@ fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_
     let origin = options.model.facts().origin;
     let begun = begun(data, options, origin, observer)?;
     let data = begun.as_ref();
-    let seen = Transformed::of(data, &options.shaping, options.rate, origin)?;
+    let seen = TransformedData::of(data, &options.shaping, options.rate, origin)?;
     let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
     let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
@@ -105,7 +105,7 @@ fn begun<'d>(
 fn finished(
     data: &Dataset,
     options: &ClassicalOptions,
-    seen: &Transformed,
+    seen: &TransformedData,
     body: Predictor,
     evaluations: usize,
     termination: Termination,

@@ -7,7 +7,7 @@
 //!
 //! `F` is half a mean or a sum of squares of the parameters `w`, `g` its gradient, `B` its Gauss-Newton
 //! matrix, `δ` the step, `μ` the damping and `D` a positive diagonal scaling; `m` and `s` are
-//! [`Rules::curvature_memory`] and [`Rules::least_curvature`].
+//! [`DescentSettings::curvature_memory`] and [`DescentSettings::least_curvature`].
 //!
 //! A [`LeastSquaresProblem`] gives `F`, `g` and `B`, and solves for the step within its bounds. The descent controls the
 //! damping.
@@ -27,7 +27,7 @@ const PATIENCE: usize = 3;
 
 /// Settings of a descent.
 #[derive(Debug, Clone, Copy)]
-pub struct Rules {
+pub struct DescentSettings {
     /// Smallest damping, and the damping at which the search ends.
     pub damping: (f64, f64),
     /// `m`: share of the largest earlier curvature that is kept after an iteration; 0 for the present one only.
@@ -40,7 +40,7 @@ pub struct Rules {
     pub stall: f64,
 }
 
-impl Rules {
+impl DescentSettings {
     /// For smooth functions of many parameters: earlier curvature limits the steps, and small decreases
     /// count.
     pub const SMOOTH: Self = Self {
@@ -93,7 +93,7 @@ pub trait LeastSquaresProblem {
     /// The curvature at a point.
     type Curvature;
     /// How the descent goes.
-    const RULES: Rules;
+    const RULES: DescentSettings;
 
     /// The function at a point; infinite if the evaluation was stopped.
     fn value(&self, parameters: &[f64]) -> Self::Value;
@@ -184,7 +184,7 @@ impl<V> LevenbergMarquardt<V> {
     }
 
     /// True if a descent with these rules can continue from this state, which may have been read from a file.
-    pub(crate) fn is_sound(&self, rules: &Rules, are_parameters: impl Fn(&[f64]) -> bool) -> bool {
+    pub(crate) fn is_sound(&self, rules: &DescentSettings, are_parameters: impl Fn(&[f64]) -> bool) -> bool {
         let Damping { mu, growth, scale } = &self.damping;
         let (smallest, largest) = rules.damping;
         let is_scale = |scale: &f64| scale.is_finite() && *scale > 0.0;
@@ -253,7 +253,7 @@ impl Damping {
         Self { mu: FIRST_DAMPING, growth: 2.0, scale: Vec::new() }
     }
 
-    fn see(&mut self, rules: &Rules, diagonal: &[f64]) {
+    fn see(&mut self, rules: &DescentSettings, diagonal: &[f64]) {
         self.scale.resize(diagonal.len(), 0.0);
         for (scale, &curvature) in self.scale.iter_mut().zip(diagonal) {
             *scale = (rules.curvature_memory * *scale).max(curvature);
@@ -333,7 +333,7 @@ mod tests {
     impl LeastSquaresProblem for Valley {
         type Value = [f64; 2];
         type Curvature = Symmetric;
-        const RULES: Rules = Rules::SMOOTH;
+        const RULES: DescentSettings = DescentSettings::SMOOTH;
 
         fn value(&self, p: &[f64]) -> [f64; 2] {
             [10.0 * (p[1] - p[0] * p[0]), 1.0 - p[0]]

@@ -52,7 +52,7 @@ pub fn copies(records: &[Record]) -> Vec<RecordCopy> {
     if are_many {
         return equal_ones(records);
     }
-    let known: Vec<Sought> = records.iter().map(Sought::new).collect();
+    let known: Vec<CopySearch> = records.iter().map(CopySearch::new).collect();
     let mut is_copy = vec![false; records.len()];
     let mut found: Vec<RecordCopy> = Vec::new();
     for (later, earlier) in pairs() {
@@ -81,10 +81,10 @@ fn equal_ones(records: &[Record]) -> Vec<RecordCopy> {
 
 /// Similarity of a record to one that is at least as long; `None` if they are two measurements.
 pub fn likeness(short: &Record, long: &Record) -> Option<Likeness> {
-    Sought::new(short).likeness_to(long)
+    CopySearch::new(short).likeness_to(long)
 }
 
-struct Sought<'r> {
+struct CopySearch<'r> {
     record: &'r Record,
     scored: Vec<usize>,
     /// Differences of a single input, and of an output, that are none.
@@ -93,7 +93,7 @@ struct Sought<'r> {
     limits: Vec<f64>,
 }
 
-impl<'r> Sought<'r> {
+impl<'r> CopySearch<'r> {
     fn new(record: &'r Record) -> Self {
         let columns = || record.inputs.iter().map(|input| &**input).chain([&record.output[..]]);
         let range = |column: &[f64]| {
@@ -130,7 +130,7 @@ impl<'r> Sought<'r> {
 }
 
 struct RecordPair<'r> {
-    sought: &'r Sought<'r>,
+    sought: &'r CopySearch<'r>,
     short: &'r Record,
     long: &'r Record,
 }

@@ -6,10 +6,10 @@
 //! from them. The local derivatives of an element by the ends of its step come from sweeps backwards through its layer,
 //! one for each state and one for the force.
 
-mod of_stops;
+mod stops;
 
-use of_stops::{OfStops, add_by_end};
 use pulp::{Simd, WithSimd};
+use stops::{StopSensitivities, add_by_end};
 
 use super::element::{Element, PathPoint, PathStep};
 use super::parameters::{DIRECT, DynamicsLayout, ElementLayout, OFFSET};
@@ -197,7 +197,7 @@ struct MotionSensitivities<'l> {
     forces: Vec<f64>,
     /// Forces without their own influence, then the new `∂r`.
     new_forces: Vec<f64>,
-    elements: Vec<OfElement>,
+    elements: Vec<ElementSensitivities>,
     /// `∂δ` and `∂ν` at the end of the step.
     ends: Vec<f64>,
     slopes: Vec<PropagationSlopes>,
@@ -208,12 +208,12 @@ struct MotionSensitivities<'l> {
     of_output: Vec<f64>,
 }
 
-struct OfElement {
+struct ElementSensitivities {
     /// At its point of the path: `∂δ`, `∂ν`, `∂z` of each stop, `∂s` of each state.
     point: Vec<f64>,
     /// Of the outputs of stops and of the states at the end of a step, without those of `δ` and `ν` there.
     memory: Vec<f64>,
-    stops: OfStops,
+    stops: StopSensitivities,
     of_states: Vec<Local>,
     of_force: Local,
     /// Where the step began.
@@ -240,7 +240,7 @@ struct Scratch {
     on_targets: Vec<f64>,
 }
 
-impl OfElement {
+impl ElementSensitivities {
     fn new(shape: ElementShape, width: usize) -> Self {
         let memory = shape.stops + shape.states;
         let local = Local {
@@ -252,7 +252,7 @@ impl OfElement {
         Self {
             point: vec![0.0; (2 + memory) * width],
             memory: vec![0.0; memory * width],
-            stops: OfStops::new(shape, width),
+            stops: StopSensitivities::new(shape, width),
             of_states: vec![local.clone(); shape.states],
             of_force: Local { by_start: Vec::new(), ..local },
             from: None,
@@ -278,7 +278,7 @@ impl<'l> MotionSensitivities<'l> {
             alone: rows(2 * modes),
             forces: rows(elements),
             new_forces: rows(elements),
-            elements: (0..elements).map(|_| OfElement::new(layout.shape, width)).collect(),
+            elements: (0..elements).map(|_| ElementSensitivities::new(layout.shape, width)).collect(),
             ends: rows(2 * elements),
             slopes: vec![PropagationSlopes::new(1.0, 1.0, 1.0); modes],
             step: f64::NAN,
@@ -459,7 +459,7 @@ impl<'l> MotionSensitivities<'l> {
         let step = &motion.path_steps[e];
         let own = &mut self.elements[e];
         let from = own.from.as_ref().expect("the beginning of a step is remembered");
-        let ends = Ends { element, layout, shape, from, step };
+        let ends = ElementEnds { element, layout, shape, from, step };
         let (outputs, states) = own.memory.split_at_mut(shape.stops * width);
         own.stops.take::<S>(ends, &own.point, outputs);
         for (k, local) in own.of_states.iter_mut().enumerate() {
@@ -600,7 +600,7 @@ impl<'l> MotionSensitivities<'l> {
     }
 }
 
-impl OfElement {
+impl ElementSensitivities {
     /// Of the force at a point of the path: by `δ`, `ν` and memory there, and in `row` by its own parameters.
     #[inline(always)]
     fn force<S: Simd>(
@@ -660,7 +660,7 @@ impl Local {
 
 /// A step of an element and its ends.
 #[derive(Clone, Copy)]
-pub(super) struct Ends<'a> {
+pub(super) struct ElementEnds<'a> {
     element: &'a Element,
     layout: &'a ElementLayout,
     shape: ElementShape,
@@ -668,7 +668,7 @@ pub(super) struct Ends<'a> {
     step: &'a PathStep,
 }
 
-impl Ends<'_> {
+impl ElementEnds<'_> {
     /// Derivatives of state `k` at the end of the step by its ends, and in `row` by the parameters of the element.
     #[inline(always)]
     fn of_state<S: Simd>(&self, k: usize, scratch: &mut Scratch, local: &mut Local, row: &mut [f64]) {

@@ -4,7 +4,7 @@
 use pulp::Simd;
 
 use super::element::{PathPoint, PathStep};
-use super::hold::{Hold, Recent};
+use super::hold::{Hold, RecentSamples};
 use super::propagation::Propagation;
 use super::{Dynamics, STATIC_STEPS};
 use crate::simd::multiply_add;
@@ -51,7 +51,7 @@ pub struct DynamicsMotion {
     /// Scaled input at the beginning and at the end of the last step.
     pub(super) input_before: f64,
     pub(super) input: f64,
-    pub(super) recent: Recent,
+    pub(super) recent: RecentSamples,
     /// Length of the steps that `propagations` are of.
     pub(super) step: f64,
     propagations: Vec<Propagation>,
@@ -86,7 +86,7 @@ impl DynamicsMotion {
             points,
             input_before: 0.0,
             input: 0.0,
-            recent: Recent::default(),
+            recent: RecentSamples::default(),
             step: f64::NAN,
             propagations: vec![Propagation::new(1.0, 1.0, 0.0); modes],
             has_begun: false,
@@ -140,7 +140,7 @@ impl DynamicsMotion {
         // Before the first sample the motion is at rest, and while no time passes nothing moves.
         if is_first || row.is_nan() || row <= 0.0 {
             if is_first {
-                self.recent = Recent::at_rest(u);
+                self.recent = RecentSamples::at_rest(u);
             } else {
                 self.recent.values[0] = u;
             }

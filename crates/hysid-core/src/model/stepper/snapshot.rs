@@ -9,14 +9,14 @@ use crate::network::MemoryState;
 /// The memory of a [`Stepper`](crate::model::Stepper) at one moment.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
-    memory: Remembered,
+    memory: StoredMemory,
     past: InputPast,
     last: Option<(f64, f64)>,
     excursion: Option<Excursion>,
 }
 
 #[derive(Debug, Clone)]
-enum Remembered {
+enum StoredMemory {
     Network(MemoryState),
     Law(Box<ClassicalState>),
     Ensemble(Vec<Snapshot>, Excursion),
@@ -25,10 +25,10 @@ enum Remembered {
 impl Snapshot {
     pub(super) fn of(state: &StepperState) -> Self {
         let memory = match &state.memory {
-            StepperMemory::Network(simulator, _) => Remembered::Network(simulator.state().clone()),
-            StepperMemory::Law(law) => Remembered::Law(law.clone()),
+            StepperMemory::Network(simulator, _) => StoredMemory::Network(simulator.state().clone()),
+            StepperMemory::Law(law) => StoredMemory::Law(law.clone()),
             StepperMemory::Ensemble(ensemble) => {
-                Remembered::Ensemble(ensemble.members.iter().map(Self::of).collect(), ensemble.excursion)
+                StoredMemory::Ensemble(ensemble.members.iter().map(Self::of).collect(), ensemble.excursion)
             }
         };
         Self { memory, past: state.past, last: state.last, excursion: state.excursion }
@@ -37,11 +37,11 @@ impl Snapshot {
     /// Makes the state what it was; panics for a state of another model.
     pub(super) fn restore(&self, state: &mut StepperState) {
         match (&self.memory, &mut state.memory) {
-            (Remembered::Network(kept), StepperMemory::Network(simulator, _)) => {
+            (StoredMemory::Network(kept), StepperMemory::Network(simulator, _)) => {
                 simulator.set_state(kept.clone())
             }
-            (Remembered::Law(kept), StepperMemory::Law(law)) => law.clone_from(kept),
-            (Remembered::Ensemble(members, excursion), StepperMemory::Ensemble(ensemble)) => {
+            (StoredMemory::Law(kept), StepperMemory::Law(law)) => law.clone_from(kept),
+            (StoredMemory::Ensemble(members, excursion), StepperMemory::Ensemble(ensemble)) => {
                 assert_eq!(members.len(), ensemble.members.len(), "a snapshot of this model");
                 members.iter().zip(&mut ensemble.members).for_each(|(kept, member)| kept.restore(member));
                 ensemble.excursion = *excursion;

@@ -26,7 +26,7 @@ const DEPENDENT: f64 = 1e-13;
 
 /// Effect fitted beside the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Beside {
+pub(super) enum LagEffect {
     /// Nothing: the output is this much later than the input.
     Lag(f64),
     /// A step at the turning point.
@@ -174,8 +174,8 @@ impl<'d> TurnBranches<'d> {
     }
 
     /// Sum of squares that the law leaves of the output in a window.
-    pub fn remainder(&self, window: &TurnWindow, beside: Beside) -> f64 {
-        let lag = if let Beside::Lag(lag) = beside { lag } else { 0.0 };
+    pub fn remainder(&self, window: &TurnWindow, beside: LagEffect) -> f64 {
+        let lag = if let LagEffect::Lag(lag) = beside { lag } else { 0.0 };
         let origin = self.y[self.row];
         let mut sides = [SideSums::default(); 2];
         let mut k = window.rows.start;
@@ -190,9 +190,9 @@ impl<'d> TurnBranches<'d> {
             let q = (self.input_at(k, at) - self.extreme) / window.way;
             let side = usize::from(at >= self.moment);
             let effect = match beside {
-                Beside::Lag(_) => 0.0,
-                Beside::Step => side as f64,
-                Beside::Rate => self.rate(row),
+                LagEffect::Lag(_) => 0.0,
+                LagEffect::Step => side as f64,
+                LagEffect::Rate => self.rate(row),
             };
             sides[side].add(q, effect, self.y[row] - origin);
         }
@@ -298,7 +298,7 @@ mod tests {
     }
 
     /// Root mean square of what is left around the top.
-    fn left(data: &Dataset, beside: Beside) -> f64 {
+    fn left(data: &Dataset, beside: LagEffect) -> f64 {
         let survey = BranchSet::new(data, &DiagnosisOptions::default());
         let turn = TurnBranches::between(&survey, &survey.branches[0], &survey.branches[1]).unwrap();
         let window = turn.window(0.3, (0.0, 0.03)).unwrap();
@@ -308,8 +308,8 @@ mod tests {
     #[test]
     fn a_law_with_its_own_lag_leaves_nothing() {
         let data = around_a_top(0.023, |_| 0.0);
-        assert!(left(&data, Beside::Lag(0.023)) < 1e-6);
-        for wrong in [Beside::Lag(0.0), Beside::Lag(0.04), Beside::Step, Beside::Rate] {
+        assert!(left(&data, LagEffect::Lag(0.023)) < 1e-6);
+        for wrong in [LagEffect::Lag(0.0), LagEffect::Lag(0.04), LagEffect::Step, LagEffect::Rate] {
             assert!(left(&data, wrong) > 1e-4, "{wrong:?}: {}", left(&data, wrong));
         }
     }
@@ -317,9 +317,9 @@ mod tests {
     #[test]
     fn a_viscous_part_is_no_lag() {
         let data = around_a_top(0.0, |t| 0.05 * cos(t));
-        assert!(left(&data, Beside::Rate) < 1e-5);
+        assert!(left(&data, LagEffect::Rate) < 1e-5);
         for lag in [-0.05, -0.03, -0.01, 0.0] {
-            assert!(left(&data, Beside::Lag(lag)) > 1e-4);
+            assert!(left(&data, LagEffect::Lag(lag)) > 1e-4);
         }
     }
 

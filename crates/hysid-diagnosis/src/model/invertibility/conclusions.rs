@@ -1,6 +1,6 @@
 //! Conclusions from the scans of a model about its inverse.
 
-use super::examination::{Examination, Examined};
+use super::examination::{Examination, ExaminedScan};
 use super::words::Words;
 use super::{AtTimeStep, EFFECT, Invertibility, NonMonotonePlace, OutputDirection, PlaceKind, Scans};
 use crate::model::probe::Probe;
@@ -25,7 +25,7 @@ const WITHOUT_INERTIA: &str = "fit a model without inertia to a record well belo
 pub(super) struct ScanConclusions<'e> {
     examined: &'e Examination,
     /// The scans that decide: not those with very short time steps.
-    deciding: Vec<&'e Examined>,
+    deciding: Vec<&'e ExaminedScan>,
     direction: OutputDirection,
     tolerance: f64,
 }
@@ -33,7 +33,7 @@ pub(super) struct ScanConclusions<'e> {
 impl<'e> ScanConclusions<'e> {
     pub fn of(examined: &'e Examination) -> Self {
         let shortest = examined.fastest_step * (1.0 - SAME_STEP);
-        let deciding: Vec<&Examined> = examined
+        let deciding: Vec<&ExaminedScan> = examined
             .scans
             .iter()
             .filter(|examined| examined.time_step.is_none_or(|step| step >= shortest))
@@ -51,7 +51,7 @@ impl<'e> ScanConclusions<'e> {
         }
     }
 
-    fn whole(&self) -> impl Iterator<Item = &'e Examined> + '_ {
+    fn whole(&self) -> impl Iterator<Item = &'e ExaminedScan> + '_ {
         self.deciding.iter().copied().filter(|examined| examined.is_whole)
     }
 
@@ -116,7 +116,7 @@ impl<'e> ScanConclusions<'e> {
 
     /// False for a model whose output no next input changes.
     fn moves(&self) -> bool {
-        let extent = |examined: &&Examined| {
+        let extent = |examined: &&ExaminedScan| {
             let (low, high) = examined.scan.outputs();
             high - low
         };
@@ -124,7 +124,7 @@ impl<'e> ScanConclusions<'e> {
     }
 
     /// The largest way back or jump, and where it is.
-    fn worst(&self) -> (f64, Option<(&'e Examined, NonMonotonePlace)>) {
+    fn worst(&self) -> (f64, Option<(&'e ExaminedScan, NonMonotonePlace)>) {
         let places = self.deciding.iter().flat_map(|examined| {
             let reversal = examined.scan.reversal(self.direction.sign());
             let jumps = examined.scan.jumps.iter();
@@ -220,7 +220,7 @@ impl<'e> ScanConclusions<'e> {
     }
 
     fn several(&self) -> Vec<Vec<(f64, f64)>> {
-        let whole: Vec<&Examined> = self.whole().collect();
+        let whole: Vec<&ExaminedScan> = self.whole().collect();
         let every = whole.len().div_ceil(DRAWN).max(1);
         whole.iter().step_by(every).map(|examined| examined.scan.points.clone()).collect()
     }

@@ -5,7 +5,7 @@ use hysid_core::error::Result;
 use hysid_core::model::Stepper;
 
 use super::EFFECT;
-use super::pasts::{ModelPast, Way, drive, ways};
+use super::pasts::{ModelPast, PastPath, drive, ways};
 use super::scan::Scan;
 use crate::model::probe::{Probe, STEPS, extent};
 use crate::model::properties::PROTOCOL;
@@ -22,7 +22,7 @@ const LEAST_POINTS: usize = 9;
 const WHOLE: f64 = 1e-9;
 
 #[derive(Debug)]
-pub(super) struct Examined {
+pub(super) struct ExaminedScan {
     pub past: usize,
     /// Time to the next sample; `None` for a model without time, and before the first sample.
     pub time_step: Option<f64>,
@@ -35,7 +35,7 @@ pub(super) struct Examined {
 #[derive(Debug)]
 pub(super) struct Examination {
     pub pasts: Vec<ModelPast>,
-    pub scans: Vec<Examined>,
+    pub scans: Vec<ExaminedScan>,
     /// Largest less smallest output of the protocol.
     pub range: f64,
     /// Time step of the probe at the fastest speed. Shorter ones do not decide.
@@ -83,7 +83,7 @@ impl Examination {
         &mut self,
         probe: &Probe<'m>,
         stepper: &mut Stepper<'m>,
-        way: &Way,
+        way: &PastPath,
         pace: &ProbePace,
     ) -> Result<()> {
         drive(probe, stepper, way, pace.speed, &mut |stepper, past| {
@@ -124,7 +124,7 @@ impl Examination {
             })?;
             let is_whole = scan.width() >= (1.0 - WHOLE) * (high - low);
             let time_step = time_step.filter(|_| probe.speeds.matter());
-            self.scans.push(Examined { past: self.pasts.len(), time_step, is_whole, scan });
+            self.scans.push(ExaminedScan { past: self.pasts.len(), time_step, is_whole, scan });
         }
         stepper.revert();
         self.pasts.push(past);

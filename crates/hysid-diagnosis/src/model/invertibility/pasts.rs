@@ -34,22 +34,22 @@ pub(super) struct ModelPast {
 }
 
 /// A path of the input, in halves of the trained range.
-pub(super) struct Way {
+pub(super) struct PastPath {
     name: &'static str,
     turning: Vec<f64>,
 }
 
 /// The paths. `worn` asks for repeated loops, which wear a model out, in place of a few.
-pub(super) fn ways(worn: bool) -> Vec<Way> {
+pub(super) fn ways(worn: bool) -> Vec<PastPath> {
     let (count, share) = SHRINKING;
     let shrinking = (0..2 * count).map(|turn| powi(-1.0, turn) * powi(share, turn / 2));
     let loops = if worn { repeated_loops() } else { WHOLE_LOOPS.to_vec() };
     vec![
-        Way { name: "protocol", turning: PROTOCOL.to_vec() },
-        Way { name: "shifted loops", turning: SHIFTED.to_vec() },
-        Way { name: if worn { "repeated loops" } else { "whole loops" }, turning: loops },
-        Way { name: "shrinking loops", turning: [0.0].into_iter().chain(shrinking).collect() },
-        Way { name: "random reversals", turning: random_reversals() },
+        PastPath { name: "protocol", turning: PROTOCOL.to_vec() },
+        PastPath { name: "shifted loops", turning: SHIFTED.to_vec() },
+        PastPath { name: if worn { "repeated loops" } else { "whole loops" }, turning: loops },
+        PastPath { name: "shrinking loops", turning: [0.0].into_iter().chain(shrinking).collect() },
+        PastPath { name: "random reversals", turning: random_reversals() },
     ]
 }
 
@@ -67,7 +67,7 @@ fn random_reversals() -> Vec<f64> {
 pub(super) fn drive<'m>(
     probe: &Probe<'m>,
     stepper: &mut Stepper<'m>,
-    way: &Way,
+    way: &PastPath,
     speed: f64,
     examine: &mut impl FnMut(&mut Stepper<'m>, ModelPast) -> Result<()>,
 ) -> Result<()> {

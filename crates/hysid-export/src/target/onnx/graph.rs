@@ -89,7 +89,7 @@ struct GraphValues {
 
 /// A value that a subgraph changes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Changed {
+enum ChangedValue {
     Real(RealVariable),
     Whole(WholeVariable),
     Array(Array),
@@ -413,58 +413,58 @@ impl<'a> Compiler<'a> {
     }
 
     /// The values from outside that statements change.
-    fn changed(&self, statements: &[Statement]) -> Vec<Changed> {
+    fn changed(&self, statements: &[Statement]) -> Vec<ChangedValue> {
         let mut all = Vec::new();
         every(statements, &mut |statement| match statement {
-            Statement::Assign(variable, _) => all.push(Changed::Real(*variable)),
-            Statement::AssignWhole(variable, _) => all.push(Changed::Whole(*variable)),
-            Statement::Set(array, _, _) => all.push(Changed::Array(*array)),
+            Statement::Assign(variable, _) => all.push(ChangedValue::Real(*variable)),
+            Statement::AssignWhole(variable, _) => all.push(ChangedValue::Whole(*variable)),
+            Statement::Set(array, _, _) => all.push(ChangedValue::Array(*array)),
             _ => {}
         });
         all.retain(|value| match value {
-            Changed::Real(variable) => self.values.reals.contains_key(variable),
-            Changed::Whole(variable) => self.values.wholes.contains_key(variable),
-            Changed::Array(_) => true,
+            ChangedValue::Real(variable) => self.values.reals.contains_key(variable),
+            ChangedValue::Whole(variable) => self.values.wholes.contains_key(variable),
+            ChangedValue::Array(_) => true,
         });
         all.sort_unstable();
         all.dedup();
         all
     }
 
-    fn present(&self, value: Changed) -> String {
+    fn present(&self, value: ChangedValue) -> String {
         match value {
-            Changed::Real(variable) => self.values.reals[&variable].clone(),
-            Changed::Whole(variable) => self.values.wholes[&variable].clone(),
-            Changed::Array(array) => self.values.arrays[&array].clone(),
+            ChangedValue::Real(variable) => self.values.reals[&variable].clone(),
+            ChangedValue::Whole(variable) => self.values.wholes[&variable].clone(),
+            ChangedValue::Array(array) => self.values.arrays[&array].clone(),
         }
     }
 
-    fn replace(&mut self, value: Changed, name: String) {
+    fn replace(&mut self, value: ChangedValue, name: String) {
         match value {
-            Changed::Real(variable) => {
+            ChangedValue::Real(variable) => {
                 self.values.reals.insert(variable, name);
             }
-            Changed::Whole(variable) => {
+            ChangedValue::Whole(variable) => {
                 self.values.wholes.insert(variable, name);
                 self.values.known.remove(&variable);
             }
-            Changed::Array(array) => {
+            ChangedValue::Array(array) => {
                 self.values.arrays.insert(array, name);
             }
         }
     }
 
-    fn info(&self, value: Changed, name: &str) -> ValueInfo {
+    fn info(&self, value: ChangedValue, name: &str) -> ValueInfo {
         match value {
-            Changed::Real(_) => ValueInfo::scalar(name, DOUBLE),
-            Changed::Whole(_) => ValueInfo::scalar(name, INT64),
-            Changed::Array(array) => ValueInfo::row(name, self.program.declaration(array).storage.len()),
+            ChangedValue::Real(_) => ValueInfo::scalar(name, DOUBLE),
+            ChangedValue::Whole(_) => ValueInfo::scalar(name, INT64),
+            ChangedValue::Array(array) => ValueInfo::row(name, self.program.declaration(array).storage.len()),
         }
     }
 
     /// The outputs of a subgraph: each is made inside it.
-    fn outputs(&mut self, changed: &[Changed]) -> Vec<ValueInfo> {
-        let one = |value: &Changed| {
+    fn outputs(&mut self, changed: &[ChangedValue]) -> Vec<ValueInfo> {
+        let one = |value: &ChangedValue| {
             let inside = self.present(*value);
             let name = self.node("Identity", &[&inside]);
             self.info(*value, &name)

@@ -69,7 +69,7 @@ pub fn checked(bytes: &[u8]) -> Result<(Vec<u8>, SpreadsheetKind), String> {
         }
     }
     let strings = strings.unwrap_or_default();
-    let mut asked = SheetReferences { budget, cells: 0, bytes: 0 };
+    let mut asked = SheetTotals { budget, cells: 0, bytes: 0 };
     for (name, content) in &parts {
         if name.to_lowercase().ends_with("mimetype") {
             continue;
@@ -176,13 +176,13 @@ fn lengths_of_strings(content: &[u8], budget: Budget) -> Result<Vec<u64>, String
 }
 
 /// Cells and bytes of the sheets so far, within the budget.
-struct SheetReferences {
+struct SheetTotals {
     budget: Budget,
     cells: u64,
     bytes: u64,
 }
 
-impl SheetReferences {
+impl SheetTotals {
     fn add_cells(&mut self, cells: u64) -> Result<(), String> {
         self.cells = self.cells.saturating_add(cells);
         if self.cells > self.budget.cells() {
@@ -201,7 +201,7 @@ impl SheetReferences {
 
     /// A sheet of Excel, if the part is one.
     fn of_sheet(&mut self, content: &[u8], strings: &[u64]) -> Result<(), String> {
-        let mut within = Within::default();
+        let mut within = CellArea::default();
         let (mut row, mut column, mut is_shared, mut is_value) = (0, 0, false, false);
         each(content, |piece| {
             if piece.begins("row") {
@@ -301,11 +301,11 @@ struct CellOfTable {
 
 /// The rectangle that holds all cells.
 #[derive(Default)]
-pub struct Within {
+pub struct CellArea {
     bounds: Option<[u64; 4]>,
 }
 
-impl Within {
+impl CellArea {
     /// Adds a cell, whose row and column count from 1.
     pub fn add(&mut self, row: u64, column: u64) -> Result<(), String> {
         if row == 0 || column == 0 || row > MOST_ROWS || column > MOST_COLUMNS {

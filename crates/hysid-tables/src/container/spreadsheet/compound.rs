@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::super::budget::{Budget, DAMAGED, too_much};
-use super::archive::Within;
+use super::archive::CellArea;
 
 /// Bytes of the header, which has 109 places of the table of sectors.
 const HEADER: usize = 512;
@@ -204,7 +204,7 @@ fn check_workbook(stream: &[u8], budget: Budget) -> Result<(), String> {
 
 /// Cells that a sheet spans, and cells with a text of the list.
 fn check_sheet(stream: &[u8], budget: Budget) -> Result<(u64, u64), String> {
-    let mut within = Within::default();
+    let mut within = CellArea::default();
     let (mut texts, mut claimed) = (0, 0_u64);
     let mut depth = 0_usize;
     for (kind, content) in records(stream) {

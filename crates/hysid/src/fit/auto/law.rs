@@ -31,7 +31,7 @@ const ASKS_FOR_MORE: f64 = 3.0;
 const ALIKE: f64 = 1.05;
 
 /// A candidate with its errors on the data and on the folds.
-struct Judged {
+struct ScoredCandidate {
     place: usize,
     is_law: bool,
     is_preisach: bool,
@@ -47,17 +47,18 @@ impl EnsembleSelection<'_, '_, '_> {
         if self.options.only.is_some() || self.evidence.is_one_loop() {
             return None;
         }
-        let judged: Vec<Judged> = (self.trials.iter().enumerate())
+        let judged: Vec<ScoredCandidate> = (self.trials.iter().enumerate())
             .filter(|(_, trial)| trial.is_complete())
             .map(|(place, trial)| self.judged(place, trial))
             .collect();
-        let lowest = |error: fn(&Judged) -> f64| judged.iter().map(error).fold(f64::INFINITY, f64::min);
+        let lowest =
+            |error: fn(&ScoredCandidate) -> f64| judged.iter().map(error).fold(f64::INFINITY, f64::min);
         let least = lowest(|one| one.training) * lowest(|one| one.score);
-        let is_about = |most: f64| move |one: &&Judged| one.training * one.score <= most * least;
+        let is_about = |most: f64| move |one: &&ScoredCandidate| one.training * one.score <= most * least;
         let few = judged.iter().filter(|one| one.is_law && one.numbers <= FEW_NUMBERS);
-        let mut laws: Vec<&Judged> = few.filter(is_about(ABOUT_THE_LOWEST)).collect();
+        let mut laws: Vec<&ScoredCandidate> = few.filter(is_about(ABOUT_THE_LOWEST)).collect();
         if laws.is_empty() {
-            let asks_for_more = |one: &&Judged| 0.01 * one.score >= ASKS_FOR_MORE * one.training;
+            let asks_for_more = |one: &&ScoredCandidate| 0.01 * one.score >= ASKS_FOR_MORE * one.training;
             let preisach = judged.iter().filter(|one| one.is_preisach && one.training <= LEFT_BY_PREISACH);
             let preisach = preisach.filter(asks_for_more);
             laws = preisach.filter(is_about(ABOUT_THE_LOWEST_OF_PREISACH)).collect();
@@ -67,8 +68,8 @@ impl EnsembleSelection<'_, '_, '_> {
         alike.min_by(|a, b| a.numbers.cmp(&b.numbers).then(a.score.total_cmp(&b.score))).map(|law| law.place)
     }
 
-    fn judged(&self, place: usize, trial: &Trial) -> Judged {
-        Judged {
+    fn judged(&self, place: usize, trial: &Trial) -> ScoredCandidate {
+        ScoredCandidate {
             place,
             is_law: trial.candidate.kind == CandidateKind::Classical,
             is_preisach: trial.candidate.asked().model() == ModelName::Classical(ClassicalModel::Preisach),

@@ -7,7 +7,7 @@
 //! Where even the best candidate misses held-out rows by half of their standard deviation, the folds tell nothing: each
 //! asks for more than the others show. Candidates that do not fit the data are then left out before all else.
 
-use super::{Assembled, EnsembleSelection, Trial, errors_held_out};
+use super::{EnsembleSelection, Trial, ValidatedEnsemble, errors_held_out};
 use crate::fit::auto::score::Score;
 
 /// Training error of an ensemble, relative to that of the candidate that fits best. Designed.
@@ -46,7 +46,7 @@ struct Fitness {
 
 impl EnsembleSelection<'_, '_, '_> {
     /// Drops candidates that make the ensemble worse than one of them; false if there are none, or the user decided.
-    pub(super) fn drops_misfits(&mut self, ensemble: &Assembled, step: MisfitStep) -> bool {
+    pub(super) fn drops_misfits(&mut self, ensemble: &ValidatedEnsemble, step: MisfitStep) -> bool {
         let all: Vec<Option<Fitness>> = self.trials.iter().map(|trial| self.fitness(trial)).collect();
         let least = |figure: fn(&Fitness) -> f64| {
             all.iter().flatten().copied().min_by(|a, b| figure(a).total_cmp(&figure(b)))
@@ -108,7 +108,7 @@ impl EnsembleSelection<'_, '_, '_> {
         })
     }
 
-    fn fitness_of_ensemble(&self, ensemble: &Assembled) -> Option<Fitness> {
+    fn fitness_of_ensemble(&self, ensemble: &ValidatedEnsemble) -> Option<Fitness> {
         let provenance = ensemble.model.provenance();
         Some(Fitness {
             training: provenance.trained_error().nrmse_std_percent?,

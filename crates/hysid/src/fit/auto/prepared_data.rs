@@ -76,7 +76,7 @@ impl PreparedData {
         let other = match (options.initial_state, options.warm_up) {
             (Some(InitialState::Unknown), _) => ways.found(),
             (None, None) if is_open => {
-                let is_worth = |states: &OtherStates| states.is_worth(warm_up);
+                let is_worth = |states: &AlternativeStates| states.is_worth(warm_up);
                 ways.periods().filter(is_worth).or_else(|| ways.found().filter(is_worth))
             }
             _ => None,
@@ -131,14 +131,14 @@ fn jumps(record: &Record, range: f64) -> bool {
     first_second_difference(&record.inputs()[0]) > JUMP * range
 }
 
-struct OtherStates {
+struct AlternativeStates {
     data: Dataset,
     folds: Vec<Fold>,
     /// Errors on the folds; `None` where they are those of the virgin state, and without folds.
     errors: Option<FoundStates>,
 }
 
-impl OtherStates {
+impl AlternativeStates {
     /// True if it is enough better than the virgin state, and no worse than a warm-up that is better too.
     fn is_worth(&self, warm_up: WarmUp) -> bool {
         let Some(FoundStates { found_percent, virgin_percent }) = self.errors else { return false };
@@ -159,7 +159,7 @@ struct Ways<'a, 'o, 'w> {
 impl Ways<'_, '_, '_> {
     /// States found for all records and for the training part of each fold; `None` once stopped, or if no candidate
     /// fits.
-    fn found(&self) -> Option<OtherStates> {
+    fn found(&self) -> Option<AlternativeStates> {
         let is_to_stop = || self.work.is_to_stop();
         let stop = StopCheck::new(&is_to_stop);
         let (rate, seed) = (self.options.rate, self.options.seed);
@@ -169,7 +169,7 @@ impl Ways<'_, '_, '_> {
     }
 
     /// All records after one period of themselves; `None` if the ends of a record do not meet.
-    fn periods(&self) -> Option<OtherStates> {
+    fn periods(&self) -> Option<AlternativeStates> {
         if !self.data.records().iter().all(is_closed) {
             return None;
         }
@@ -185,7 +185,7 @@ impl Ways<'_, '_, '_> {
     }
 
     /// Other states, with their errors on the folds beside those of the virgin state.
-    fn judged(&self, data: Dataset, folds: Vec<Fold>) -> OtherStates {
+    fn judged(&self, data: Dataset, folds: Vec<Fold>) -> AlternativeStates {
         let has_past = |record: &Record| !record.lead_in_rows().is_empty();
         let is_changed = folds.iter().any(|fold| fold.train.records().iter().any(has_past));
         let errors = || {
@@ -195,7 +195,7 @@ impl Ways<'_, '_, '_> {
         };
         // Folds with the same lead-ins as before have the same errors.
         let errors = is_changed.then(errors).flatten();
-        OtherStates { data, folds, errors }
+        AlternativeStates { data, folds, errors }
     }
 
     /// The validation error of the better of two quick candidates.

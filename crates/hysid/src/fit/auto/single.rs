@@ -54,12 +54,12 @@ struct Plain {
     error: f64,
 }
 
-struct Taught {
+struct DistillationData {
     records: Vec<Record>,
     predicted: Vec<Vec<f64>>,
 }
 
-impl Taught {
+impl DistillationData {
     fn of(records: Vec<Record>, ensemble: &Model) -> Result<Self> {
         let predicted = parallel::each(&records, |record| ensemble.simulate(record))
             .into_iter()
@@ -110,7 +110,7 @@ fn closest_to_training(trial: &Trial) -> Option<&Model> {
     trial.members.values().min_by(|a, b| error(a).total_cmp(&error(b)))
 }
 
-pub(super) struct Makers<'w, 'o, 'a> {
+pub(super) struct SingleSources<'w, 'o, 'a> {
     pub trials: &'w mut Vec<Trial>,
     pub bench: FoldBench<'w, 'o, 'a>,
     pub combination: &'w Combination,
@@ -118,10 +118,10 @@ pub(super) struct Makers<'w, 'o, 'a> {
     pub options: &'w AutoOptions,
 }
 
-impl Makers<'_, '_, '_> {
+impl SingleSources<'_, '_, '_> {
     /// The single model; `None` if no candidate is small, or there was no time.
     pub fn single(mut self, ensemble: &Model) -> Result<Option<SingleCandidate>> {
-        let unmeasured = Taught::unmeasured(self.bench.data, ensemble)?;
+        let unmeasured = DistillationData::unmeasured(self.bench.data, ensemble)?;
         let deviation = deviation(self.bench.data);
         // Data cannot tell what a model does on paths that were not measured; the ensemble is the best that is known.
         let error = |score: Score, model: &Model| -> Result<f64> {
@@ -187,7 +187,7 @@ impl Makers<'_, '_, '_> {
         &self,
         candidate: &Candidate,
         ensemble: &Model,
-        unmeasured: &Taught,
+        unmeasured: &DistillationData,
     ) -> Result<Option<(Model, Vec<Vec<f64>>)>> {
         let starts = if candidate.is_random() { STARTS } else { 1 };
         let mut predicted = Vec::new();
@@ -204,7 +204,7 @@ impl Makers<'_, '_, '_> {
                 ensemble.provenance().clone().into(),
             )?;
             let starts = starts.min(STARTS_ON_A_FOLD);
-            let unmeasured = Taught::unmeasured(training, &of_fold)?;
+            let unmeasured = DistillationData::unmeasured(training, &of_fold)?;
             let Some(model) = distilled(&of_fold, candidate, starts, training, &unmeasured, self.bench.work)?
             else {
                 return Ok(None);
@@ -257,11 +257,11 @@ fn distilled(
     candidate: &Candidate,
     starts: usize,
     data: &Dataset,
-    unmeasured: &Taught,
+    unmeasured: &DistillationData,
     work: &AutoWork,
 ) -> Result<Option<Model>> {
     let taught = unmeasured.beside(data)?;
-    let measured = Taught::of(data.records().to_vec(), ensemble)?;
+    let measured = DistillationData::of(data.records().to_vec(), ensemble)?;
     let distance = |model: &Model| -> Result<f64> {
         Ok(measured.square_distance(model)? + unmeasured.square_distance(model)?)
     };

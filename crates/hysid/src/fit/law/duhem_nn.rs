@@ -20,7 +20,7 @@ use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{IdentifiedLaw, MemoryKind, check_effort, measured, spread, thinned_to};
-use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
+use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
 use crate::fit::sums::output_weights::{OutputProblem, OutputSolution};
 use crate::law::Law;
 use crate::law::duhem_nn::{CellLayout, CellRun, CellShape, DuhemNn, Input, LARGEST_WEIGHT};
@@ -28,7 +28,7 @@ use crate::law::series::Series;
 use crate::linear_algebra::{Gram, Symmetric};
 use crate::model::input_transform::common_magnitude;
 use crate::optimise::levenberg_marquardt::{
-    LeastSquaresProblem, LevenbergMarquardt, Rules, Slope, step_within,
+    DescentSettings, LeastSquaresProblem, LevenbergMarquardt, Slope, step_within,
 };
 use crate::optimise::multi_start::{MultiStart, RoundPlan, SearchStart};
 use crate::optimise::parallel;
@@ -120,7 +120,7 @@ impl<'a> DuhemTraining<'a> {
                 let (parameters, value) = best.least();
                 whole.law(parameters, value).ok().map(Into::into)
             };
-            let (train_nrmse_percent, law) = (best.value().nrmse_percent(), LawSoFar(Some(&law)));
+            let (train_nrmse_percent, law) = (best.value().nrmse_percent(), PartialLaw(Some(&law)));
             let told = observer(SearchProgress { round, rounds, evaluations, train_nrmse_percent, law });
             if whole.stop.is_asked() { ControlFlow::Break(()) } else { told }
         };
@@ -368,7 +368,7 @@ impl DuhemValue {
 impl LeastSquaresProblem for DuhemTask<'_> {
     type Value = DuhemValue;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules::SMOOTH;
+    const RULES: DescentSettings = DescentSettings::SMOOTH;
 
     fn value(&self, parameters: &[f64]) -> DuhemValue {
         let solution = match self.gram(parameters, None) {

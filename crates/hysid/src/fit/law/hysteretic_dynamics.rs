@@ -23,7 +23,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{IdentifiedLaw, check_effort};
-use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
+use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
 use crate::law::Classical;
 use crate::law::hysteretic_dynamics::{
     Dynamics, DynamicsForm, DynamicsLayout, Element, ElementShape, LIMITS,
@@ -175,7 +175,7 @@ pub(super) fn identify(
             rounds,
             evaluations: walks.evaluations(),
             train_nrmse_percent: best.value().nrmse_percent(),
-            law: LawSoFar(Some(&law)),
+            law: PartialLaw(Some(&law)),
         });
         if stop.is_asked() { ControlFlow::Break(()) } else { told }
     };

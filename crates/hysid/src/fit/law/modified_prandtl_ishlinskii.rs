@@ -27,7 +27,7 @@ use crate::law::thresholds::check_thresholds;
 use crate::linear_algebra::Symmetric;
 use crate::network::scaling::Scaling;
 use crate::operator::play;
-use crate::optimise::levenberg_marquardt::{self, LevenbergMarquardt, Rules, Slope};
+use crate::optimise::levenberg_marquardt::{self, DescentSettings, LevenbergMarquardt, Slope};
 use crate::optimise::non_negative::{Penalty, Quadratic, WeightBounds};
 use crate::optimise::parallel;
 use crate::options::classical::{ClassicalOptions, Sign};
@@ -359,7 +359,8 @@ impl<'a> Refinement<'a> {
 impl levenberg_marquardt::LeastSquaresProblem for Refinement<'_> {
     type Value = f64;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules { damping: (1e-9, 1e6), stall: 1e-6, ..Rules::KINKED };
+    const RULES: DescentSettings =
+        DescentSettings { damping: (1e-9, 1e6), stall: 1e-6, ..DescentSettings::KINKED };
 
     fn value(&self, values: &[f64]) -> f64 {
         self.problem.objective(&self.point.at(values))

@@ -21,14 +21,14 @@ use crate::error::{Error, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::grids::check_count;
 use crate::fit::law::search::{IdentifiedLaw, MemoryKind, check_effort, measured, spread, thinned};
-use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
+use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
 use crate::law::neuro_madelung::{BranchNetwork, LARGEST_WEIGHT, MOST_HIDDEN, NeuroMadelung, argument};
 use crate::law::series::Series;
 use crate::law::turning_point_stack::{TurningPoint, TurningPointStack};
 use crate::law::{Classical, Law};
 use crate::linear_algebra::{Symmetric, dot};
 use crate::optimise::levenberg_marquardt::{
-    LeastSquaresProblem, LevenbergMarquardt, Rules, Slope, damped_step,
+    DescentSettings, LeastSquaresProblem, LevenbergMarquardt, Slope, damped_step,
 };
 use crate::optimise::multi_start::{MultiStart, RoundPlan, SearchStart};
 use crate::optimise::parallel;
@@ -112,7 +112,7 @@ impl<'a> MadelungTraining<'a> {
             let law = || whole.so_far(walk.parameters());
             let told = SearchProgress {
                 train_nrmse_percent: walk.nrmse_percent(),
-                law: LawSoFar(Some(&law)),
+                law: PartialLaw(Some(&law)),
                 ..progress(&self.walks, self.epochs + epoch, rounds)
             };
             if observer(told) == ControlFlow::Break(()) || whole.stop.is_asked() {
@@ -155,10 +155,10 @@ impl<'a> MadelungTraining<'a> {
         };
         let tell = |walks: &MultiStart<MadelungWalk>, epoch| {
             let law = || kept.so_far(walks.best().best_parameters());
-            let mut told = SearchProgress { law: LawSoFar(Some(&law)), ..progress(walks, epoch, rounds) };
+            let mut told = SearchProgress { law: PartialLaw(Some(&law)), ..progress(walks, epoch, rounds) };
             if epoch <= forced {
                 // With the measured output at every turning point it is no error of a free run.
-                (told.train_nrmse_percent, told.law) = (f64::NAN, LawSoFar(None));
+                (told.train_nrmse_percent, told.law) = (f64::NAN, PartialLaw(None));
             }
             let flow = observer(told);
             if stop.is_asked() { ControlFlow::Break(()) } else { flow }
@@ -174,7 +174,7 @@ impl<'a> MadelungTraining<'a> {
 fn progress(walks: &MultiStart<MadelungWalk>, round: usize, rounds: usize) -> SearchProgress<'static> {
     let train_nrmse_percent = walks.best().nrmse_percent();
     let evaluations = walks.evaluations();
-    SearchProgress { round, rounds, evaluations, train_nrmse_percent, law: LawSoFar(None) }
+    SearchProgress { round, rounds, evaluations, train_nrmse_percent, law: PartialLaw(None) }
 }
 
 /// A model with its scales and without a network.
@@ -206,7 +206,7 @@ struct MadelungTask<'a> {
 
 /// A turning point: the output there and its derivatives by all parameters.
 #[derive(Debug, Clone)]
-struct Reached {
+struct ReachedTurn {
     y: f64,
     by_parameters: Vec<f64>,
 }
@@ -295,21 +295,21 @@ impl<'a> MadelungTask<'a> {
             if let Some(last) = by_parameters.last_mut() {
                 *last = 1.0; // of y_0 itself
             }
-            let virgin = TurningPoint { x: 0.0, value: Reached { y: law.virgin_output, by_parameters } };
+            let virgin = TurningPoint { x: 0.0, value: ReachedTurn { y: law.virgin_output, by_parameters } };
             let mut memory = TurningPointStack::default();
             for (sample, &measured) in series.samples.iter().zip(&series.output) {
                 if pace.is_over(operations) {
                     return sweep;
                 }
                 // What is reached there follows from the branch.
-                memory.advance(sample.x, Reached { y: 0.0, by_parameters: Vec::new() });
+                memory.advance(sample.x, ReachedTurn { y: 0.0, by_parameters: Vec::new() });
                 let TurningPoint { x: x_t, value: reached } = memory.points().last().unwrap_or(&virgin);
                 let inputs = [sample.x, *x_t, reached.y, sample.rate];
                 let inputs = &inputs[..self.inputs()];
                 let mut here = if slopes {
                     derivatives(branch, inputs, &reached.by_parameters)
                 } else {
-                    Reached { y: branch.value(inputs), by_parameters: Vec::new() }
+                    ReachedTurn { y: branch.value(inputs), by_parameters: Vec::new() }
                 };
                 if !measured.is_nan() {
                     sweep.residual.push(here.y - measured);
@@ -331,7 +331,7 @@ impl<'a> MadelungTask<'a> {
 
 /// The output and its derivatives, `dy/dθ = (x - x_t) ∂N/∂θ + [1 + (x - x_t) ∂N/∂y_t] dy_t/dθ` (theory.md
 /// (8.21)).
-fn derivatives(branch: BranchNetwork<'_>, inputs: &[f64], at_turning_point: &[f64]) -> Reached {
+fn derivatives(branch: BranchNetwork<'_>, inputs: &[f64], at_turning_point: &[f64]) -> ReachedTurn {
     let run = branch.run();
     let neurons = branch.output.len() - 1;
     let along = inputs[0] - inputs[1];
@@ -359,14 +359,14 @@ fn derivatives(branch: BranchNetwork<'_>, inputs: &[f64], at_turning_point: &[f6
     let y = branch.limited(free);
     if y != free {
         all.fill(0.0);
-        return Reached { y, by_parameters: all };
+        return ReachedTurn { y, by_parameters: all };
     }
     let by_y_t = if seen[2] == inputs[2] { by_y_t } else { 0.0 };
     let carried = 1.0 + along * by_y_t;
     for (slope, before) in all.iter_mut().zip(at_turning_point) {
         *slope += carried * before;
     }
-    Reached { y, by_parameters: all }
+    ReachedTurn { y, by_parameters: all }
 }
 
 /// The error of a task as a function of the parameters, which count as well.
@@ -386,7 +386,7 @@ struct MadelungValue {
 impl LeastSquaresProblem for MadelungObjective<'_, '_> {
     type Value = MadelungValue;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules { damping: (1e-12, 1e8), ..Rules::KINKED };
+    const RULES: DescentSettings = DescentSettings { damping: (1e-12, 1e8), ..DescentSettings::KINKED };
 
     fn value(&self, parameters: &[f64]) -> MadelungValue {
         let broken_off = MadelungValue { objective: f64::INFINITY, mean_square: f64::INFINITY };

@@ -84,12 +84,12 @@ pub fn fit_random_stops(
     Ok(best.expect("at least one candidate"))
 }
 
-pub(crate) struct Drawn {
+pub(crate) struct DrawnStops {
     architecture: Architecture,
     parameters: Vec<f64>,
 }
 
-impl Drawn {
+impl DrawnStops {
     /// The stops for these data, with the first of the architectures that the options leave open.
     pub fn of(data: &Dataset, options: &ClassicalOptions) -> Result<Self> {
         let (deterioration, hidden) = (options.deterioration.unwrap_or(false), options.hidden.unwrap_or(0));

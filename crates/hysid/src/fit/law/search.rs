@@ -28,7 +28,7 @@ use serde_json::json;
 
 use crate::error::{Error, Result};
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
+use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
 use crate::law::series::Series;
 use crate::law::{Classical, Law};
 use crate::optimise::multi_start::{MultiStart, RoundPlan};
@@ -236,7 +236,7 @@ fn search_parameters(
             rounds,
             evaluations: drawn + descents.evaluations(),
             train_nrmse_percent: objective.nrmse_percent(best.value()),
-            law: LawSoFar(Some(&law)),
+            law: PartialLaw(Some(&law)),
         });
         if stop.is_asked() { ControlFlow::Break(()) } else { told }
     };

@@ -19,11 +19,11 @@ use crate::fit::network::objective::Objective;
 use crate::fit::network::run::{From, TrainingRun};
 use crate::fit::network::soundness::{NetworkFrame, require};
 use crate::fit::network::wanted_of;
-use crate::fit::progress::{Checkpoint, Fitted, HeldOutRows, Observer, Progress, SharedObserver, Unfinished};
+use crate::fit::progress::{Checkpoint, Fitted, HeldOutRows, Observer, PartialFit, Progress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::linear_algebra::dilated_space::DilatedSpace;
 use crate::model::history::Phase;
-use crate::model::input_transform::{InputTransform, Transformed};
+use crate::model::input_transform::{InputTransform, TransformedData};
 use crate::model::{Model, Predictor, ProvenanceDraft};
 use crate::network::free_run::FreeRun;
 use crate::network::scaling::Scaling;
@@ -115,7 +115,7 @@ struct Validation {
 
 impl<'a> TrainingPart<'a> {
     /// `seen` is what the shaping of the options makes of data measured.
-    fn of(seen: &'a Transformed<'_>, asked: &FitOptions) -> Result<Self> {
+    fn of(seen: &'a TransformedData<'_>, asked: &FitOptions) -> Result<Self> {
         Ok(Self {
             data: &seen.data,
             preprocessing: seen.preprocessing.clone(),
@@ -145,7 +145,7 @@ impl<'a> TrainingPart<'a> {
 
 impl<'a> Fitting<'a> {
     /// `seen` is what the shaping of the options makes of the data measured.
-    pub fn new(measured: &'a Dataset, seen: &'a Transformed<'_>, asked: FitOptions) -> Result<Self> {
+    pub fn new(measured: &'a Dataset, seen: &'a TransformedData<'_>, asked: FitOptions) -> Result<Self> {
         asked.check()?;
         let starts = asked.starts;
         let on_folds = if starts > 1 { MOST_FOLDS * STARTS_ON_FOLDS.min(starts) } else { 0 };
@@ -248,9 +248,9 @@ impl<'a> Fitting<'a> {
         let stop = StopCheck::new(&is_to_stop);
         let folds = wanted_of(&self.asked).on_folds(self.folds(), stop)?;
         let (shaping, rate) = (self.asked.shaping, self.asked.rate);
-        let seen: Vec<Transformed> = folds
+        let seen: Vec<TransformedData> = folds
             .iter()
-            .map(|fold| Transformed::of(&fold.train, &shaping, rate, Origin::OfData))
+            .map(|fold| TransformedData::of(&fold.train, &shaping, rate, Origin::OfData))
             .collect::<Result<_>>()?;
         let parts: Vec<TrainingPart> =
             seen.iter().map(|seen| TrainingPart::of(seen, &self.asked)).collect::<Result<_>>()?;
@@ -513,7 +513,7 @@ impl<'a> Fitting<'a> {
     }
 }
 
-impl Unfinished for Fitting<'_> {
+impl PartialFit for Fitting<'_> {
     fn checkpoint(&self) -> Option<Checkpoint> {
         Some(Checkpoint::of(&self.asked, self.measured, &self.state))
     }

@@ -21,7 +21,7 @@ use crate::network::{
     Architecture, GradientOverRecords, GramOverRecords, JacobianColumns, NetworkDrive, ParameterLayout,
     RowsOverRecords,
 };
-use crate::optimise::levenberg_marquardt::{LeastSquaresProblem, Rules, Slope};
+use crate::optimise::levenberg_marquardt::{DescentSettings, LeastSquaresProblem, Slope};
 use crate::options::network::{FitOptions, Regularisation};
 use crate::stop_check::StopCheck;
 
@@ -270,7 +270,7 @@ fn slope(gradient: Vec<f64>, curvature: Curvature) -> Slope<Curvature> {
 impl LeastSquaresProblem for Objective<'_> {
     type Value = ObjectiveValue;
     type Curvature = Curvature;
-    const RULES: Rules = Rules::SMOOTH;
+    const RULES: DescentSettings = DescentSettings::SMOOTH;
 
     fn value(&self, parameters: &[f64]) -> ObjectiveValue {
         self.value(parameters)

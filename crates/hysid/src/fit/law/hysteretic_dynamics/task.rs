@@ -10,7 +10,7 @@ use crate::law::hysteretic_dynamics::{
     DAMPING_RATIOS, Dynamics, DynamicsDrive, DynamicsLayout, DynamicsRun, LARGEST_WEIGHT,
 };
 use crate::linear_algebra::{Gram, Symmetric};
-use crate::optimise::levenberg_marquardt::{LeastSquaresProblem, Rules, Slope, step_within};
+use crate::optimise::levenberg_marquardt::{DescentSettings, LeastSquaresProblem, Slope, step_within};
 use crate::optimise::parallel;
 use crate::stop_check::StopCheck;
 
@@ -187,7 +187,7 @@ impl<'a> DynamicsTask<'a> {
 impl LeastSquaresProblem for DynamicsTask<'_> {
     type Value = DynamicsValue;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules::SMOOTH;
+    const RULES: DescentSettings = DescentSettings::SMOOTH;
 
     fn value(&self, parameters: &[f64]) -> DynamicsValue {
         let mean_square = self.mean_square(parameters).filter(|square| *square < LARGEST_VALUE);

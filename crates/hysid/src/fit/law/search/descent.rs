@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::linear_algebra::Symmetric;
 use crate::optimise::levenberg_marquardt::{
-    LeastSquaresProblem, LevenbergMarquardt, Rules, Slope, step_within,
+    DescentSettings, LeastSquaresProblem, LevenbergMarquardt, Slope, step_within,
 };
 use crate::optimise::multi_start::SearchStart;
 use crate::optimise::parallel;
@@ -63,7 +63,7 @@ impl SearchStart for Descent {
 impl LeastSquaresProblem for LawObjective<'_> {
     type Value = Projection;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules::KINKED;
+    const RULES: DescentSettings = DescentSettings::KINKED;
 
     fn value(&self, u: &[f64]) -> Projection {
         self.value(u)

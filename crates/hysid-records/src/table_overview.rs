@@ -15,7 +15,7 @@ const MOST_COLUMNS: usize = 40;
 
 /// A table as it is read.
 #[derive(Debug, Serialize)]
-pub struct Looked {
+pub struct TableOverview {
     file: String,
     stored: String,
     delimiter: String,
@@ -56,7 +56,7 @@ pub struct ColumnSummary {
     pub note: Option<String>,
 }
 
-impl Looked {
+impl TableOverview {
     /// Of a table whose columns have these roles, if they are known.
     pub fn of(table: &Table, roles: Option<&Roles>) -> Self {
         let layout = &table.layout;
