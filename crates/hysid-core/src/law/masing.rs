@@ -118,6 +118,7 @@ impl Law for Masing {
         stack.advance(x, 0.0);
         let y = match stack.branch() {
             StackBranch::Virgin => self.virgin_curve(x),
+            // (7.3)
             StackBranch::From { start, .. } => start.value + 2.0 * self.virgin_curve(0.5 * (x - start.x)),
         };
         stack.set_value(y);

@@ -161,7 +161,7 @@ impl SteelBranch {
             return self.start;
         }
         let z = ((d - self.from) / self.room).max(0.0);
-        self.start + self.room * yielding(z, self.roundness)
+        self.start + self.room * yielding(z, self.roundness) // (8.48)
     }
 }
 
@@ -206,7 +206,7 @@ impl MenegottoPinto {
             _ => (1.0, self.isotropic),
         };
         let excursion = powf((0.5 * (extremes[0] + extremes[1])).max(0.0), 0.8);
-        ratio * (1.0 + isotropic * excursion).max(LEAST_STRENGTH)
+        ratio * (1.0 + isotropic * excursion).max(LEAST_STRENGTH) // (8.50)
     }
 
     /// The branch of a virgin material.
@@ -221,6 +221,7 @@ impl MenegottoPinto {
         let (from, start) = (sign * state.d, sign * state.q);
         let room = (self.yield_stress(direction, state.extremes) - start).max(0.0);
         let excursion = (state.extremes[direction] - (from + room)).abs();
+        // (8.49)
         let roundness = self.roundness * (1.0 - self.loss * excursion / (self.pace + excursion));
         SteelBranch::new(from, start, room, roundness.max(LEAST_ROUNDNESS))
     }
@@ -228,7 +229,7 @@ impl MenegottoPinto {
     /// Advances to the next input and returns `q`.
     pub fn advance(&self, state: &mut MenegottoPintoState, x: f64) -> f64 {
         let limited = |d: f64| d.clamp(-LARGEST_DISPLACEMENT, LARGEST_DISPLACEMENT);
-        let d = limited(x / self.yield_displacement);
+        let d = limited(x / self.yield_displacement); // (8.47)
         if d == state.d {
             return state.q;
         }
@@ -243,6 +244,7 @@ impl MenegottoPinto {
         while opposite.last().is_some_and(|branch| -branch.from <= d_along) {
             opposite.pop();
         }
+        // (8.51)
         let along = followed(&mut state.branches[direction], d_along, (d - state.d).abs());
         (state.d, state.q) = (d, sign * along);
         state.q
@@ -324,6 +326,7 @@ impl Law for MenegottoPinto {
     fn step(&self, state: &mut MenegottoPintoState, sample: Sample) -> f64 {
         let x = sample.limited().x;
         let q = self.advance(state, x);
+        // (8.47)
         (self.offset + self.hardening_stiffness * x + self.strength * q).clamp(-f64::MAX, f64::MAX)
     }
 

@@ -82,9 +82,9 @@ impl BranchNetwork<'_> {
         let seen = &seen[..inputs.len()];
         let mut slope = self.output[0];
         for (neuron, c) in self.hidden.chunks_exact(self.run()).zip(&self.output[1..]) {
-            slope += c * tanh(argument(neuron, seen));
+            slope += c * tanh(argument(neuron, seen)); // (8.20)
         }
-        self.limited(inputs[2] + (inputs[0] - inputs[1]) * slope)
+        self.limited(inputs[2] + (inputs[0] - inputs[1]) * slope) // (8.19)
     }
 
     /// The inputs, limited to the trained ranges: beyond them a branch keeps the slope of its chord.

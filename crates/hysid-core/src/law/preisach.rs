@@ -147,6 +147,7 @@ impl Preisach {
     /// `c + k x + Σ v_j m_j(x)`
     fn reversible_part(&self, x: f64) -> f64 {
         let (interval, share) = self.everett.place(x).parts();
+        // (7.8)
         let between = self.reversible[interval] + 2.0 * share * self.weights.reversible[interval];
         self.weights.constant + self.weights.slope * x + between
     }
@@ -175,8 +176,8 @@ impl Law for Preisach {
         let x = limited(sample.x);
         stack.advance(x, 0.0);
         let switched = match stack.branch() {
-            StackBranch::Virgin if x >= 0.0 => self.virgin + 2.0 * self.everett.virgin(x),
-            StackBranch::Virgin => self.virgin - 2.0 * self.everett.virgin(x),
+            StackBranch::Virgin if x >= 0.0 => self.virgin + 2.0 * self.everett.virgin(x), // (7.11)
+            StackBranch::Virgin => self.virgin - 2.0 * self.everett.virgin(x),             // (7.11)
             StackBranch::From { start, .. } if x > start.x => start.value + 2.0 * self.everett(x, start.x),
             StackBranch::From { start, .. } => start.value - 2.0 * self.everett(start.x, x),
         };

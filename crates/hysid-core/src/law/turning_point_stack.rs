@@ -90,10 +90,10 @@ impl<T: Clone> TurningPointStack<T> {
         loop {
             let wiped = match self.points.as_slice() {
                 [] => 0,
-                [first] => usize::from(x.abs() >= first.x.abs()),
+                [first] => usize::from(x.abs() >= first.x.abs()), // (7.2), rule 3
                 [.., before, start] => {
                     let closed = if before.x > start.x { x >= before.x } else { x <= before.x };
-                    2 * usize::from(closed)
+                    2 * usize::from(closed) // (7.2), rule 2
                 }
             };
             if wiped == 0 {

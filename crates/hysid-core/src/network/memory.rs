@@ -300,6 +300,7 @@ impl MemoryLayer {
             z.copy_from_slice(&outputs[..z.len()]);
         }
         if let (Some(weights), Some(z)) = (&self.linear, linear.first_mut()) {
+            // (2.3)
             *z = weights.iter().zip(u).fold(0.0, |sum, (&weight, &u)| multiply_add::<S>(weight, u, sum));
         }
         for ((&(channel, inverse_tau), z), stress) in
@@ -307,6 +308,7 @@ impl MemoryLayer {
         {
             let increment = u[channel] - state.last[channel];
             let factors = decay::<S>(time_step * inverse_tau);
+            // (2.4)
             *stress = relaxation::advance(*stress, increment, (factors.stress, factors.increment));
             *z = *stress;
         }
@@ -363,7 +365,7 @@ impl MemoryLayer {
         state.started = true;
         for (group, plays) in self.groups.iter().zip(&mut state.play) {
             for (play, v) in plays.iter_mut().zip(drive::<S>(group, &first)) {
-                *play = play::follow(*play, v, 1.0);
+                *play = play::follow(*play, v, 1.0); // (2.2)
             }
         }
     }
@@ -375,7 +377,7 @@ impl MemoryLayer {
             let v = drive::<S>(group, |c| u[c][0]);
             for (slopes, u) in slopes.iter_mut().zip(u) {
                 for (slope, v) in slopes.iter_mut().zip(v) {
-                    *slope = if v.abs() > 1.0 { u[0] } else { 0.0 };
+                    *slope = if v.abs() > 1.0 { u[0] } else { 0.0 }; // (2.9): u_ref
                 }
             }
         }
@@ -388,7 +390,7 @@ impl MemoryLayer {
             z.fill(0.0);
             for (&weight, u) in weights.iter().zip(u) {
                 for (z, &u) in z.iter_mut().zip(u) {
-                    *z = multiply_add::<S>(weight, u, *z);
+                    *z = multiply_add::<S>(weight, u, *z); // (2.3)
                 }
             }
         }
@@ -429,7 +431,7 @@ impl MemoryLayer {
                     slope = left[t] * slope + by_ln_tau[t] * stress + increment * (gain[t] - left[t]);
                     ln_tau[m][t] = slope;
                 }
-                stress = relaxation::advance(stress, increment, (left[t], gain[t]));
+                stress = relaxation::advance(stress, increment, (left[t], gain[t])); // (2.4)
                 z[m][t] = stress;
                 last = u[channel][t];
             }
@@ -465,7 +467,7 @@ fn drive<S: Simd>(group: &StopGroup, u: impl Fn(usize) -> f64) -> Lanes {
 /// [`deteriorating_stop::remaining_strength`] with a fused product: one operation less, and another rounding.
 #[inline(always)]
 fn remaining_strength<S: Simd>(slip: f64, inverse_beta: f64) -> f64 {
-    let strength = multiply_add::<S>(-slip, inverse_beta, 1.0);
+    let strength = multiply_add::<S>(-slip, inverse_beta, 1.0); // (2.2): 1 - s/β
     if strength > 0.0 { strength } else { 0.0 }
 }
 
@@ -481,12 +483,12 @@ fn follow<S: Simd, const L: usize, const DETERIORATING: bool>(
     // A plain loop, which becomes vectors; a closure for each lane does not.
     for l in 0..L {
         let before = play[l];
-        let after = play::follow(before, v[l], 1.0);
+        let after = play::follow(before, v[l], 1.0); // (2.2): p
         play[l] = after;
-        let mut output = stop::elongation(v[l], after);
+        let mut output = stop::elongation(v[l], after); // (2.2): ε
         if DETERIORATING {
-            slip[l] = deteriorating_stop::accumulate(slip[l], before, after);
-            output *= remaining_strength::<S>(slip[l], inverse_beta[l]);
+            slip[l] = deteriorating_stop::accumulate(slip[l], before, after); // (2.2): s
+            output *= remaining_strength::<S>(slip[l], inverse_beta[l]); // (2.2): z
         }
         outputs[l] = output;
     }
@@ -600,17 +602,17 @@ fn advance_with_slopes<S: Simd>(
         for l in 0..LANES {
             let v = v[l];
             let before = memory.play[l];
-            let after = play::follow(before, v, 1.0);
+            let after = play::follow(before, v, 1.0); // (2.2): p
             memory.play[l] = after;
-            let slip = deteriorating_stop::accumulate(memory.slip[l], before, after);
+            let slip = deteriorating_stop::accumulate(memory.slip[l], before, after); // (2.2): s
             memory.slip[l] = slip;
             let left = remaining_strength::<S>(slip, group.inverse_beta[l]);
-            let elongation = stop::elongation(v, after);
+            let elongation = stop::elongation(v, after); // (2.2): ε
             let wears = if left > 0.0 { elongation * group.inverse_beta[l] } else { 0.0 };
-            output[t][l] = elongation * left;
+            output[t][l] = elongation * left; // (2.2): z
             strength[t][l] = left;
             wear[t][l] = wears;
-            by_ln_beta[t][l] = wears * slip;
+            by_ln_beta[t][l] = wears * slip; // (2.9): ∂z/∂ln β
             moved[t][l] = after - before;
         }
     }
@@ -625,9 +627,11 @@ fn advance_with_slopes<S: Simd>(
         for (t, &u) in u[..rows].iter().enumerate() {
             for l in 0..LANES {
                 let before = play_slope[l];
-                let after = if moved[t][l] != 0.0 { u } else { before };
+                let after = if moved[t][l] != 0.0 { u } else { before }; // (2.9): ∂p/∂w
                 play_slope[l] = after;
+                // (2.9): ∂s/∂w
                 slip_slope[l] += if moved[t][l] > 0.0 { after - before } else { before - after };
+                // (2.9): ∂z/∂w
                 slope[t][l] = strength[t][l] * (u - after) - wear[t][l] * slip_slope[l];
             }
         }

@@ -65,6 +65,7 @@ impl Readout {
         let (mut rest, mut power) = (BlockValues([0.0; BLOCK]), BlockValues([0.0; BLOCK]));
         let (pairs, last) = h[..self.hidden].as_chunks_mut::<2>();
         for [first, second] in pairs {
+            // (2.5), two neurons at a time
             weighted_sums(simd, z, [self.neuron(i), self.neuron(i + 1)], vectors, [first, second]);
             for neuron in [first, second] {
                 tanh_of_row::<S>(&mut neuron[..reached], &mut rest[..reached], &mut power[..reached]);
@@ -72,7 +73,7 @@ impl Readout {
             i += 2;
         }
         if let [last] = last {
-            weighted_sums(simd, z, [self.neuron(i)], vectors, [&mut *last]);
+            weighted_sums(simd, z, [self.neuron(i)], vectors, [&mut *last]); // (2.5)
             tanh_of_row::<S>(&mut last[..reached], &mut rest[..reached], &mut power[..reached]);
         }
     }
@@ -139,16 +140,16 @@ impl Backward {
         for (j, q) in self.by_memory.iter_mut().enumerate() {
             let d = direct.get(j).copied().unwrap_or(0.0);
             for (q, weight) in q.iter_mut().zip(weight) {
-                *q = d * weight;
+                *q = d * weight; // (2.11): d_j
             }
         }
         for (i, ((&c, h), slope)) in hidden.iter().zip(&block.h).zip(&mut self.by_sum).enumerate() {
             for ((slope, &h), &weight) in slope.iter_mut().zip(h).zip(weight) {
-                *slope = c * multiply_add::<S>(-h, h, 1.0) * weight;
+                *slope = c * multiply_add::<S>(-h, h, 1.0) * weight; // (2.11): c_i (1 - h_i²)
             }
             let (_, weights) = readout.neuron(i);
             for (q, &weight) in self.by_memory.iter_mut().zip(weights) {
-                accumulate::<S>(weight, &slope.0, &mut q.0);
+                accumulate::<S>(weight, &slope.0, &mut q.0); // (2.11): times U_ij
             }
         }
     }
@@ -213,7 +214,7 @@ fn outputs<S: Simd, const V: usize>(
     let [of_hidden] = add_weighted(simd, h, [hidden], first, [[simd.splat_f64s(constant); V]]);
     let [of_memory] = add_weighted(simd, z, [direct], first, [[simd.splat_f64s(0.0); V]]);
     for v in 0..V {
-        y[first + v] = simd.add_f64s(of_hidden[v], of_memory[v]);
+        y[first + v] = simd.add_f64s(of_hidden[v], of_memory[v]); // (2.6)
     }
 }
 
@@ -297,9 +298,9 @@ impl SampleReadout {
         // One loop over all groups, of a length that the compiler does not know: it unrolls a loop over a single group
         // and then uses narrower vectors.
         for h in h.iter_mut() {
-            *h = tanh::<S>(*h);
+            *h = tanh::<S>(*h); // (2.5)
         }
-        dot::<S>(&self.of_hidden, h, self.constant) + of_memory
+        dot::<S>(&self.of_hidden, h, self.constant) + of_memory // (2.6)
     }
 }
 

@@ -164,9 +164,9 @@ impl Cell {
         }
         self.advance_stops::<S>(shape, memory, input);
         let (inputs, neurons) = memory.terms.split_at_mut(shape.inputs());
-        layer::<S>(&self.hidden, inputs, neurons);
+        layer::<S>(&self.hidden, inputs, neurons); // (8.30)
         let states = &mut inputs[shape.first_state()..];
-        self.leaks::<S>(memory.moved, memory.elapsed, &mut memory.leaks);
+        self.leaks::<S>(memory.moved, memory.elapsed, &mut memory.leaks); // (8.29)
         memory.states_before.copy_from_slice(states);
         let rows = self.targets.chunks_exact(shape.neurons);
         for (i, (state, row)) in states.iter_mut().zip(rows).enumerate() {
@@ -175,7 +175,7 @@ impl Cell {
                 target = multiply_add::<S>(self.rate_gains[i], input.rate, target);
             }
             memory.pulls[i] = target - *state;
-            *state = multiply_add::<S>(memory.leaks[i], memory.pulls[i], *state);
+            *state = multiply_add::<S>(memory.leaks[i], memory.pulls[i], *state); // (8.31)
         }
     }
 
@@ -206,12 +206,12 @@ impl Cell {
         }
         for leak in leaks {
             let t = tanh::<S>(0.5 * *leak);
-            *leak = 2.0 * t / (1.0 + t);
+            *leak = 2.0 * t / (1.0 + t); // (8.29): 1 - exp(-leak)
         }
     }
 
     #[inline(always)]
     pub(super) fn output<S: Simd>(&self, memory: &CellMemory) -> f64 {
-        product::<S>(&self.output, &memory.terms)
+        product::<S>(&self.output, &memory.terms) // (8.32)
     }
 }

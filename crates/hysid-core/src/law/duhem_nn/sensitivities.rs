@@ -183,7 +183,7 @@ impl CellSensitivities {
         inputs[..first].copy_from_slice(&memory.terms[..first]);
         inputs[first..].copy_from_slice(&memory.states_before);
         for (slope, h) in slopes.iter_mut().zip(neurons) {
-            *slope = 1.0 - h * h;
+            *slope = 1.0 - h * h; // (8.33): g_j
         }
         std::mem::swap(states, before);
         for i in 0..shape.states {
@@ -210,10 +210,10 @@ impl CellSensitivities {
                 direct[layout.ln_relaxation_times.start + i] = if kept == 0.0 { 0.0 } else { -kept * steps };
             }
             carry::<S>(cell, back, carried);
-            carried[i] += 1.0 - leak;
+            carried[i] += 1.0 - leak; // (8.33)
             let state = &mut states[i * width..][..width];
             state.copy_from_slice(direct);
-            add_multiples::<S>(state, carried, before);
+            add_multiples::<S>(state, carried, before); // (8.33)
         }
     }
 
@@ -238,8 +238,8 @@ impl CellSensitivities {
             }
         }
         carry::<S>(cell, back, carried);
-        add_multiples::<S>(of_output, carried, before);
-        add_multiples::<S>(of_output, &of_inputs[shape.first_state()..], states);
+        add_multiples::<S>(of_output, carried, before); // (8.34)
+        add_multiples::<S>(of_output, &of_inputs[shape.first_state()..], states); // (8.34)
         jacobian.copy_from_slice(&of_output[..jacobian.len()]);
     }
 }

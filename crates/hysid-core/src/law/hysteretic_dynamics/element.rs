@@ -193,8 +193,9 @@ impl PathPoint {
     /// Neurons and force from the inputs of the layer.
     #[inline(always)]
     pub fn finish<S: Simd>(&mut self, element: &Element) {
-        layer::<S>(&element.layer, &self.inputs, &mut self.neurons);
+        layer::<S>(&element.layer, &self.inputs, &mut self.neurons); // (15.7)
         let (of_memory, of_neurons) = element.force.split_at(self.inputs.len() - 3);
+        // (15.10)
         self.force = product::<S>(of_memory, &self.inputs[3..]) + product::<S>(of_neurons, &self.neurons);
     }
 
@@ -243,19 +244,20 @@ impl PathStep {
         let of_velocity = velocity - from.inputs[2];
         for i in 0..stops {
             let driven = multiply_add::<S>(element.stop_velocities[i], of_velocity, self.moved);
-            let (free, threshold) = (from.elongations[i] + driven, element.thresholds[i]);
-            let elongation = free.clamp(-threshold, threshold);
+            let (free, threshold) = (from.elongations[i] + driven, element.thresholds[i]); // (15.6): ε̂
+            let elongation = free.clamp(-threshold, threshold); // (15.6): ε
             elongations[i] = elongation;
-            slips[i] = from.slips[i] + (free - elongation).abs();
+            slips[i] = from.slips[i] + (free - elongation).abs(); // (15.6): Λ
             let loss = element.strength_losses.get(i).copied().unwrap_or(0.0);
             self.strengths[i] = (1.0 - loss * slips[i]).max(0.0);
             self.at_threshold[i] = if elongation == free { 0.0 } else { elongation };
-            inputs[3 + i] = elongation * self.strengths[i];
+            inputs[3 + i] = elongation * self.strengths[i]; // (15.6): z
         }
         let inputs = &mut self.end.inputs;
         self.inputs_ahead[..first_state].copy_from_slice(&inputs[..first_state]);
         for (i, before) in from.inputs[first_state..].iter().enumerate() {
             let weights = StateWeights::of::<S>(element.path_leaks[i] * path);
+            // (15.8): T_0
             let target = product::<S>(&rows[i * shape.neurons..][..shape.neurons], &from.neurons);
             self.inputs_ahead[first_state + i] =
                 multiply_add::<S>(1.0 - weights.kept, target - before, *before);
@@ -264,8 +266,10 @@ impl PathStep {
         layer::<S>(&element.layer, &self.inputs_ahead, &mut self.neurons_ahead);
         for (i, before) in from.inputs[first_state..].iter().enumerate() {
             let StateWeights { kept, first, last, .. } = self.weights[i];
+            // (15.8): T_1
             let ahead = product::<S>(&rows[i * shape.neurons..][..shape.neurons], &self.neurons_ahead);
             self.targets_ahead[i] = ahead;
+            // (15.9)
             self.end.inputs[first_state + i] =
                 multiply_add::<S>(kept, *before, multiply_add::<S>(first, self.targets[i], last * ahead));
         }

@@ -88,7 +88,7 @@ impl Propagation {
     pub fn moved(&self, [q, p]: [f64; 2], [f_before, f]: [f64; 2]) -> [f64; 2] {
         let of =
             |[by_q, by_p, by_before, by_f]: [f64; 4]| by_q * q + by_p * p + by_before * f_before + by_f * f;
-        [of(self.displacement), of(self.velocity)]
+        [of(self.displacement), of(self.velocity)] // (15.3), (15.4)
     }
 
     const AT_REST: Self = Self { displacement: [0.0, 0.0, 0.0, 1.0], velocity: [0.0; 4] };

@@ -408,6 +408,7 @@ impl<'l> MotionSensitivities<'l> {
             for (offset, by, by_ln_frequency, by_ln_damping) in parts {
                 let row = &mut self.alone[(offset + i) * width..][..width];
                 row.fill(0.0);
+                // (15.3), (15.4)
                 let along = |[a, b, c, d]: [f64; 4]| a * state[0] + b * state[1] + c * first + d * last;
                 row[layout.ln_frequency] = along(by_ln_frequency);
                 row[layout.ln_damping] = along(by_ln_damping);
@@ -502,13 +503,14 @@ impl<'l> MotionSensitivities<'l> {
                 let (displacement, velocity) = self.influence(dynamics, e, f);
                 let Local { by_displacement, by_velocity, .. } = self.elements[e].of_force;
                 let own = by_displacement * displacement + by_velocity * velocity;
-                self.matrix[e * count + f] = if e == f { 1.0 } else { 0.0 } - own;
+                self.matrix[e * count + f] = if e == f { 1.0 } else { 0.0 } - own; // (15.13): 1 - ∂R/∂r
             }
         }
         invert(&mut self.matrix, &mut self.inverse, count);
         for e in 0..count {
             let row = &mut self.forces[e * width..(e + 1) * width];
             row.fill(0.0);
+            // (15.13)
             add_multiples::<S>(row, &self.inverse[e * count..(e + 1) * count], &self.new_forces);
         }
     }

@@ -177,6 +177,7 @@ impl DynamicsMotion {
 
     #[inline(always)]
     pub(super) fn output<S: Simd>(&self, dynamics: &Dynamics) -> f64 {
+        // (15.5), without y_0 and σ
         let mut y = dynamics.direct * self.newest_input();
         for (i, mode) in dynamics.modes.iter().enumerate() {
             y += multiply_add::<S>(mode.velocity_in_output, self.velocities[i], self.displacements[i]);
@@ -192,7 +193,7 @@ impl DynamicsMotion {
     pub(super) fn force_on<S: Simd>(&self, dynamics: &Dynamics, mode: usize, other: f64) -> f64 {
         let mut force = other;
         for (element, r) in dynamics.elements.iter().zip(&self.forces) {
-            force = multiply_add::<S>(-element.compliances[mode], *r, force);
+            force = multiply_add::<S>(-element.compliances[mode], *r, force); // (15.1): f_i
         }
         force
     }
@@ -222,8 +223,8 @@ impl DynamicsMotion {
             let (q, p) = (self.displacements[i], self.velocities[i]);
             let force = self.force_on::<S>(dynamics, i, mode.gain * self.input_before);
             let ahead = mode.gain * self.input;
-            self.displacements_alone[i] = sum::<S>(by.displacement, [q, p, force, ahead]);
-            self.velocities_alone[i] = sum::<S>(by.velocity, [q, p, force, ahead]);
+            self.displacements_alone[i] = sum::<S>(by.displacement, [q, p, force, ahead]); // (15.3)
+            self.velocities_alone[i] = sum::<S>(by.velocity, [q, p, force, ahead]); // (15.4)
         }
     }
 
@@ -232,7 +233,9 @@ impl DynamicsMotion {
     fn move_modes<S: Simd>(&mut self, dynamics: &Dynamics) {
         for (i, by) in self.propagations.iter().enumerate() {
             let force = self.force_on::<S>(dynamics, i, 0.0);
+            // (15.3): α_1 f_1
             self.displacements[i] = multiply_add::<S>(by.displacement[3], force, self.displacements_alone[i]);
+            // (15.4): β_1 f_1
             self.velocities[i] = multiply_add::<S>(by.velocity[3], force, self.velocities_alone[i]);
         }
     }
@@ -241,6 +244,7 @@ impl DynamicsMotion {
     #[inline(always)]
     fn try_step<S: Simd>(&mut self, dynamics: &Dynamics, index: usize) {
         let element = &dynamics.elements[index];
+        // (15.2)
         let (mut displacement, mut velocity) = (element.of_input * self.input, 0.0);
         for (i, (q, p)) in self.displacements.iter().zip(&self.velocities).enumerate() {
             displacement = multiply_add::<S>(element.of_displacements[i], *q, displacement);

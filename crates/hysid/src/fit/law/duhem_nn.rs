@@ -376,7 +376,7 @@ impl LeastSquaresProblem for DuhemTask<'_> {
             None => OutputSolution::broken_off(self.frame.layout.shape.terms()),
         };
         let decay: f64 = self.weights(parameters).map(|(_, w)| w * w).sum();
-        let objective = solution.objective + 0.5 * DECAY * decay;
+        let objective = solution.objective + 0.5 * DECAY * decay; // (8.36)
         DuhemValue { objective, mean_square: solution.mean_square, solution }
     }
 
@@ -389,7 +389,7 @@ impl LeastSquaresProblem for DuhemTask<'_> {
         let (mut gradient, mut curvature) =
             self.output_problem(&gram).linearise(&value.solution, parameters.len());
         for (index, weight) in self.weights(parameters) {
-            gradient[index] += DECAY * weight;
+            gradient[index] += DECAY * weight; // (3.3)
             curvature.add_to_diagonal(index, DECAY);
         }
         let diagonal = (0..gradient.len()).map(|index| curvature.diagonal(index)).collect();

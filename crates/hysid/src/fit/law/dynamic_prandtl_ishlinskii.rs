@@ -285,16 +285,16 @@ impl SearchFamily for Dynamic {
             let mut u = sample.x;
             if frame.lag.is_some() {
                 lag = advance(lag, risen, factors.lag);
-                u -= lag;
+                u -= lag; // (8.53)
             }
             std::mem::swap(&mut before, &mut features);
             features[0] = u;
             let (curve, of_plays) = features[1..].split_at_mut(frame.dead_zones.len());
             for (feature, &threshold) in curve.iter_mut().zip(&frame.dead_zones) {
-                *feature = dead_zone(u, threshold);
+                *feature = dead_zone(u, threshold); // (8.54): S_d
             }
             for ((feature, play), &r) in of_plays.iter_mut().zip(&mut plays).zip(&frame.plays) {
-                *play = play::follow(*play, u, r);
+                *play = play::follow(*play, u, r); // (8.54): p_r
                 *feature = self.sign * *play;
             }
             if index == 0 {
@@ -308,13 +308,14 @@ impl SearchFamily for Dynamic {
                 let changes = features.iter().zip(&before);
                 for ((stress, (&now, &before)), relaxed) in stresses.iter_mut().zip(changes).zip(&mut *of_row)
                 {
-                    *stress = advance(*stress, now - before, factors);
-                    *relaxed += share * *stress;
+                    *stress = advance(*stress, now - before, factors); // (1.11)
+                    *relaxed += share * *stress; // (8.55)
                 }
             }
             if let Some(step) = &factors.resonance {
                 for ((motion, before), feature) in motions.iter_mut().zip(&mut forces_before).zip(of_row) {
                     let force = *feature;
+                    // (8.56)
                     *motion = if index > 0 { step.moved(*motion, [*before, force]) } else { [force, 0.0] };
                     *before = force;
                     *feature = motion[0];
@@ -325,12 +326,12 @@ impl SearchFamily for Dynamic {
                 beside[0] = sample.x;
                 let each = input_stresses.iter_mut().zip(&factors.relaxations).zip(&mut beside[1..]);
                 for ((stress, &factors), feature) in each {
-                    *stress = advance(*stress, risen, factors);
+                    *stress = advance(*stress, risen, factors); // (1.11)
                     *feature = *stress;
                 }
             }
             if !y.is_nan() {
-                columns.push(&row);
+                columns.push(&row); // (8.58)
             }
         }
     }

@@ -85,7 +85,7 @@ impl GeneralizedFamily {
         let shape = |x: f64| tanh(a1 * x + a2);
         let share = (shape(self.high) - shape(self.low)).max(SMALLEST_SHARE);
         let a0 = rise / share;
-        Envelope { a0, a1, a2, a3: from - a0 * shape(self.low) }
+        Envelope { a0, a1, a2, a3: from - a0 * shape(self.low) } // (8.13)
     }
 
     fn law(&self, parameters: &[f64]) -> GeneralizedPrandtlIshlinskii {
@@ -159,7 +159,7 @@ impl SearchFamily for GeneralizedFamily {
             let (left, right) = (law.left.value(sample.x), law.right.value(sample.x));
             for (index, play) in plays.iter_mut().enumerate() {
                 let r = law.spacing * index as f64;
-                *play = follow(*play, left, right, r);
+                *play = follow(*play, left, right, r); // (8.12)
             }
             if y.is_nan() {
                 continue;
@@ -167,7 +167,7 @@ impl SearchFamily for GeneralizedFamily {
             if self.free_weights {
                 row[1..].iter_mut().zip(&plays).for_each(|(feature, play)| *feature = self.sign * play);
             } else {
-                row[1] = weights.iter().zip(&plays).map(|(weight, play)| weight * play).sum();
+                row[1] = weights.iter().zip(&plays).map(|(weight, play)| weight * play).sum(); // (8.14)
             }
             columns.push(&row);
         }

@@ -64,6 +64,7 @@ fn slope_features(x: f64, thresholds: &[f64], plays: &mut [f64], features: &mut 
     for ((play, &r), feature) in plays.iter_mut().zip(thresholds).zip(&mut features[1..]) {
         *play = play::follow(*play, x, r);
         let elongation = stop::elongation(x, *play);
+        // (7.13): a slope multiplies the difference of two stops
         *feature = elongation - before;
         before = elongation;
     }

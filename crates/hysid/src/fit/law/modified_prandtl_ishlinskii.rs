@@ -263,7 +263,7 @@ impl PlayRows {
             }
             features[..first].copy_from_slice(drive);
             for (j, feature) in features[first..].iter_mut().enumerate() {
-                *feature = -hat(y, &knots[j..j + 3]);
+                *feature = -hat(y, &knots[j..j + 3]); // (7.7)
             }
             gatherer.add(fold, &features, y);
         }
@@ -285,7 +285,7 @@ impl PlayRows {
         let mut z = vec![knots[0]];
         for k in 1..knots.len() {
             let hat = |k: usize| if k == 0 || k == knots.len() - 1 { 0.0 } else { weights[first + k - 1] };
-            let rise = (knots[k] - knots[k - 1]) + hat(k) - hat(k - 1);
+            let rise = (knots[k] - knots[k - 1]) + hat(k) - hat(k - 1); // (7.7): S'
             z.push(z[k - 1] + rise.max(0.05 * (knots[k] - knots[k - 1])));
         }
         let value = |at: f64| {
@@ -327,6 +327,7 @@ impl PlayRows {
     fn objective(&self, point: &ScaledParameters) -> f64 {
         let zones = point.dead_zones();
         let rows = self.drives.iter().zip(&self.targets);
+        // (7.6)
         let squares = rows.map(|(drive, y)| square(zones.value(point.before(drive)) - y)).sum::<f64>();
         let penalty: f64 = point.hysteresis[2..].iter().map(|w| w * w).sum();
         0.5 * (squares / self.targets.len() as f64 + point.prior.ridge * penalty)
@@ -499,7 +500,7 @@ impl ScaledParameters {
                 dead_zone(z.max(low), high)
             };
             jacobian[first + 1 + k] = passed;
-            y += slope * passed;
+            y += slope * passed; // (7.6)
         }
         y
     }

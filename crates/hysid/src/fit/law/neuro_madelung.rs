@@ -345,26 +345,26 @@ fn derivatives(branch: BranchNetwork<'_>, inputs: &[f64], at_turning_point: &[f6
     for (index, neuron) in branch.hidden.chunks_exact(run).enumerate() {
         let h = tanh(argument(neuron, seen));
         let c = branch.output[1 + index];
-        slope += c * h;
+        slope += c * h; // (8.20)
         rest[1 + index] = along * h;
         let back = c * (1.0 - h * h);
         by_y_t += back * neuron[3];
         let weights = &mut hidden[index * run..(index + 1) * run];
         weights[0] = along * back;
         for (weight, input) in weights[1..].iter_mut().zip(seen) {
-            *weight = along * back * input;
+            *weight = along * back * input; // (8.21): (x - x_t) ∂N/∂U
         }
     }
-    let free = inputs[2] + along * slope;
+    let free = inputs[2] + along * slope; // (8.19)
     let y = branch.limited(free);
     if y != free {
         all.fill(0.0);
         return ReachedTurn { y, by_parameters: all };
     }
     let by_y_t = if seen[2] == inputs[2] { by_y_t } else { 0.0 };
-    let carried = 1.0 + along * by_y_t;
+    let carried = 1.0 + along * by_y_t; // (8.21): 1 + (x - x_t) ∂N/∂y_t
     for (slope, before) in all.iter_mut().zip(at_turning_point) {
-        *slope += carried * before;
+        *slope += carried * before; // (8.21)
     }
     ReachedTurn { y, by_parameters: all }
 }

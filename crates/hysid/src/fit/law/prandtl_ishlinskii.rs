@@ -45,7 +45,7 @@ impl Identify for PrandtlIshlinskii {
                 features[1] = sample.x;
                 for ((play, &r), feature) in plays.iter_mut().zip(self.thresholds()).zip(&mut features[2..]) {
                     *play = play::follow(*play, sample.x, r);
-                    *feature = *play;
+                    *feature = *play; // (7.4)
                 }
                 rows.add(&features, y);
             }
@@ -100,7 +100,7 @@ fn play_sums(rows: &TrainingRows, thresholds: &[f64], stop: StopCheck<'_>) -> Re
             features[1] = sample.x * factor;
             for ((play, &r), feature) in plays.iter_mut().zip(thresholds).zip(&mut features[2..]) {
                 *play = play::follow(*play, sample.x, r);
-                *feature = *play * factor;
+                *feature = *play * factor; // (7.4)
             }
             gatherer.add(fold, &features, target);
         }

@@ -140,11 +140,13 @@ impl PreisachProblem {
         let (ridge, bend) = (1e-4 * size, powi(size, 3));
         for i in 0..n {
             for j in 0..=i {
-                penalty.add_square(&[term(i, j, 1.0)], ridge);
+                penalty.add_square(&[term(i, j, 1.0)], ridge); // (7.12): ε‖w‖²
                 if j >= 2 {
+                    // (7.12): ‖D²w‖²
                     penalty.add_square(&[term(i, j, 1.0), term(i, j - 1, -2.0), term(i, j - 2, 1.0)], bend);
                 }
                 if i >= j + 2 {
+                    // (7.12)
                     penalty.add_square(&[term(i, j, 1.0), term(i - 1, j, -2.0), term(i - 2, j, 1.0)], bend);
                 }
             }
@@ -267,7 +269,7 @@ impl<'a> RelayRows<'a> {
         self.features[1] = scaled;
         let (reversible, cells) = self.features[FIRST..].split_at_mut(n);
         plane.below(x, reversible);
-        reversible.iter_mut().for_each(|share| *share = 2.0 * *share - 1.0);
+        reversible.iter_mut().for_each(|share| *share = 2.0 * *share - 1.0); // (7.8): m_j
         cells.copy_from_slice(&self.settled);
         add_branch(plane, self.stack.points().last().map(|start| start.x), x, 1.0, cells);
     }
@@ -291,7 +293,7 @@ fn add_branch(plane: &Plane, start: Option<f64>, x: f64, factor: f64, cells: &mu
         None => {
             let change = 2.0 * factor * x.signum();
             for (cell, (i, j)) in cells.iter_mut().zip(plane.indices()) {
-                *cell += change * plane.virgin_share(i, j, x);
+                *cell += change * plane.virgin_share(i, j, x); // (7.11)
             }
         }
         Some(start) => {
@@ -299,6 +301,7 @@ fn add_branch(plane: &Plane, start: Option<f64>, x: f64, factor: f64, cells: &mu
             let (mut below_low, mut below_high) = (vec![0.0; n], vec![0.0; n]);
             plane.below(start.min(x), &mut below_low);
             plane.below(start.max(x), &mut below_high);
+            // (7.9)
             plane.add_swing(&below_high, &below_low, 2.0 * factor * (x - start).signum(), cells);
         }
     }

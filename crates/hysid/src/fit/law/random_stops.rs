@@ -173,7 +173,7 @@ fn fit_readout(
     let features = architecture.output_weights();
     let penalty = Penalty::ridge((0..features).map(|i| f64::from(u8::from(i > 0))));
     let choice = sums.choose(&penalty, &logarithmic(1e-9, 1e-1, 17), Some(Sign::Any), &(0..0), stop);
-    let output = sums.weights(&penalty, choice, 0..0, stop)?;
+    let output = sums.weights(&penalty, choice, 0..0, stop)?; // (7.1)
     Ok(RandomStops {
         network: Network::new(architecture, parameters, output)?,
         scaling: scaling.clone(),

@@ -141,7 +141,7 @@ impl SearchFamily for RateDependentFamily {
             if columns.is_over(8 * plays.len()) {
                 return;
             }
-            law.advance(&mut plays, sample);
+            law.advance(&mut plays, sample); // (8.15)
             if y.is_nan() {
                 continue;
             }
@@ -149,7 +149,7 @@ impl SearchFamily for RateDependentFamily {
             if self.free_weights {
                 row[2..].copy_from_slice(&plays);
             } else {
-                row[2] = weights.iter().zip(&plays).map(|(weight, play)| weight * play).sum();
+                row[2] = weights.iter().zip(&plays).map(|(weight, play)| weight * play).sum(); // (8.18)
             }
             columns.push(&row);
         }

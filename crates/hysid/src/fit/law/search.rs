@@ -77,9 +77,9 @@ impl SearchVariable {
     /// The parameter at `u`: `l + (h - l) u`, or `l (h/l)^u` on a logarithmic scale (theory.md (8.2)).
     pub fn value(self, u: f64) -> f64 {
         let value = if self.logarithmic {
-            self.low * powf(self.high / self.low, u)
+            self.low * powf(self.high / self.low, u) // (8.2)
         } else {
-            self.low + (self.high - self.low) * u
+            self.low + (self.high - self.low) * u // (8.2)
         };
         value.clamp(self.low, self.high)
     }
@@ -174,7 +174,7 @@ impl LawObjective<'_> {
         for series in self.series {
             self.family.features(&parameters, series, &mut columns);
         }
-        columns.project(&self.target, non_negative)
+        columns.project(&self.target, non_negative) // (8.1)
     }
 
     fn nrmse_percent(&self, projection: &Projection) -> f64 {

@@ -193,7 +193,7 @@ impl LeastSquaresProblem for DynamicsTask<'_> {
         let mean_square = self.mean_square(parameters).filter(|square| *square < LARGEST_VALUE);
         let mean_square = mean_square.unwrap_or(f64::INFINITY);
         let decay: f64 = parameters.iter().zip(self.penalties).map(|(p, penalty)| penalty * p * p).sum();
-        DynamicsValue { objective: 0.5 * mean_square + 0.5 * decay, mean_square }
+        DynamicsValue { objective: 0.5 * mean_square + 0.5 * decay, mean_square } // (15.15)
     }
 
     fn objective(value: &DynamicsValue) -> f64 {

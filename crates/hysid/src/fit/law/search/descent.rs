@@ -92,7 +92,7 @@ impl LeastSquaresProblem for LawObjective<'_> {
 
     fn step(&self, slope: &Slope<Symmetric>, u: &[f64], damping: &[f64]) -> Option<Vec<f64>> {
         let leaves = |i: usize, by: f64| u[i] <= 0.0 && by < 0.0 || u[i] >= 1.0 && by > 0.0;
-        step_within(&slope.curvature, &slope.gradient, damping, leaves, StopCheck::never())
+        step_within(&slope.curvature, &slope.gradient, damping, leaves, StopCheck::never()) // (8.3)
     }
 
     fn limit(&self, u: &mut [f64]) {

@@ -90,7 +90,7 @@ impl<'a> FeatureColumns<'a> {
         });
         let right: Vec<f64> = (0..n).map(|i| scale[i] * dot(&self.columns[i], target)).collect();
         let normal = Quadratic { matrix: gram, right };
-        let found = normal.non_negative_minimum(non_negative, &[], StopCheck::never());
+        let found = normal.non_negative_minimum(non_negative, &[], StopCheck::never()); // (8.1)
         let mut weights = found.unwrap_or_else(|| vec![0.0; n]);
         for (weight, scale) in weights.iter_mut().zip(&scale) {
             *weight *= scale;
