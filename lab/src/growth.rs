@@ -17,7 +17,7 @@ use hysid::data::record::Dataset;
 use hysid::fit::network::fit;
 use hysid::fit::network::objective::Objective;
 use hysid::model::input_transform::InputTransform;
-use hysid::model::{Ensemble, ProvenanceDraft, Group, Model, Node, NodeKind, Predictor, Weights};
+use hysid::model::{Ensemble, Group, Model, Node, NodeKind, Predictor, ProvenanceDraft, Weights};
 use hysid::network::scaling::Scaling;
 use hysid::options::FitSpec;
 use hysid::options::fit_spec::AutoOptions;

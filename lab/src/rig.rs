@@ -5,7 +5,7 @@ pub mod drives;
 use anyhow::{Context, Result};
 use hysid::Model;
 use hysid::data::record::{Dataset, Record};
-use hysid::plan::{Limits, DrivePath, Wave};
+use hysid::plan::{DrivePath, Limits, Wave};
 use hysid::specimens::with_noise;
 use hysid_lab::generated::{DrivenSpecimen, driven_specimen};
 

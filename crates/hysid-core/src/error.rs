@@ -19,7 +19,7 @@ pub enum Error {
     /// A column of a measured motion cannot be used.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// Data that a model was not fitted to, where only those tell.
+    /// The model was not trained on this record.
     #[error(
         "record {0:?} is not among those that the model was fitted to: intervals of parameters need the training data"
     )]

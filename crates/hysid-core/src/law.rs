@@ -124,7 +124,7 @@ pub trait Law: Sized {
         false
     }
 
-    /// True if it has a mass: its output answers later than by the next sample.
+    /// True if it has a mass: its output responds later than by the next sample.
     fn has_inertia(&self) -> bool {
         false
     }

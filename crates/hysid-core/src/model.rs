@@ -79,7 +79,7 @@ pub struct Model {
 pub enum Predictor {
     /// A network in scaled units, with its scale factors.
     Network {
-        /// The network.
+        /// Weights and architecture, in scaled units.
         network: Network,
         /// Factors between the user's units and the network's.
         scaling: Scaling,
@@ -100,7 +100,7 @@ impl Predictor {
         }
     }
 
-    /// True if it, or a member of it, has a mass: its output answers later than by the next sample.
+    /// True if it, or a member of it, has a mass: its output responds later than by the next sample.
     fn has_inertia(&self) -> bool {
         match self {
             Self::Network { .. } => false,
@@ -173,11 +173,11 @@ fn behind(data: &Dataset, rows: usize) -> Option<Dataset> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainedRanges {
-    /// Of each input.
+    /// Smallest and largest value of each input.
     pub inputs: Vec<(f64, f64)>,
-    /// Of the rate of the first input, if the model has one.
+    /// Smallest and largest rate of the first input, if the model has one.
     pub rate: Option<(f64, f64)>,
-    /// Of the output.
+    /// Smallest and largest output.
     pub output: (f64, f64),
     /// The records, by their [`Fingerprint`]s, at most [`MOST_REMEMBERED`]; empty in a member of an ensemble.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -202,11 +202,11 @@ impl TrainedRanges {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// The requested value.
+    /// Options of the fit, as requested.
     pub options: FitSpec,
     /// Rows with an output.
     pub samples: usize,
-    /// Records.
+    /// Number of training records.
     pub records: usize,
     /// The start that became the model, counted from 0.
     pub chosen_start: usize,
@@ -252,7 +252,7 @@ impl Provenance {
 /// How a model was fitted, before its errors on the data are known; with them it becomes the [`Provenance`].
 #[derive(Debug, Clone)]
 pub struct ProvenanceDraft {
-    /// The requested value.
+    /// Options of the fit, as requested.
     pub options: FitSpec,
     /// The start that became the model, counted from 0.
     pub chosen_start: usize,
@@ -655,7 +655,7 @@ impl Model {
         Ok(Self::new(body, preprocessing, rate, data, provenance.into())?.with_band(band))
     }
 
-    /// The same model with this band, at least as wide as its errors on these data ask for, or without one.
+    /// The same model with this band, at least as wide as its errors on these data require, or without one.
     ///
     /// # Errors
     /// As [`Model::simulate`].

@@ -120,7 +120,7 @@ pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>, resonates: boo
     }
 }
 
-/// The model and the reason, the property that asks for most first.
+/// The model and the reason, the property with the largest requirement first.
 fn simplest(found: &DecidingProperties) -> (Option<ModelName>, &'static str) {
     use Verdict::{No, Yes};
     let network = |family| Some(ModelName::Network(family));

@@ -323,7 +323,7 @@ impl<'a> BranchSet<'a> {
         }
     }
 
-    /// Deviation by which slow noise and drift move the output from a row to one so many rows away.
+    /// Deviation by which slow noise and drift move the output over a number of rows.
     pub fn wander(&self, rows: f64) -> f64 {
         self.output_noise.wander(rows).max(self.slow_noise)
     }

@@ -6,13 +6,13 @@ use super::branch::CurveReading;
 use super::significance;
 use super::{PictureCurve, Piece, Verdict};
 
-/// A property holds if no difference can be larger than so many times the effect that matters. Designed.
+/// A property holds if no difference can be larger than this multiple of the effect that matters. Designed.
 pub(crate) const BOUND: f64 = 3.0;
 
 /// The same where one turning point decides: return points and congruency. Designed.
 pub(crate) const NARROW_BOUND: f64 = 2.0;
 
-/// A property does not hold if a gap, which is read at one point, is so many times its limit. Designed.
+/// A property does not hold if a gap, which is read at one point, is this multiple of its limit. Designed.
 const CLEAR_GAP: f64 = 1.2;
 
 /// A difference beyond this share of the effect that matters is too close to it for a property to hold.

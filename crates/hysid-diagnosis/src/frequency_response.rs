@@ -61,7 +61,7 @@ impl ResponsePoint {
     }
 }
 
-/// A frequency response.
+/// A frequency response: complex ratio of output to input over frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrequencyResponse {
     /// Its points, by rising frequency: only those at which the input has power.

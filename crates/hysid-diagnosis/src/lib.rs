@@ -3,7 +3,7 @@
 //!
 //! The input is cut into branches between turning points; a property is a statement about branches that
 //! must coincide. Each test compares such branches, and says *yes*, *no*, or that the record does not
-//! contain what would tell. Definitions: theory.md section 10.
+//! contain what is needed. Definitions: theory.md section 10.
 //!
 //! ```
 //! use hysid_diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
@@ -82,7 +82,7 @@ impl Default for DiagnosisOptions {
 }
 
 impl DiagnosisOptions {
-    /// How the cycles of the same data are found: by the noise, unless a smallest reversal is asked for.
+    /// How the cycles of the same data are found: by the noise, unless a smallest reversal is given.
     fn of_cycles(&self) -> CycleOptions {
         let asked = self.smallest_reversal != Self::default().smallest_reversal;
         CycleOptions {
@@ -102,7 +102,7 @@ pub enum Verdict {
     /// It does not.
     #[serde(rename = "no")]
     No,
-    /// The data do not tell.
+    /// The data do not decide.
     #[serde(rename = "not testable")]
     NotTestable,
 }
@@ -120,7 +120,7 @@ impl fmt::Display for Verdict {
 /// A property and what the data say about it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
-    /// The property.
+    /// Property that the finding is about.
     #[serde(rename = "name")]
     pub property: Property,
     /// Verdict on the property.
@@ -135,7 +135,7 @@ pub struct Finding {
     pub comparisons: usize,
     /// Result in words.
     pub statement: String,
-    /// Where the data do not tell: the experiment that would.
+    /// Experiment that would decide, where the data do not.
     pub experiment: Option<String>,
     /// The rows that show it, the strongest first.
     pub evidence: Vec<Evidence>,
@@ -145,7 +145,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// The data do not tell.
+    /// The data do not decide.
     fn not_testable(property: Property, statement: impl Into<String>, experiment: impl Into<String>) -> Self {
         Self {
             property,
@@ -167,7 +167,7 @@ impl Finding {
 pub struct Evidence {
     /// Their difference, in the unit of the index.
     pub index: f64,
-    /// The pieces.
+    /// Rows that were compared, piece by piece.
     pub pieces: Vec<Piece>,
 }
 
@@ -202,7 +202,7 @@ pub struct Picture {
 pub struct PictureCurve {
     /// Label of the curve; empty if it is there for comparison only.
     pub label: String,
-    /// Its points.
+    /// Points `(x, y)` in the units of the axes.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -223,7 +223,7 @@ pub struct Diagnosis {
     /// The rows where they are, record by record, counted from 0 at the beginning of each.
     #[serde(skip)]
     pub turning_rows: Vec<Vec<usize>>,
-    /// Reversals of the first input below this are none, in its unit.
+    /// Smallest reversal of the first input that counts, in its unit.
     #[serde(skip)]
     pub smallest_reversal: f64,
     /// The backbone of each record.

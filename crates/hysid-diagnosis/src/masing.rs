@@ -15,7 +15,7 @@ const EFFECT: f64 = 0.05;
 /// Branches shorter than this share of the input's range.
 const SHORTEST: f64 = 0.05;
 
-/// Branches as long as the longest, to this share, tell nothing new.
+/// Length of a branch, as a share of the longest, from which on a comparison shows nothing new.
 const SAME_LENGTH: f64 = 0.9;
 
 /// Branches that are compared at most.

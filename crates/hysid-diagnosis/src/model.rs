@@ -2,7 +2,7 @@
 //! model with probes chosen for each, and those that its equations guarantee.
 //!
 //! A probe stays within the input range and the rates that the model was trained on; further inputs are held in
-//! the middle of theirs. What is a property of memory is asked at a vanishing speed. Definitions: theory.md,
+//! the middle of theirs. Properties of memory are tested at a vanishing speed. Definitions: theory.md,
 //! end of section 10.
 //!
 //! ```

@@ -104,7 +104,7 @@ impl Noise {
         of_value.fold(0.0, |sum, part| sum + part.1).sqrt()
     }
 
-    /// Standard deviation of the walk from a row to one so many rows away.
+    /// Standard deviation of the walk over a number of rows.
     pub fn wander(&self, rows: f64) -> f64 {
         let steps = self.parts.iter().filter(|part| part.0 == Correlation::Walking);
         (steps.map(|part| part.1).sum::<f64>() * rows).sqrt()
@@ -145,13 +145,13 @@ impl Noise {
             .sqrt()
     }
 
-    /// Standard deviation of the mean of so many successive rows.
+    /// Standard deviation of the mean of a number of successive rows.
     pub fn of_mean(&self, rows: usize) -> f64 {
         let rows = rows.max(1);
         self.of_sum(&vec![(rows as f64).recip(); rows])
     }
 
-    /// The noise of the means of blocks of so many rows.
+    /// The noise of the means of blocks of rows.
     pub fn in_blocks(&self, rows: usize) -> Self {
         if rows <= 1 {
             return self.clone();

@@ -36,13 +36,13 @@ const EXPLAINED: f64 = 0.4;
 /// A delay that leaves less than this share explains all of it; a rate-dependent law often looks like one.
 const ALL: f64 = 0.15;
 
-/// Branches of one speed whose mean square difference is so many times that of their noise change with time.
+/// Ratio of mean square difference to noise from which on branches of one speed change with time.
 const NOT_NOISE: f64 = 2.0;
 
-/// Wear between the sets may be so many times faster than within them.
+/// Factor by which wear between the sets may be faster than within them.
 const FASTER: f64 = 1.5;
 
-/// Wear is known where noise in it is so many times smaller than what it is to explain.
+/// Factor by which noise in the wear must be smaller than what it is to explain.
 const CLEARLY: f64 = 3.0;
 
 /// Number of branches in the first two cycles of a record, and the share of the output's range by which they may differ

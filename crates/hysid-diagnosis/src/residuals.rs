@@ -122,7 +122,7 @@ pub enum ResidualVerdict {
     /// No structure was found.
     #[serde(rename = "not found")]
     NotFound,
-    /// The data do not tell.
+    /// The data do not decide.
     #[serde(rename = "not testable")]
     NotTestable,
 }

@@ -28,7 +28,7 @@ const MOST_DAMPING_OF_CHANGES: f64 = 0.8;
 /// A linear oscillator, compared with a law without inertia.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resonance {
-    /// The oscillator.
+    /// The linear oscillator that fits best.
     pub oscillator: LinearOscillator,
     /// The residual of the oscillator divided by that of the law without inertia.
     pub ratio: f64,

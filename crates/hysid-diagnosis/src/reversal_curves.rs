@@ -28,7 +28,7 @@ use self::recognition::{CurveSet, recognised};
 use super::branch::BranchSet;
 use super::{DiagnosisOptions, FEWEST_ROWS};
 
-/// Smoothing factors that can be asked for.
+/// Valid smoothing factors.
 pub const SMOOTHING_FACTORS: std::ops::RangeInclusive<usize> = 1..=10;
 
 /// Grid lines of the table, at most; of more curves some are left out, in the table only.
@@ -88,7 +88,7 @@ pub struct ReversalCurves {
     pub curves: Vec<ReversalCurve>,
     /// Distance of the grid's lines along both axes, in the unit of the input.
     pub step: f64,
-    /// The smoothing factor.
+    /// Smoothing factor `SF` of the [module page](self).
     pub smoothing_factor: usize,
     /// True if it was chosen by the noise.
     pub smoothing_is_chosen: bool,

@@ -25,7 +25,7 @@ const LONGEST: f64 = 0.2;
 /// Shortest window that a parabola smooths.
 const SHORTEST: usize = 5;
 
-/// Values of two windows agree within so many deviations of the shorter one.
+/// Deviations of the shorter one within which values of two windows agree.
 const AGREE: f64 = 2.0;
 
 /// Branches that the window is chosen from.

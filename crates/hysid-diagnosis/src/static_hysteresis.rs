@@ -14,7 +14,7 @@ use crate::branch::Opening;
 /// Hysteresis is present if a loop fills more than this share of its bounding box.
 pub(super) const FULL: f64 = 0.02;
 
-/// Speeds must differ by this factor for a loop of speed 0 to be told from that of the slowest.
+/// Factor by which speeds must differ to distinguish a loop of speed 0 from that of the slowest.
 const RANGE_OF_SPEEDS: f64 = 1.5;
 
 /// A loop this many times as wide as a lag makes it is not only the lag's.
@@ -23,7 +23,7 @@ const BEYOND_A_LAG: f64 = 3.0;
 /// Speeds within this factor are taken together.
 const TOGETHER: f64 = 1.15;
 
-/// Without time stamps, a loop as wide as a lag of so many rows makes it may be that of a lag.
+/// Rows of a lag that may explain a loop of the same width, without time stamps.
 const FEW_ROWS: f64 = 3.0;
 
 /// Openings over less than this share of the widest do not count.
@@ -44,10 +44,10 @@ const SHRINKS: f64 = 0.97;
 /// Loops that grow with a power of the speed below this one are not those of a relaxation.
 const SLOW_GROWTH: f64 = 0.5;
 
-/// A lag explains no loops whose widths ask for lags that differ by this factor.
+/// A lag explains no loops whose widths require lags that differ by this factor.
 const UNLIKE_A_LAG: f64 = 2.0;
 
-/// A lag that closes loops is at most so many times the largest that their widths ask for.
+/// Largest lag that closes loops, relative to the largest that their widths require.
 const FURTHER: f64 = 2.0;
 
 /// Loops over less than this share of the widest say nothing about a lag.

@@ -264,7 +264,7 @@ fn transformed_rate(builder: &mut Builder, transform: &InputTransform, rate: &Re
     }
 }
 
-/// The inputs that tell of the past: the largest magnitude so far and the path so far (theory.md (11.2)).
+/// The inputs that represent the past: the largest magnitude so far and the path so far (theory.md (11.2)).
 fn history(
     builder: &mut Builder,
     transform: &InputTransform,

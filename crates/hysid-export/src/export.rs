@@ -11,7 +11,7 @@ use crate::reserved;
 use crate::subject::{ExportFile, ExportSubject};
 use crate::target::{Target, TargetFiles};
 
-/// An export.
+/// Files of an exported model, with a note for the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Export {
     /// The files that belong in one folder.

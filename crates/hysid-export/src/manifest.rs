@@ -92,7 +92,7 @@ pub fn checksum(content: &[u8]) -> String {
     format!("{:x}", Sha256::digest(content))
 }
 
-/// A number that tells a model from others, of the source code of its step.
+/// A number that distinguishes a model from others, of the source code of its step.
 pub(crate) fn token_of(source: &str) -> u32 {
     u32::from_str_radix(&checksum(source.as_bytes())[..8], 16).unwrap_or_default()
 }

@@ -15,7 +15,7 @@ use crate::program::{Precision, Program};
 use crate::text::{harmless, harmless_names};
 use crate::vectors::{Action, Vector, vectors};
 
-/// A file of an export.
+/// Path and content of an exported file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExportFile {
     /// Its path in the folder of the export.

@@ -14,7 +14,7 @@ const FEWEST_ROWS: usize = 30;
 /// [`FEWEST_ROWS`] it may be more.
 const MOST_OPERATIONS: u64 = 40_000_000;
 
-/// Rows whose steps tell the work of all.
+/// Rows whose steps show the work of all.
 const TRIED: usize = 5;
 
 /// The state is saved before this row, and restored after [`REPEATED`] further ones, which are then repeated.
@@ -58,7 +58,7 @@ impl Action {
 /// One action with its arguments and what it gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vector {
-    /// The action.
+    /// Call that is made.
     pub action: Action,
     /// Arguments of a trial or a step, in their order; otherwise empty.
     pub arguments: Vec<f64>,
@@ -189,7 +189,7 @@ mod tests {
         }
     }
 
-    /// A program with so many sums in a step.
+    /// A program with this number of sums in a step.
     fn of_sums(count: f64) -> Program {
         let mut builder = Builder::new(1, 2, Precision::Double);
         let sums = builder.variable(0.0);

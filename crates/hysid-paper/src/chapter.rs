@@ -66,7 +66,7 @@ pub enum TargetVerdict {
     Met,
     /// Not by one network, but by the median of several.
     MetBySeveral,
-    /// Missed.
+    /// Neither by one network nor by several.
     Missed,
     /// The other model is worse than a constant, so that a ratio to its error has no meaning.
     OtherDiverged,

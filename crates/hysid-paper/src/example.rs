@@ -414,7 +414,7 @@ impl PlayedCase<'_> {
 mod tests {
     use super::*;
 
-    /// Errors of so many percent of the standard deviation.
+    /// Errors of this percentage of the standard deviation.
     fn errors_of(percent: f64) -> Errors {
         let mut sums = ErrorSums::default();
         let error = percent / 100.0;

@@ -92,7 +92,7 @@ pub fn network(family: Family, choice: TrainingChoice, seed: u64, start: u64) ->
     }
 }
 
-/// Networks from so many random starts, the one with the lowest training error first.
+/// Networks from this number of random starts, the one with the lowest training error first.
 pub fn networks(
     data: &Dataset,
     options: impl Fn(u64) -> FitOptions + Sync,

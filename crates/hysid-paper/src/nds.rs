@@ -39,7 +39,7 @@ const DEMONSTRATIONS: [(Neuron, &str); 6] = [
 /// The third with the capacity that the paper's text has in the place of that in its list.
 const VARIANT: (Neuron, &str) = (neuron(1.42, 0.0, 50.0), "the third with β of 50, twice the life");
 
-/// Rates of the input in Hz: a sine of amplitude 1. Designed; the paper's figure does not tell.
+/// Rates of the input in Hz: a sine of amplitude 1. Designed; the paper's figure does not give them.
 const RATES: [f64; 3] = [0.1, 0.2, 0.5];
 
 /// Cycles at each rate.
@@ -64,7 +64,7 @@ impl Neuron {
         self.weight * sin(phase) + self.rate_weight * TAU * rate * cos(phase)
     }
 
-    /// Input and output from the virgin state, for so many cycles of a sine.
+    /// Input and output from the virgin state, over a number of cycles of a sine.
     fn run(self, rate: f64, cycles: usize) -> Vec<(f64, f64)> {
         let mut stop = self.stop();
         let row = |row: usize| {
@@ -191,7 +191,7 @@ fn table() -> Table {
         .with_rows(numbered.chain([("3, β 50".to_string(), VARIANT)]).map(row))
 }
 
-/// A width of rounding errors is none.
+/// Replaces a width that is a rounding error by 0.
 fn tidy(width: f64) -> f64 {
     if width.abs() < 1e-9 { 0.0 } else { width }
 }

@@ -1,4 +1,4 @@
-//! The paper's table of which network can learn which property, measured: for each property a specimen that
+//! The paper's table of which network can represent which property, measured: for each property a specimen that
 //! has just that, every network trained on it, and its error on unseen data.
 
 mod specimens;
@@ -16,7 +16,7 @@ use crate::fitting::{self, SEEDS, TrainingChoice};
 use crate::spread::Spread;
 use specimens::{SPECIMENS, SpecimenProperty};
 
-/// Largest error on unseen data, in percent, of a network that has learnt a property. Designed.
+/// Largest error on unseen data, in percent, of a network that represents a property. Designed.
 const LEARNT: f64 = 3.0;
 
 /// Random starts of each seed: these specimens are small.

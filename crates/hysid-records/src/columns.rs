@@ -44,7 +44,7 @@ impl ColumnChoice {
         self.time.as_deref() == Some(NO_TIME) && table.column(NO_TIME).is_none()
     }
 
-    /// The options by which a command is told the same columns, for a shell.
+    /// The options that give a command the same columns, for a shell.
     pub fn options(&self) -> Vec<String> {
         let rate = match &self.rate {
             RateOption::Column(name) => Some(name),
@@ -197,7 +197,7 @@ impl Roles {
     }
 
     /// Finds the columns that a model needs, by the names it was trained on or those of options.
-    /// `scored` tells if the output is needed too.
+    /// `scored` is true if the output is needed too.
     pub fn of_model(model: &Model, table: &Head, options: &ColumnChoice, scored: bool) -> Result<Self> {
         Self::of_inputs(model, &model.names().inputs, model.needs_time(), table, options, scored)
     }

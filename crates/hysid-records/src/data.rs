@@ -47,7 +47,7 @@ pub struct RecordPlace {
 }
 
 impl Data {
-    /// The data in tables whose roles a choice and the names tell. `zero` is as in [`Data::new`].
+    /// The data in tables whose roles a choice and the names give. `zero` is as in [`Data::new`].
     pub fn of_tables(tables: Vec<Table>, columns: &ColumnChoice, zero: Option<usize>) -> Result<Self> {
         let roles = Roles::detect(&tables[0], columns)?;
         Self::new(tables, roles, zero)
@@ -239,7 +239,7 @@ fn column(channel: Channel, roles: &Roles) -> Option<&str> {
     }
 }
 
-/// The data in a table of this text, its columns told by their names: the way of every file that is read.
+/// The data in a table of this text, with columns by their names: the way of every file that is read.
 pub fn data_of_text(text: &[u8]) -> Result<Dataset> {
     let table = Table::from_bytes(Path::new("text"), text.to_vec(), &Reading::default())?;
     Ok(Data::of_tables(vec![table], &ColumnChoice::default(), None)?.set)
@@ -375,7 +375,7 @@ impl NumberColumns {
         convert(&mut self.output, factors.output);
     }
 
-    /// Spreads equal time stamps; tells if there were any.
+    /// Spreads equal time stamps; returns whether there were any.
     fn spread_equal_stamps(&mut self, places: &[RecordPlace], source: &DataSource) -> Option<String> {
         let time = self.time.as_mut()?;
         let spread: usize =

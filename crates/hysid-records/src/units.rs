@@ -21,7 +21,7 @@ pub struct UnitFactors {
 }
 
 impl UnitFactors {
-    /// From the units that the names of the table's columns tell to those of the columns that the model was trained
+    /// From the units in the names of the table's columns to those of the columns that the model was trained
     /// on. `is_scored` if the output is read.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Something that cannot be done as it was asked, whatever the data; the program then exits with status 2.
+/// A request that is invalid whatever the data; the program then exits with status 2.
 #[derive(Debug)]
 pub struct Usage(pub String);
 

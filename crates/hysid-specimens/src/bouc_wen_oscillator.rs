@@ -31,7 +31,7 @@ use super::specimen::{Specimen, SpecimenColumns};
 /// Newton's method ends where it changes the displacement by less than this share.
 const TOLERANCE: f64 = 1e-12;
 
-/// Newton's method ends after so many iterations: where a branch changes, it may alternate at the last digits.
+/// Iterations after which Newton's method ends: where a branch changes, it may alternate at the last digits.
 const MOST_ITERATIONS: usize = 30;
 
 /// A Bouc-Wen oscillator.

@@ -18,7 +18,7 @@ use crate::reading::Reading;
 pub use budget::THREAD;
 use budget::UnpackingReader;
 
-/// Bytes that tell what a file is.
+/// Bytes that identify the format of a file.
 const FIRST: usize = 1 << 16;
 
 pub struct DecodedText {

@@ -22,7 +22,7 @@ pub struct Head {
     pub header: Vec<String>,
     /// Layout of the table.
     pub layout: Layout,
-    /// How the user wants it to be read.
+    /// The user's options of reading it.
     pub reading: Reading,
     places: HashMap<String, usize>,
 }

@@ -23,7 +23,7 @@ pub use run::is_row;
 /// Lines that a layout is found from.
 const MOST_LINES: usize = 300;
 
-/// True for the name of a column that tells records apart. A `segment` may be a part of one record.
+/// True for the name of a column that distinguishes records. A `segment` may be a part of one record.
 pub fn is_record(name: &str) -> bool {
     name.eq_ignore_ascii_case("record")
 }
@@ -103,7 +103,7 @@ impl Layout {
         Ok(layout)
     }
 
-    /// Of a text without a row of numbers: its first line is the header, and what follows is told where it is read.
+    /// Of a text without a row of numbers: its first line is the header, and what follows is reported where it is read.
     fn without_rows(file: &str, lines: &[TextLine<'_>], reading: &Reading) -> Result<Self> {
         let Some(place) = lines.iter().position(|line| !line.is_blank() && !line.is_comment) else {
             bail!("{file}: {IS_EMPTY}");
@@ -172,8 +172,8 @@ fn settled(
     }
 }
 
-/// The table: the best run, or one before it that is a table with names too. What follows it is told where it is read,
-/// and nothing is passed over in silence.
+/// The table: the best run, or one before it that is a table with names too. What follows it is reported where it is
+/// read, and nothing is passed over in silence.
 fn table(
     runs: &[LineRun],
     best: &LineRun,

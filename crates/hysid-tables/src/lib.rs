@@ -5,9 +5,9 @@
 //!                         gzip, encoding, spreadsheet, MATLAB
 //! ```
 //!
-//! A container gives text in UTF-8, whatever a file is. The layout of its first lines tells the delimiter, the names and
+//! A container gives text in UTF-8, whatever a file is. The layout of its first lines gives the delimiter, the names and
 //! units of the columns, and how numbers are written. Rows are read one after another, so that memory does not grow
-//! with the file. [`Reading`] says what a user knows better.
+//! with the file. [`Reading`] overrides what is detected.
 
 // Only the crates of Hysid use this one: what a name says needs no comment.
 #![allow(missing_docs)]

@@ -261,7 +261,7 @@ pub fn shortest(value: f64) -> String {
     text
 }
 
-/// A plain number is preferred to one with an exponent up to so many letters.
+/// Most letters of a plain number that is preferred to one with an exponent.
 const PLAIN_LETTERS: usize = 12;
 
 /// Adds the shortest text that reads back as the same number, with this decimal sign.

@@ -28,7 +28,7 @@ pub struct Reading {
 pub struct RowSelection {
     pub first: u64,
     pub last: Option<u64>,
-    /// One row of so many is used.
+    /// Distance of the rows that are used: one of every `every`.
     pub every: u64,
 }
 

@@ -9,7 +9,7 @@ use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
 use hysid::fit::identify;
 use hysid::law::Classical;
-use hysid::law::duhem_nn::{DuhemNn, CellLayout, CellRun};
+use hysid::law::duhem_nn::{CellLayout, CellRun, DuhemNn};
 use hysid::law::series::Series;
 use hysid::model::{Model, Predictor};
 use hysid::options::FitSpec;

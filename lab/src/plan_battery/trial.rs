@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use hysid::data::record::Dataset;
-use hysid::plan::{Limits, DrivePath, Plan, PlanOptions};
+use hysid::plan::{DrivePath, Limits, Plan, PlanOptions};
 use hysid::{Fit, Model};
 
 use crate::rig::{Rig, drives, error_of};

@@ -1,6 +1,6 @@
 //! Drives of tests: cycles, and random reversals.
 
-use hysid::plan::{Leg, Limits, DrivePath};
+use hysid::plan::{DrivePath, Leg, Limits};
 use hysid_core::elementary::powf;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;

@@ -33,7 +33,7 @@ pub use degradation::Degradation;
 /// Longest part of the input in one step of Runge and Kutta, in yield displacements, at quickness 1.
 const LONGEST_PART: f64 = 0.1;
 
-/// After so many yield displacements in one direction `z` does not change any more.
+/// Yield displacements in one direction after which `z` does not change any more.
 const SATURATED: f64 = 60.0;
 
 /// From here on `z` does not grow any more, to rounding.
@@ -165,7 +165,7 @@ impl BoucWen {
         }
     }
 
-    /// Moves up by so many parts, or until the yield force is reached.
+    /// Moves up by `parts` parts, or until the yield force is reached.
     fn constant_upwards(&self, inner: Inner, part: f64, parts: usize) -> Inner {
         let mut inner = inner;
         for _ in 0..parts {

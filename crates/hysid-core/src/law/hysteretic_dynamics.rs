@@ -292,7 +292,7 @@ impl Dynamics {
     }
 }
 
-/// Defaults of a law with so many modes: memory states, or deteriorating stops for elements with degradation.
+/// Defaults of a law with this number of modes: memory states, or deteriorating stops for elements with degradation.
 pub(super) const fn defaults(modes: usize, degradation: bool) -> Defaults {
     let search = Defaults { modes, starts: 4, epochs: 200, ..Defaults::SEARCHED };
     match degradation {

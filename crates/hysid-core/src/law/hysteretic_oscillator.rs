@@ -10,7 +10,7 @@
 //! displacement; with several each element is between masses that the identification finds.
 //!
 //! For a force as input, `C = b σ`, divided by the scale of the input, is the compliance of a mode and `1/(C ω²)` its mass.
-//! For a voltage or an acceleration the data do not tell the mass. The stiffness `1/C` is not unique either, because `r`
+//! For a voltage or an acceleration the data do not give the mass. The stiffness `1/C` is not unique either, because `r`
 //! may contain an elastic part.
 
 use serde::{Deserialize, Serialize};

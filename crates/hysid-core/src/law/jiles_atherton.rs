@@ -32,7 +32,7 @@ const LONGEST_PART: f64 = 0.05;
 /// Parts of a single step of the input at most.
 const MOST_PARTS: f64 = 4000.0;
 
-/// Beyond so many times `a + k + α M_s` the material is saturated and nothing more is computed.
+/// Multiple of `a + k + α M_s` beyond which the material is saturated and nothing more is computed.
 const SATURATED: f64 = 300.0;
 
 /// Least `k - α|M_an - M|` as a share of `k` (theory.md (8.25)).

@@ -211,7 +211,7 @@ impl Ensemble {
         &self.group
     }
 
-    /// All members.
+    /// All members, in the order in which nodes number them.
     pub fn members(&self) -> &[Model] {
         &self.members
     }

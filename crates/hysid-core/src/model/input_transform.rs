@@ -186,7 +186,7 @@ impl InputPast {
     }
 }
 
-/// A lead-in as a model sees it.
+/// A lead-in in the transformed input.
 pub(crate) struct SeenLeadIn {
     /// The transformed first input at each row.
     pub first: Vec<f64>,

@@ -197,7 +197,7 @@ impl<'m> Inverse<'m> {
         self
     }
 
-    /// The model.
+    /// The model that is inverted.
     pub fn model(&self) -> &Model {
         self.stepper.model()
     }

@@ -82,7 +82,7 @@ impl<'m> Stepper<'m> {
         Self { state, committed: None, lead_in: model.lead_in.clone(), model }
     }
 
-    /// The model.
+    /// The model that is simulated.
     pub fn model(&self) -> &Model {
         &self.model
     }

@@ -76,9 +76,9 @@ impl Network {
 /// Columns computed for each row with a target: features, target and, with output weights, the Jacobian.
 #[derive(Debug, Clone, Copy)]
 pub struct JacobianColumns<'a> {
-    /// The network.
+    /// Architecture of the network.
     pub architecture: &'a Architecture,
-    /// Its parameters.
+    /// Nonlinear parameters, in the order of [`ParameterLayout`].
     pub parameters: &'a [f64],
     /// Its output weights; `None` for no Jacobian.
     pub output: Option<&'a [f64]>,
@@ -197,7 +197,7 @@ pub struct RowsOverRecords<'a> {
 }
 
 impl RowsOverRecords<'_> {
-    /// The columns.
+    /// Computes the stored columns, each with one number for each row.
     pub fn columns(self) -> Vec<Vec<f64>> {
         simd::run(self)
     }

@@ -548,7 +548,7 @@ fn turn<S: Simd, const L: usize>(simd: S, tile: &[[f64; L]; LANES], chunk: usize
 }
 
 /// Rows of whole vectors that hold `rows` rows. Loops run so far and no further: a loop over a whole
-/// block has a length that the compiler knows, and it would unroll the kernel out of the instruction
+/// block has a length that is known to the compiler, which would unroll the kernel out of the instruction
 /// cache.
 #[inline(always)]
 pub(crate) fn whole_lanes(rows: usize) -> usize {

@@ -111,7 +111,7 @@ impl NamedOptions {
         self.model.unwrap_or(ModelName::AUTO)
     }
 
-    /// The specification of the fit. `always_rate` is true if the user wants no model without the rate.
+    /// The specification of the fit. `always_rate` is true if only models with the rate are allowed.
     pub fn request(&self, rate: Option<RateMethod>, always_rate: bool) -> FitSpec {
         let used = self.used();
         let alone = match self.model() {
@@ -286,7 +286,7 @@ pub enum RateChoice {
     Auto,
     /// No rate.
     None,
-    /// By this method.
+    /// A rate that is computed by this method.
     Method(RateMethod),
 }
 

@@ -18,7 +18,7 @@ use crate::options::network::{
 };
 use crate::options::preset::{Preset, count_of};
 
-/// An option of a fit.
+/// An option of a fit: name, meaning, valid values, defaults.
 #[derive(Debug, Clone, Copy)]
 pub struct FitOption {
     /// Its name, in words joined by underscores, as in Python; the command line joins them by hyphens.
@@ -35,7 +35,7 @@ pub struct FitOption {
     used_by: fn(ModelName, Trainer) -> bool,
 }
 
-/// A group of options.
+/// Group under which options are listed in help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OptionGroup {
     /// Options of most models.
@@ -50,7 +50,7 @@ impl OptionGroup {
     /// All of them, in their order.
     pub const ALL: [Self; 3] = [Self::Model, Self::Training, Self::Classical];
 
-    /// Its heading.
+    /// Heading of the group in help.
     pub fn heading(self) -> &'static str {
         match self {
             Self::Model => "Model",

@@ -73,7 +73,7 @@ const UNEVEN: f64 = 1.5;
 /// Share of the way through a loop, before its middle, to which the input goes back on smaller loops.
 const BACK: f64 = 0.1;
 
-/// Deviations of the noise below which a figure is not told from noise.
+/// Deviations of the noise below which a figure is not distinguished from noise.
 const SURE: f64 = 3.0;
 
 /// How cycles are found and what is read from them.

@@ -3,7 +3,7 @@
 use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::branch::BranchSet;
 
-/// A hold has at least so many rows.
+/// Fewest rows of a hold.
 const FEWEST_ROWS: usize = 20;
 
 /// The input stands still within this share of its range.

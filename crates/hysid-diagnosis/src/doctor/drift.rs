@@ -10,7 +10,7 @@ use crate::{Cycle, Piece};
 /// A drift that matters, over all cycles of a kind: share of the range of the output.
 const EFFECT: f64 = 0.01;
 
-/// Fewest cycles of a kind, after the first, which still remembers what was before.
+/// Fewest cycles of a kind, after the first, which still depends on what was before.
 const FEWEST: usize = 4;
 
 /// Cycles of a kind that are compared at most.
@@ -25,7 +25,7 @@ const STEADY: f64 = 2.6;
 /// How the tips of loops between two inputs move.
 struct TipTrend<'c> {
     cycles: Vec<&'c Cycle>,
-    /// Over all cycles, both tips together; nought where they do not move together.
+    /// Over all cycles, both tips together; 0 where they do not move together.
     drift: f64,
 }
 
@@ -71,7 +71,7 @@ fn trend<'c>(group: &[&'c Cycle]) -> Option<TipTrend<'c>> {
 }
 
 /// How far values move from the first to the last along the median slope (Theil and Sen), if they do so steadily
-/// (Mann and Kendall); nought if not.
+/// (Mann and Kendall); 0 if not.
 fn movement(values: &[f64]) -> Option<f64> {
     let n = values.len();
     let mut slopes = Vec::with_capacity(n * (n - 1) / 2);

@@ -43,11 +43,11 @@ const PLACES: i32 = 4;
 /// Windows agree within this many deviations.
 const AGREE: f64 = 1.5;
 
-/// The narrowest window that knows of a lag is no wider than this: wider ones alone cannot be told from a law that
+/// Widest window that may be the narrowest with a lag: wider ones alone cannot be distinguished from a law that
 /// bends.
 const NARROW: f64 = 0.1;
 
-/// A window whose lag scatters by this share of what was searched knows nothing of it.
+/// Scatter of a window's lag, as a share of what was searched, from which on it shows nothing.
 const BLIND: f64 = 0.05;
 
 /// A lag is so many deviations from none, and this share of the time between rows.
@@ -57,7 +57,7 @@ const SHORTEST_STEP: f64 = 0.1;
 /// By how much the logarithm of the likelihood must be greater than without a lag.
 const LIKELIER: f64 = 12.0;
 
-/// A remainder up to this many times the noise is noise; beyond it is the law's, and tells as little as this
+/// A remainder up to this many times the noise is noise; beyond it is the law's, and shows as little as this
 /// many rows do.
 const NOISE: f64 = 1.1;
 const ROWS_OF_A_LAW: f64 = 10.0;
@@ -65,7 +65,7 @@ const ROWS_OF_A_LAW: f64 = 10.0;
 /// Numbers that are fitted for each turning point.
 const FREE: usize = 7;
 
-/// Lags of several speeds agree within this share; a speed that is to confirm a lag knows it within the other.
+/// Lags of several speeds agree within this share; a speed that is to confirm a lag determines it within the other.
 const SAME: f64 = 0.1;
 const CONFIRMS: f64 = 0.25;
 
@@ -104,7 +104,7 @@ pub(super) fn complaints(survey: &BranchSet, delay: Option<&Delay>) -> Vec<DataI
     }
 }
 
-/// The longest lag that the slowest turning points allow, either way; `None` where they do not tell.
+/// The longest lag that the slowest turning points allow, either way; `None` where they do not show it.
 pub(super) fn longest(survey: &BranchSet) -> Option<f64> {
     const SURE: f64 = 3.0;
     let turns = turns(survey);

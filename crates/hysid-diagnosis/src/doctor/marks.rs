@@ -37,7 +37,7 @@ const MARKS: [f64; 22] = [
 /// Marks are told by their powers too: at least this is no measured value beside small ones.
 const HUGE: f64 = 1e10;
 
-/// Fewer values tell nothing.
+/// Fewest values that are examined.
 const FEWEST: usize = 10;
 
 /// A mark stands apart by this share of the range of all other values, one value that is no known mark by so many
@@ -54,7 +54,7 @@ const MOST_SPIKES: f64 = 0.01;
 const JUMP_STEPS: f64 = 20.0;
 const JUMP_RANGE: f64 = 0.1;
 
-/// Different values of a column that are told.
+/// Most different values of a column that are listed.
 const MOST_TOLD: usize = 3;
 
 /// Rows that are shown of each value.

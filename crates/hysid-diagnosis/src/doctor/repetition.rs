@@ -64,7 +64,7 @@ fn repeated_rows(survey: &BranchSet) -> Option<DataIssue> {
     })
 }
 
-/// A column that changes every so many rows while the other changes with each.
+/// A column that changes only every few rows while the other changes with each.
 fn held_samples(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     let mut lengths: Vec<usize> = Vec::new();
     let (mut held, mut while_other_moves) = (0, 0);

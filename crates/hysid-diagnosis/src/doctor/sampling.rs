@@ -3,7 +3,7 @@
 use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::branch::BranchSet;
 
-/// A step so many times those on both sides of it is a gap.
+/// Ratio of a step to those on both sides of it from which on it is a gap.
 const GAP: f64 = 5.0;
 
 /// Of the steps, a tenth are shorter and a tenth longer than two that differ by this factor.

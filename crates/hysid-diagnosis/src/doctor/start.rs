@@ -9,7 +9,7 @@ const AT_REST: f64 = 0.05;
 /// How far the first output may lie outside of what later loops have there, as a share of its range.
 const OUTSIDE: f64 = 0.05;
 
-/// Loops at least this high at the first input tell on which side of them a record begins.
+/// Least height of loops at the first input that shows on which side of them a record begins.
 const OPEN: f64 = 0.1;
 
 /// A virgin record begins in the middle of its loops; within this share of their height from one side it does not.

@@ -13,7 +13,7 @@ use crate::resonance::LinearOscillator;
 const LEAST_POWER: f64 = 1e-7;
 
 /// With a window, so are those with less than this share of the power of a line that is not further away than so many lines:
-/// a strong line leaks more than that to its next neighbours, and the edge of a band would have points that tell nothing.
+/// a strong line leaks more than that to its next neighbours, and the edge of a band would have useless points.
 const LEAST_OF_NEIGHBOURS: f64 = 1e-2;
 const NEIGHBOURS: usize = 3;
 
@@ -31,7 +31,7 @@ const FEWEST_SEGMENTS: usize = 8;
 /// A larger damping ratio does not make a resolution coarser.
 const MOST_DAMPING: f64 = 0.2;
 
-/// The distance of frequencies that must be told apart around the resonance of an oscillator: an eighth of its half-power
+/// The distance of frequencies that must be resolved around the resonance of an oscillator: an eighth of its half-power
 /// bandwidth `2 ζ f`.
 pub fn resolution(oscillator: &LinearOscillator) -> f64 {
     2.0 * oscillator.damping_ratio.min(MOST_DAMPING) * oscillator.natural_frequency / RESOLUTION
@@ -51,8 +51,8 @@ pub struct Segments {
 
 impl Segments {
     /// Divides data with one input and evenly spaced time (to 1/1000 of a step), so that frequencies at this distance, in
-    /// cycles per unit of time, can be told apart if there are enough rows; see [`resolution`]. Segments with a row without
-    /// output are left out.
+    /// cycles per unit of time, can be resolved if there are enough rows; see [`resolution`]. Segments with a row
+    /// without output are left out.
     ///
     /// # Errors
     /// Why the data have no frequency response.

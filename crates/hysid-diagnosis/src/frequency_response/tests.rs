@@ -34,7 +34,7 @@ fn through(frequency: f64) -> (f64, f64) {
 }
 
 /// Magnitude and phase for samples with straight lines between them: sines of amplitude `sinc²(f T)` at the frequency, and
-/// at those that differ from it by multiples of the sampling rate, which samples cannot tell apart.
+/// at those that differ from it by multiples of the sampling rate, which samples cannot distinguish.
 fn exact(frequency: f64) -> (f64, f64) {
     let (mut real, mut imaginary) = (0.2, 0.0);
     for multiple in -30..=30 {

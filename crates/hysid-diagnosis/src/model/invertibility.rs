@@ -122,7 +122,7 @@ pub struct Invertibility {
     pub jumps: usize,
     /// The largest way back or jump; `None` for a verdict *yes*.
     pub worst: Option<NonMonotonePlace>,
-    /// A drawing.
+    /// Scans to be drawn.
     #[serde(skip)]
     pub drawing: Scans,
 }

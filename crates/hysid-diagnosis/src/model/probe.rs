@@ -25,7 +25,7 @@ const ROWS: f64 = 60_000.0;
 /// A vanishing speed, as a share of the fastest.
 const VANISHING: f64 = 1e-6;
 
-/// The fastest speed is so many times the middle one.
+/// Ratio of the fastest speed to the middle one.
 const FASTEST: f64 = 3.0;
 
 /// Speeds that a model is driven at, as shares of the middle one.
@@ -43,7 +43,7 @@ pub enum TimeScale {
     /// The median of the relaxation times: the middle speed passes half the range in it. No rates are
     /// stored.
     RelaxationTimes,
-    /// None: the model sees neither rate nor time.
+    /// None: the model uses neither rate nor time.
     None,
 }
 
@@ -56,7 +56,7 @@ pub struct Probing {
     pub held: Vec<f64>,
     /// Where the speeds come from.
     pub time_scale: TimeScale,
-    /// Speed of all probes that do not ask for the rate, next to 0, in the unit of the input over that of time.
+    /// Speed of all probes that do not test the rate, next to 0, in the unit of the input over that of time.
     pub vanishing_speed: f64,
     /// Speeds of those that do.
     pub speeds: Vec<f64>,
@@ -128,7 +128,7 @@ impl ProbeSpeeds {
         TRIED.map(|share| share * self.middle)
     }
 
-    /// True if the model sees how fast the input goes.
+    /// True if the model depends on the speed of the input.
     pub fn matter(&self) -> bool {
         self.scale != TimeScale::None
     }

@@ -1,4 +1,4 @@
-//! The ten properties of a model: probes chosen for each, judged by the tests of data, or directly where
+//! The ten properties of a model: probes chosen for each, evaluated by the tests of data, or directly where
 //! that is stronger.
 
 use super::direct;
@@ -132,7 +132,7 @@ fn orientation_at_speed(probe: &Probe, loops: Record) -> Result<Finding> {
     Ok(finding)
 }
 
-/// Repeated loops, slow, and at speed for a model that knows it: what wears may do so at speed only.
+/// Repeated loops, slow, and at speed for a model with the rate: what wears may do so at speed only.
 fn wear(probe: &Probe) -> Result<Finding> {
     let path = probe.path(&repeated_loops());
     let test = |speed: f64| -> Result<Finding> {

@@ -20,7 +20,7 @@ pub struct StructuralProperty {
     /// Whether every model with these equations has it or none has; at a vanishing speed, for what is a
     /// property of memory.
     pub verdict: Verdict,
-    /// Whether probing says the same; `None` where it could not tell.
+    /// Whether probing agrees; `None` where it does not decide.
     pub agrees: Option<bool>,
 }
 
@@ -53,7 +53,7 @@ fn of_model(model: &Model, about_origin: bool) -> Vec<(Property, bool)> {
 }
 
 /// Properties that every member guarantees, as far as a median keeps them: it does not keep the shape of increments,
-/// which congruency and Masing's rule are about. An ensemble with other weights outside remembers that it was there.
+/// which congruency and Masing's rule are about. An ensemble with other weights outside depends on having been there.
 fn of_ensemble(ensemble: &Ensemble, about_origin: bool) -> Vec<(Property, bool)> {
     let mut members = ensemble.members().iter().map(|member| of_model(member, about_origin));
     let mut all = members.next().unwrap_or_default();

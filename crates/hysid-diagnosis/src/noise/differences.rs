@@ -68,7 +68,7 @@ struct DifferenceVariance {
     variance: f64,
 }
 
-/// Fewest values that tell anything about their noise.
+/// Fewest values that show anything about their noise.
 const FEWEST: usize = 8;
 
 /// Deviation of white noise by which neighbouring rows differ as much; 0 for hardly any values.
@@ -81,7 +81,7 @@ pub(crate) fn roughness<'a>(columns: impl Iterator<Item = &'a [f64]>) -> f64 {
 }
 
 /// The rows of a run without those that repeat the one before: a logger that is faster than its sensor makes them, and they
-/// tell nothing of noise.
+/// contain no information about noise.
 struct DistinctRows<'a> {
     values: Cow<'a, [f64]>,
     beside: Cow<'a, [f64]>,

@@ -193,7 +193,7 @@ fn held_out(parts: &[SpeedProducts], chosen: &[usize]) -> Option<Vec<f64>> {
     (0..parts.len()).map(of_part).collect()
 }
 
-/// Adds the rows of a record, with its output taken so many rows earlier.
+/// Adds the rows of a record, with its output taken some rows earlier.
 fn add(
     survey: &BranchSet,
     record: &Record,

@@ -217,7 +217,7 @@ impl FindingWriter<'_> {
         self.residuals.places.iter().find(|place| place.test == test)
     }
 
-    /// True if speed and place in the half cycle cannot be told apart.
+    /// True if speed and place in the half cycle cannot be distinguished.
     fn is_of_one_speed(&self) -> bool {
         self.place_of(ResidualTest::Speed)
             .is_none_or(|place| place.caution.is_some() || place.not_testable.is_some())

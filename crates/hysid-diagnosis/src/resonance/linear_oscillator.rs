@@ -83,7 +83,7 @@ impl OscillatorStep {
         }));
     }
 
-    /// Free motion in so many rows, from a distance and a speed.
+    /// Free motion over a number of rows, from a distance and a speed.
     pub fn decay(&self, mut state: [f64; 2], rows: usize, decay: &mut Vec<f64>) {
         decay.clear();
         decay.extend((0..rows).map(|_| {

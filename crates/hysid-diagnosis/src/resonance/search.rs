@@ -24,7 +24,7 @@ const MOST_DAMPING: f64 = 0.95;
 /// Valleys of the grid that are followed to their bottom.
 const VALLEYS: usize = 3;
 
-/// Steps to the bottom are halved so many times, and there are at most so many of them.
+/// Halvings of the steps to the bottom, and the most steps there.
 const HALVINGS: usize = 12;
 const MOST_STEPS: usize = 100;
 

@@ -16,7 +16,7 @@ const STOPS: usize = 10;
 const COLUMNS: usize = FREE + 5 + STOPS + 1;
 
 /// Sum of squares that the law leaves of the scaled output. Each excerpt may begin with a free motion at a frequency and a
-/// damping ratio, as that of an oscillator may: what swings by itself is no answer to the input.
+/// damping ratio, as that of an oscillator may: what swings by itself is no response to the input.
 pub(super) fn remainder(data: &Dataset, excerpts: &Excerpts, frequency: f64, damping_ratio: f64) -> f64 {
     let mut sum = NormalEquations::<COLUMNS>::empty();
     let mut free = [Vec::new(), Vec::new()];

@@ -25,7 +25,7 @@ const RELAXED: usize = CURVE + 2;
 /// Remainders below this share of what a curve of the input leaves are explained.
 const EXPLAINED: f64 = 0.1;
 
-/// Remainders are noise up to so many times its deviation.
+/// Multiple of its deviation up to which remainders are noise.
 const NOISE: f64 = 1.3;
 
 /// So many rows around a turning point are left out: an output that is late by as many is that of the branch before.

@@ -76,7 +76,7 @@ impl<'a, L: Language> Printer<'a, L> {
         Self { language, program, assigned }
     }
 
-    /// The body of the program, indented so many times.
+    /// The body of the program, indented by a number of levels.
     pub fn body(&self, depth: usize) -> String {
         let mut text = String::new();
         self.block(&self.program.body, depth, &mut text);

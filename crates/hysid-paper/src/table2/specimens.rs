@@ -12,7 +12,7 @@ pub struct SpecimenProperty {
     pub name: &'static str,
     /// The specimen's law.
     pub law: &'static str,
-    /// By the paper, can PNN, GPNN, Preisach-NN, XPNN learn it?
+    /// Whether PNN, GPNN, Preisach-NN, XPNN can represent it, according to the paper.
     pub paper: [bool; 4],
     /// The specimen passes several stops through one tanh.
     pub is_mixing: bool,
@@ -140,7 +140,7 @@ pub fn training(property: &SpecimenProperty) -> hysid::Result<Dataset> {
     dataset(property, [(1.0, 0.0), (2.5, 2.0), (6.0, 4.0)])
 }
 
-/// The records that no network sees.
+/// The records that no network is trained on.
 pub fn unseen(property: &SpecimenProperty) -> hysid::Result<Dataset> {
     dataset(property, [(1.5, 1.0), (3.5, 3.0), (5.0, 5.0)])
 }

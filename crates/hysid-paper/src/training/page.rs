@@ -301,7 +301,7 @@ fn chart(repetitions: &[Repetition], abscissa: Abscissa) -> Chart {
     Chart::on_axes(description, x, y, curves).with_height(360.0).with_legend(legend)
 }
 
-/// Moments that can be told apart in a drawing: about a hundred in a decade of epochs.
+/// Moments that can be distinguished in a drawing: about a hundred in a decade of epochs.
 fn kept(moments: &[Moment]) -> impl Iterator<Item = &Moment> {
     let mut next = 1.0;
     moments.iter().enumerate().filter_map(move |(index, moment)| {

@@ -1,6 +1,6 @@
 //! Which of the columns that no option names are time, inputs and output: guessed from names, units and values. What is
 //! clear is taken, what accompanies a test is set aside with its reason, and what remains doubtful is a question that
-//! names the options that answer it.
+//! names the options that decide it.
 
 use std::ops::Range;
 
@@ -78,7 +78,7 @@ impl<'t> Guess<'t> {
     /// Guesses: time, output, and inputs where no option names them.
     ///
     /// # Errors
-    /// Columns of which the names and values do not tell enough.
+    /// Columns whose names and values do not decide their roles.
     pub fn complete(&mut self) -> Result<()> {
         let before = self.free.len();
         let mut weakest = None;
@@ -516,7 +516,7 @@ impl<'t> Guess<'t> {
         Ok(())
     }
 
-    /// A question, with the options that answer it.
+    /// A question, with the options that decide it.
     fn question(&self, words: &str) -> anyhow::Error {
         anyhow!("{}: {words}: name input and output{}", self.table.file, self.columns())
     }

@@ -33,7 +33,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Of a file with so many bytes.
+    /// Budget of a file with `length` bytes.
     pub fn of(length: usize) -> Self {
         Self { length: length as u64 }
     }

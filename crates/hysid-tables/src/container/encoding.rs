@@ -8,7 +8,7 @@ use encoding_rs_io::DecodeReaderBytesBuilder;
 
 use crate::reading::TextEncoding;
 
-/// The encoding that a byte order mark tells, or the zeros of UTF-16 without a mark.
+/// The encoding by the byte order mark, or by the zeros of UTF-16 without a mark.
 pub fn of_marked_text(first: &[u8]) -> Option<&'static Standard> {
     if let Some((encoding, _)) = Standard::for_bom(first) {
         return Some(encoding);
@@ -25,7 +25,7 @@ pub fn of_marked_text(first: &[u8]) -> Option<&'static Standard> {
 }
 
 /// The text in UTF-8 without a mark, and the name of its encoding. Text in UTF-8 is not looked through: a byte that is
-/// no text is found where its row is read, which tells the line.
+/// no text is found where its row is read, which gives the line.
 pub fn decoded(
     reader: Box<dyn Read>,
     first: &[u8],

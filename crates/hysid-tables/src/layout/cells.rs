@@ -8,7 +8,7 @@ use crate::number::{self, NumberProblem};
 use crate::reading::Delimiter;
 use crate::stamp::Stamp;
 
-/// A cell of a line.
+/// Text of a cell, without its quotation marks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineCell<'t> {
     /// Without quotation marks.

@@ -6,10 +6,10 @@ use super::cells::{CellKind, LineCell, split};
 use super::lines::TextLine;
 use crate::reading::Delimiter;
 
-/// A line belongs to a table if at least so many of its filled cells, in percent, are numbers.
+/// Least share of the filled cells, in percent, that are numbers in a line of a table.
 const LEAST_NUMBERS: usize = 40;
 
-/// A column has what at least so many of its filled cells, in percent, have.
+/// Least share of the filled cells, in percent, that decide the kind of a column.
 const MOST_CELLS: usize = 80;
 
 /// Lines of numbers one after another with equally many cells; blank lines and comments may stand between.

@@ -2,7 +2,7 @@
 //!
 //! 1. *Folds* of the training data, [`crate::validation::folds`]; of a single record only three of them.
 //! 2. *Candidates*: for data that look like a resonance models with inertia, a network and a recurrent network, which
-//!    are judged on the beginnings of the records and fitted to all of them (theory.md, section 15); otherwise networks,
+//!    are scored on the beginnings of the records and fitted to all of them (theory.md, section 15); otherwise networks,
 //!    recurrent networks, random stops and all classical laws, with and without rate, deterioration, relaxation and
 //!    companding. Laws with searched parameters are first fitted to few rows, and dropped if their errors are far above
 //!    the best. The other candidates and the remaining laws are fitted to the first folds, the best of each kind also to
@@ -67,10 +67,10 @@ use work::AutoWork;
 
 const MOST_FOLDS: usize = 5;
 
-/// Rows with an output that candidates are fitted to and judged on, at most; the memory runs through all.
+/// Rows with an output that candidates are fitted to and validated on, at most; the memory runs through all.
 const MOST_ROWS: usize = 4000;
 
-/// Rows that candidates with inertia are judged on, at most: the beginnings of the records.
+/// Rows that candidates with inertia are validated on, at most: the beginnings of the records.
 const ROWS_WITH_INERTIA: usize = 6000;
 
 /// Fits expected before anything is known.
@@ -319,7 +319,7 @@ impl EnsembleSelection<'_, '_, '_> {
         }
     }
 
-    /// The band that the rows held out ask for, wider where the data cannot tell candidates apart.
+    /// The band from the errors on held-out rows, wider where the data cannot distinguish candidates.
     fn band(&self, folds: &[Vec<HeldOutRow>]) -> Option<Band> {
         let band = Band::calibrate(folds)?;
         Some(match self.evidence {

@@ -29,7 +29,7 @@ pub(crate) fn quick() -> ClassicalOptions {
 
 pub(crate) const QUICK_INTERVALS: usize = search::INTERVALS;
 
-/// The initial state that is asked for, and what is needed to find it.
+/// The requested initial state, and what is needed to find it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StateRequest {
     pub state: Option<InitialState>,

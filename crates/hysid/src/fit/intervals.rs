@@ -67,7 +67,7 @@ pub enum IntervalStatus {
 }
 
 impl IntervalStatus {
-    /// In words.
+    /// The status in the words of its JSON.
     pub fn words(self) -> &'static str {
         match self {
             Self::Determined => "determined",

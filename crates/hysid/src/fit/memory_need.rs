@@ -35,7 +35,7 @@ const MOST_PARAMETERS_OF_A_LAW: usize = 40;
 /// Peak memory of an identification, without that of the data themselves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MemoryNeed {
-    /// Bytes.
+    /// Peak memory in bytes.
     pub bytes: f64,
     /// Largest part of it, in words.
     pub taken_by: String,

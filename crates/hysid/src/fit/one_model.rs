@@ -1,4 +1,4 @@
-//! Identification of one network or one classical model, in the initial state that is asked for.
+//! Identification of one network or one classical model, in the requested initial state.
 
 use std::borrow::Cow;
 
@@ -91,7 +91,7 @@ fn run_of_law(history: Vec<HistoryPoint>, termination: Termination) -> Run {
     }
 }
 
-/// The data in the initial state that is asked for.
+/// The data in the requested initial state.
 fn begun<'d>(
     data: &'d Dataset,
     options: &ClassicalOptions,

@@ -150,7 +150,7 @@ pub type Observer<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + Send + 'a;
 /// A fitted model with the number of evaluations.
 #[derive(Debug, Clone)]
 pub struct Fitted {
-    /// The model.
+    /// The fitted model, ready to simulate.
     pub model: Model,
     /// Evaluations of the objective, all starts together, gradients included.
     pub evaluations: usize,

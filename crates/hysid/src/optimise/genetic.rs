@@ -87,7 +87,7 @@ impl Genetic {
         Ok(Self { population, generation: 0, evaluations: size })
     }
 
-    /// True if it is a population of so many within these bounds.
+    /// True if it is a population of this size within these bounds.
     pub(crate) fn is_sound(&self, bounds: &[(f64, f64)], size: usize) -> bool {
         let is_gene = |(gene, &(low, high)): (&f64, &(f64, f64))| (low..=high).contains(gene);
         let is_individual = |one: &Individual| {

@@ -26,7 +26,7 @@ pub(crate) struct RoundPlan {
     pub rounds: usize,
     /// Rounds at first in which no start is given up and the search does not end.
     pub spared: usize,
-    /// After so many further rounds half of the starts are given up, and again after as many more.
+    /// Further rounds after which half of the starts are given up, and again after as many more.
     pub to_prove_itself: usize,
     /// Starts that are never given up.
     pub finalists: usize,

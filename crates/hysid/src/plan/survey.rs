@@ -27,7 +27,7 @@ const SHORTEST: f64 = 0.1;
 /// Speeds closer than this ratio are one.
 const ONE_SPEED: f64 = 1.5;
 
-/// A hold is so many rows with less than this share of the range of movement.
+/// Least number of rows of a hold, with less than this share of the range of movement.
 const HOLD_ROWS: usize = 8;
 const STILL: f64 = 1e-3;
 
@@ -46,7 +46,7 @@ pub(super) struct Survey {
     pub gaps: Vec<Gap>,
     pub rate_dependence: Verdict,
     pub deterioration: Verdict,
-    /// True if the specimen deteriorates, or is a structure whose data cannot tell.
+    /// True if the specimen deteriorates, or is a structure whose data cannot show it.
     pub may_deteriorate: bool,
     /// True if the data have time and do not exclude rate dependence.
     pub speed_matters: bool,

@@ -40,7 +40,7 @@ const WORDS: &[(UsualRole, &str)] = &[
 const EXCITATION: [&str; 8] =
     ["excitation", "anregung", "excitación", "excitacion", "возбуждение", "激励", "加振", "励振"];
 
-/// The role of a quantity by the words of its name; `None` if they tell none, or several.
+/// The role of a quantity by the words of its name; `None` if they give none, or several.
 pub(super) fn part(quantity: &str) -> Option<UsualRole> {
     let lower = quantity.to_lowercase();
     let words: Vec<&str> =

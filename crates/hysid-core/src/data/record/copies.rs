@@ -87,9 +87,9 @@ pub fn likeness(short: &Record, long: &Record) -> Option<Likeness> {
 struct CopySearch<'r> {
     record: &'r Record,
     scored: Vec<usize>,
-    /// Differences of a single input, and of an output, that are none.
+    /// Differences of a single input, and of an output, that are negligible.
     loose: Vec<f64>,
-    /// Mean square differences of a whole column that are none, inputs first.
+    /// Mean square differences of a whole column that are negligible, inputs first.
     limits: Vec<f64>,
 }
 

@@ -134,7 +134,7 @@ impl<'r> RecordPath<'r> {
         self.is_part_of(long, &near).then_some(Agreement::Part)
     }
 
-    /// Differences of each input that are none; of further inputs, which may be constant, also a share of their value.
+    /// Differences of each input that are negligible; of further inputs, which may be constant, also a share of their value.
     fn near(&self, long: &RecordPath<'_>) -> Vec<f64> {
         let ranges = self.ranges.iter().zip(&long.ranges).map(|(a, b)| a.max(*b)).enumerate();
         let near = ranges.map(|(index, range)| match index {

@@ -101,7 +101,7 @@ pub(super) fn may_end_a_name(text: &str) -> bool {
     symbol(base).is_some() && !NOT_IN_NAMES.contains(&base)
 }
 
-/// Symbols that are words too, or of which only a bracket tells that they are units.
+/// Symbols that are words too, and are units only in brackets.
 const NOT_IN_NAMES: [&str; 14] =
     ["in", "ft", "%", "‰", "°", "°C", "\"", "'", "d", "second", "seconds", "minutes", "hours", "microstrain"];
 

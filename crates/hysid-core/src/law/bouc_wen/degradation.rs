@@ -194,7 +194,7 @@ impl Degradation {
         (1.0 + self.delta_nu * e) / (1.0 + self.delta_eta * e)
     }
 
-    /// Parts for a yield displacement, beyond those for its quickness, that a narrow pinched range asks for.
+    /// Parts for a yield displacement, beyond those for its quickness, that a narrow pinched range requires.
     pub(super) fn narrowness(&self) -> f64 {
         (0.5 / (self.psi_0 * (self.lambda + self.zeta_s))).clamp(1.0, 2.0)
     }

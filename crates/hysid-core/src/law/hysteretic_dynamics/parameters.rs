@@ -68,7 +68,7 @@ pub(super) const OFFSET: usize = 0;
 pub(super) const DIRECT: usize = 1;
 
 impl DynamicsLayout {
-    /// The layout of so many modes and elements.
+    /// The layout for these numbers of modes and elements.
     pub fn new(form: DynamicsForm, modes: usize, elements: usize, shape: ElementShape) -> Self {
         let mut end = DIRECT + 1;
         let mut next = |length: usize| {

@@ -22,7 +22,7 @@ const LEAST_DIFFERENCE: f64 = 1e-9;
 const LARGEST_SLOPE: f64 = 1e3;
 const STEEPEST_SLOPE: f64 = 0.9;
 
-/// Mismatch of a force that counts as none, relative to its size.
+/// Mismatch of a force that is neglected, relative to its size.
 const TOLERANCE: f64 = 1e-12;
 
 /// The state of modes and elements, with the intermediate results of the last step.
@@ -44,7 +44,7 @@ pub struct DynamicsMotion {
     pub(super) forces: Vec<f64>,
     /// Bounds of the forces.
     largest: Vec<f64>,
-    /// `∂R/∂r` of each element, from the newest trials that told it.
+    /// `∂R/∂r` of each element, from the newest trials that showed it.
     slopes: Vec<f64>,
     /// The last force that was assumed, and the one that followed.
     tried: Vec<(f64, f64)>,

@@ -10,7 +10,7 @@ const ROWS_OF_A_CHOICE: usize = 20_000;
 /// The longest preview that is tried, as a share of the record.
 const LONGEST: f64 = 0.125;
 
-/// The search of a preview ends after so many longer ones without improvement, if the lowest cost is at most [`GOOD`].
+/// Longer previews without improvement after which the search ends, if the lowest cost is at most [`GOOD`].
 const WORSE: usize = 4;
 const GOOD: f64 = 0.1;
 

@@ -71,7 +71,7 @@ pub struct TargetValue {
     pub window: (f64, f64),
 }
 
-/// The result of a search.
+/// Last point of a search, and why it ended.
 #[derive(Debug, Clone, Copy)]
 pub struct SearchResult {
     pub point: SearchPoint,
@@ -93,7 +93,7 @@ impl TargetValue {
         SearchResult { point, ending: SearchEnding::Reached, slope }
     }
 
-    /// The argument at which `function` has the value, nearest to `first` in the direction that `slope` tells.
+    /// The argument at which `function` has the value, nearest to `first` in the direction that `slope` gives.
     pub fn search<E>(
         &self,
         first: f64,

@@ -8,7 +8,7 @@ use crate::model::stepper::{Snapshot, Stepper, StepperMemory};
 const SHARE: f64 = 1e-6;
 
 impl Stepper<'_> {
-    /// The output at a sample from the committed state, which stays as it is. It may be asked for any number of times;
+    /// The output at a sample from the committed state, which stays as it is. It may be called any number of times;
     /// [`Stepper::commit`] accepts the last one. The arguments are those of [`Stepper::step`].
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use crate::branch::{Branch, BranchSet};
 /// Rows on each side of a turning point at least.
 const FEWEST_ROWS: usize = 5;
 
-/// Rows of a window at most; of more, every so many are taken.
+/// Most rows of a window; of more, evenly spaced ones are taken.
 const MOST_ROWS: usize = 400;
 
 /// The input turns sharply where its second derivatives in three rows are so many times one beside them (for a
@@ -282,7 +282,7 @@ mod tests {
     use hysid_core::data::record::{ColumnNames, Dataset, Record};
     use hysid_core::elementary::{cos, powi, sin};
 
-    /// A sine at first, and what cubics on both sides of its top answer to it `lag` later, with `beside` added.
+    /// A sine at first, and the response of cubics on both sides of its top, `lag` later, with `beside` added.
     fn around_a_top(lag: f64, beside: impl Fn(f64) -> f64) -> Dataset {
         let time: Vec<f64> = (0..400).map(|k| 0.01 * f64::from(k)).collect();
         let top = 0.5 * std::f64::consts::PI;

@@ -39,7 +39,7 @@ pub(super) struct PastPath {
     turning: Vec<f64>,
 }
 
-/// The paths. `worn` asks for repeated loops, which wear a model out, in place of a few.
+/// The paths. `worn` takes repeated loops, which wear a model out, in place of a few.
 pub(super) fn ways(worn: bool) -> Vec<PastPath> {
     let (count, share) = SHRINKING;
     let shrinking = (0..2 * count).map(|turn| powi(-1.0, turn) * powi(share, turn / 2));

@@ -134,7 +134,7 @@ impl Words {
     }
 }
 
-/// Both ends, with as many digits as it takes to tell them apart.
+/// Both ends, with as many digits as it takes to distinguish them.
 fn span((low, high): (f64, f64)) -> String {
     let with =
         |digits: usize| [low, high].map(|value| format!("{value:.digits$}", value = Significant(value)));

@@ -55,7 +55,7 @@ struct DynamicsElements<'l> {
     each: Vec<ElementParts<'l>>,
     /// For each mode the displacement under a unit force of each element, with its sign in the equation of motion.
     compliances: Array,
-    /// Forces as the modes feel them, at the end and at the beginning of a step.
+    /// Forces as they act on the modes, at the end and at the beginning of a step.
     forces: Array,
     forces_before: Array,
     following: Array,

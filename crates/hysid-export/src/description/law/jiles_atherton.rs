@@ -11,7 +11,7 @@ const LONGEST_PART: f64 = 0.05;
 const MOST_PARTS: f64 = 4000.0;
 const SATURATED: f64 = 300.0;
 
-/// Steps of at most so many parts have the slope of the parts.
+/// Most parts of a step that has the slope of the parts.
 const PARTS_WITH_SLOPE: f64 = 200.0;
 
 const LEAST_PINNING: f64 = 0.02;

@@ -9,7 +9,7 @@ use crate::program::{Array, Program, Statement, Storage, every};
 use crate::target::onnx::lanes;
 use crate::target::onnx::messages::{Attribute, BOOL, DOUBLE, Graph, INT64, OnnxNode, Tensor, ValueInfo};
 
-/// Loops of at most so many passes are unrolled.
+/// Most passes of a loop that is unrolled.
 const UNROLLED: i64 = 64;
 
 /// Names of the graph's inputs and outputs.

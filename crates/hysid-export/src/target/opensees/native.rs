@@ -110,7 +110,7 @@ impl Native {
         )
     }
 
-    /// Tolerance and iterations, where the command asks for them.
+    /// Tolerance and iterations, where the command takes them.
     fn last(&self, name: &str, before: &str) -> (String, String) {
         match self.iterations {
             None => (String::new(), String::new()),

@@ -155,7 +155,7 @@ fn soak(kinds: &[Argument]) -> String {
         .replace("@given@", &given)
 }
 
-/// Runs so many steps of a program with all sanitizers.
+/// Runs a number of steps of a program with all sanitizers.
 pub fn must_survive(name: &str, compiler: &str, folder: &TempDir, sources: &[&str], steps: &str) {
     let sanitizers = ["-O1", "-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
     let mut command = Command::new(compiler);

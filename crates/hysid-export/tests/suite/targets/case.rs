@@ -26,7 +26,7 @@ pub struct StepCase {
 }
 
 impl StepCase {
-    /// A path of so many rows, with rates by backward differences.
+    /// A path of `rows` rows, with rates by backward differences.
     pub fn of(model: &Model, rows: usize) -> Self {
         let arguments = Description::of(model, RateSource::Backward, Precision::Double).arguments;
         let mut stepper = model.stepper();

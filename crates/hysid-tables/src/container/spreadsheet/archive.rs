@@ -30,7 +30,7 @@ pub enum SpreadsheetKind {
 /// The same archive, without compression and what is not needed, and its kind.
 ///
 /// # Errors
-/// No archive of a spreadsheet; parts that unpack to more than the budget, or ask for more than they hold.
+/// No archive of a spreadsheet; parts that unpack to more than the budget, or declare more than they hold.
 pub fn checked(bytes: &[u8]) -> Result<(Vec<u8>, SpreadsheetKind), String> {
     let budget = Budget::of(bytes.len());
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|_| DAMAGED)?;

@@ -19,7 +19,7 @@ const ENTRY: usize = 128;
 
 const MOST_SHEETS: usize = 256;
 
-/// Refuses a file that asks for more than it holds.
+/// Rejects a file that declares more than it holds.
 pub fn check(bytes: &[u8]) -> Result<(), String> {
     let file = Compound::of(bytes)?;
     let directory = file.chain(file.number(48)?)?;

@@ -109,7 +109,7 @@ impl Candidate {
         Self { kind: CandidateKind::of(request), request: request.clone() }
     }
 
-    /// The same with so many rows of each record that only drive the memory.
+    /// The same with this number of rows of each record that only drive the memory.
     pub fn warmed_up(&self, rows: usize) -> Self {
         let mut warmed = self.clone();
         match &mut warmed.request {

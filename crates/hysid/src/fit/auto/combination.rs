@@ -287,7 +287,7 @@ mod tests {
         (0..count).map(one).collect()
     }
 
-    /// However many members may stay, what stays is an ensemble that answers what was validated.
+    /// However many members may stay, the result is the ensemble that was validated.
     #[test]
     fn any_number_of_members_is_an_ensemble() {
         let data = data();

@@ -23,11 +23,11 @@ const ABOUT_THE_LOWEST_OF_PREISACH: f64 = 2.0;
 /// not those of relays. Designed.
 const LEFT_BY_PREISACH: f64 = 0.05;
 
-/// Least error of such a Preisach model on the folds, relative to its training error: the folds ask for more than the data
-/// show. Where they do not, they can tell candidates apart by themselves. Designed.
+/// Least error of such a Preisach model on the folds, relative to its training error: the folds need more than the data
+/// show. Where they do not, they can distinguish candidates by themselves. Designed.
 const ASKS_FOR_MORE: f64 = 3.0;
 
-/// Scores of laws, relative to the lowest, that tell nothing apart: the law with the fewest numbers is taken. Designed.
+/// Ratio of scores to the lowest up to which laws count as equal: the law with the fewest numbers is taken. Designed.
 const ALIKE: f64 = 1.05;
 
 /// A candidate with its errors on the data and on the folds.

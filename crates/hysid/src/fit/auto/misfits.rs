@@ -4,8 +4,8 @@
 //! training error at most [`FITS`] times that of the candidate that fits best, unless the ensemble predicts held-out
 //! rows better than that candidate. Otherwise the candidates that are worse are dropped, in two steps.
 //!
-//! Where even the best candidate misses held-out rows by half of their standard deviation, the folds tell nothing: each
-//! asks for more than the others show. Candidates that do not fit the data are then left out before all else.
+//! Where even the best candidate misses held-out rows by half of their standard deviation, the folds show nothing: each
+//! needs more than the others show. Candidates that do not fit the data are then left out before all else.
 
 use super::{EnsembleSelection, Trial, ValidatedEnsemble, errors_held_out};
 use crate::fit::auto::score::Score;
@@ -20,7 +20,7 @@ const SLACK_OF_ONE_LOOP: f64 = 0.5;
 /// Designed.
 const CLEARLY_BETTER: f64 = 0.9;
 
-/// Lowest score, in percent of the standard deviation, at which the folds tell nothing. Designed.
+/// Lowest score, in percent of the standard deviation, at which the folds show nothing. Designed.
 const TELLS_NOTHING: f64 = 50.0;
 
 #[derive(Debug, Clone, Copy)]
@@ -75,7 +75,7 @@ impl EnsembleSelection<'_, '_, '_> {
         true
     }
 
-    /// Leaves out candidates that do not fit the data, where the folds tell nothing.
+    /// Leaves out candidates that do not fit the data, where the folds show nothing.
     pub(super) fn drops_what_does_not_fit(&mut self) {
         if self.options.only.is_some() {
             return;

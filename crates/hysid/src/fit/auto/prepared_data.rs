@@ -1,7 +1,7 @@
 //! How the records begin: in the virgin state, after a warm-up, after one period of themselves, or in states that are
 //! found for them.
 //!
-//! Each way is judged by the validation error of candidates that take a moment to fit. The virgin state is kept
+//! Each way is compared by the validation error of candidates that take a moment to fit. The virgin state is kept
 //! unless a warm-up is better by 10 %, or other states by 20 %: these have more ways to fit by chance. Records whose
 //! beginning and end meet are tried as periods, before states are looked for.
 

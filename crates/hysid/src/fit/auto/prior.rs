@@ -40,7 +40,7 @@ const OF_NETWORKS: ErrorsInside = ErrorsInside { softening: 0.25, sigmoid: 0.25,
 
 const PARTS: usize = 10;
 
-/// A part of a branch is steeper than another if its slope is so many times as large. Designed.
+/// Ratio of slopes from which on a part of a branch is steeper than another. Designed.
 const STEEPER: f64 = 2.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -19,7 +19,7 @@ const LEAST_SHARE: f64 = 0.05;
 /// Weight of the rows of the own class in a score; the rest is the other class's. Designed.
 const OWN_CLASS: f64 = 0.75;
 
-/// Errors that scores tell apart, as shares of the standard deviation.
+/// Bounds of errors in a score, as shares of the standard deviation.
 const ERRORS: (f64, f64) = (1e-12, 1e150);
 
 /// Weight of a fold that holds out records beyond the others; that of any other fold is 1. Designed.

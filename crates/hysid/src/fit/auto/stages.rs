@@ -22,10 +22,10 @@ const SIDE_BY_SIDE: usize = 4;
 const HOPELESS: f64 = 3.0;
 const HOPEFUL_OF_KIND: usize = 6;
 
-/// A model with inertia that has fewer parts is enough if its error is at most so many times that of the best.
+/// Largest error, relative to the best, of a model with inertia that has fewer parts and is enough.
 const ABOUT_AS_GOOD: f64 = 1.2;
 
-/// With so many folds at most, all are first folds.
+/// Number of folds up to which all are first folds.
 const FEW_FOLDS: usize = 3;
 
 /// A law passes screening if its training error is at most this many times the best held-out error.
@@ -132,7 +132,7 @@ impl Stages<'_, '_, '_> {
         if has_inertia { 1 } else { SIDE_BY_SIDE }
     }
 
-    /// Ends the starts of some candidates that are under way, and tells what came of them.
+    /// Ends the starts of some candidates that are under way, and reports their results.
     fn end_start(&mut self, places: &[usize]) {
         self.bench.end_start(&mut self.trials, places);
         for &place in places {
@@ -201,13 +201,13 @@ impl Stages<'_, '_, '_> {
     }
 
     /// The folds on which a candidate shows whether it is hopeless, and the others. Of a single record the first
-    /// is a forecast, the last a block from its middle. Few folds are all needed to tell.
+    /// is a forecast, the last a block from its middle. Few folds are all needed.
     fn first_folds(&self) -> (Vec<usize>, Vec<usize>) {
         let last = self.bench.folds.len() - 1;
         (0..=last).partition(|&fold| fold == 0 || fold == last || last < FEW_FOLDS)
     }
 
-    /// The best networks so far with other penalties, unless the user decided or one loop cannot tell.
+    /// The best networks so far with other penalties, unless the user decided or one loop cannot distinguish them.
     fn refined(&self) -> Vec<Candidate> {
         let Self { options, .. } = self;
         if self.evidence.is_one_loop()
@@ -259,7 +259,7 @@ impl Stages<'_, '_, '_> {
         worth
     }
 
-    /// Drops a law that was judged on no fold.
+    /// Drops a law that was validated on no fold.
     fn drop_unjudged(&mut self, law: Candidate, model: Option<&Model>) {
         let tried = Tried {
             name: law.name(),

@@ -15,7 +15,7 @@ const SHARE: f64 = 0.05;
 /// Factor on the error that leaving rows out must reach to be worth it. Designed.
 const WORTH: f64 = 0.9;
 
-/// Rows to leave out at the beginning of each record: 0 or a share of the shortest, judged on the same later rows.
+/// Rows to leave out at the beginning of each record: 0 or a share of the shortest, compared on the same later rows.
 pub(super) fn better(quick: Candidate, data: &Dataset, folds: &[Fold], work: &AutoWork) -> WarmUp {
     let none = WarmUp::decided(0);
     let shortest = data.records().iter().map(|record| record.len()).min().unwrap_or_default();

@@ -20,12 +20,12 @@ pub(super) struct AutoWork<'o, 'a> {
 struct FitCount {
     done: usize,
     expected: usize,
-    /// The share of the work that was told last: it never falls.
+    /// The share of the work that was reported last: it never falls.
     told: f64,
 }
 
 impl<'o, 'a> AutoWork<'o, 'a> {
-    /// Work of about so many fits.
+    /// Work of about this number of fits.
     pub fn new(observer: &'o mut Observer<'a>, expected: usize) -> Self {
         Self {
             observer: SharedObserver::new(observer, None),

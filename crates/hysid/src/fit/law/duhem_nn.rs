@@ -40,7 +40,7 @@ use crate::termination::Termination;
 use hysid_core::elementary::ln;
 use rand::RngExt;
 
-/// Share of the data that judges the starts.
+/// Share of the data that the starts are validated on.
 const HELD_OUT: f64 = 0.25;
 
 /// λ: penalty on the squared output weights.
@@ -52,7 +52,7 @@ const DECAY: f64 = 1e-5;
 /// Rows compared with the measured output at most.
 const MOST_COMPARED: usize = 2000;
 
-/// After so many epochs half of the starts are given up, and again after as many more.
+/// Epochs after which half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 12;
 
 const PATH_LEAKS: (f64, f64) = (1e-3, 1e3);
@@ -162,7 +162,7 @@ impl<'a> DuhemTraining<'a> {
     }
 }
 
-/// The numbers of parts that are asked for, for data with or without time stamps.
+/// The requested numbers of parts, for data with or without time stamps.
 pub(crate) fn shape_of(options: &ClassicalOptions, has_time: bool) -> CellShape {
     let has_rate = options.rate.is_some();
     CellShape {
@@ -447,7 +447,7 @@ impl DuhemWalk {
         self.search.known_value().expect("a walk begins at a known value")
     }
 
-    /// Where the error on what was held out is smallest, and the value there; the present place if that was not judged.
+    /// Where the error on held-out data is smallest, and the value there; the present place if it was not validated.
     fn least(&self) -> (&[f64], &DuhemValue) {
         self.least_on_held_out.as_ref().map_or_else(
             || (self.search.parameters(), self.value()),
@@ -457,7 +457,7 @@ impl DuhemWalk {
 }
 
 impl SearchStart for DuhemWalk {
-    /// By what was held out, if that has been judged.
+    /// By the error on held-out data, if there is one.
     fn order(&self, other: &Self) -> Ordering {
         let rank = |walk: &DuhemWalk| walk.least_on_held_out.as_ref().map(|(error, ..)| *error);
         match (rank(self), rank(other)) {

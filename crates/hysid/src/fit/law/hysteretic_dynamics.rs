@@ -42,7 +42,7 @@ use records::Records;
 pub(crate) use task::AT_ONCE;
 use task::{DynamicsTask, DynamicsValue};
 
-/// After so many epochs half of the starts are given up, and again after as many more.
+/// Epochs after which half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 30;
 
 /// Epochs that the stages are made for. Fewer pass through all of them more quickly.
@@ -61,7 +61,7 @@ struct ScheduleStage {
     end: usize,
     /// κ.
     penalty: f64,
-    /// True if it sees only the beginnings of the records.
+    /// True if it uses only the beginnings of the records.
     is_early: bool,
     /// True if starts of one mode still have one.
     has_one_mode: bool,
@@ -294,7 +294,7 @@ impl DynamicsWalk {
         self.search.known_value().expect("a walk begins at a known value")
     }
 
-    /// One epoch of so many, in the stage that it belongs to.
+    /// One epoch out of `epochs`, in the stage that it belongs to.
     fn advance(&mut self, epoch: usize, epochs: usize, tasks: &Tasks<'_>) {
         let stage = stage(epoch, epochs);
         self.is_in_last = stage == self::stage(epochs, epochs);

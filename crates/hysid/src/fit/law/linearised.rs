@@ -22,7 +22,7 @@ const DIFFERENCE: f64 = 1e-4;
 /// A variable of a search so close to an end of its range is at its bound.
 const AT_BOUND: f64 = 1e-6;
 
-/// Differences to both sides that differ by this share of their mean tell of a kink.
+/// Least relative difference of the differences to both sides that shows a kink.
 const KINK: f64 = 0.2;
 
 /// Most rows of a law whose variables are all weights; of more, evenly spaced stretches.
@@ -153,7 +153,7 @@ fn is_kinked(above: &[f64], here: &[f64], below: &[f64]) -> bool {
     bend > KINK * KINK * change
 }
 
-/// Series with at most so many scored rows, in stretches, and how many rows each stands for.
+/// Series with at most this number of scored rows, in stretches, and how many rows each stands for.
 pub(crate) fn in_stretches(mut series: Vec<Series>) -> (Vec<Series>, f64) {
     let rows: usize = scored(&series).map(Iterator::count).sum();
     if rows <= MOST_ROWS {

@@ -41,7 +41,7 @@ const LEAST_SLOPE: f64 = 1e-3;
 
 const ITERATIONS: usize = 40;
 
-/// Iterations of a refinement that is only judged.
+/// Iterations of a refinement for validation only.
 const ITERATIONS_IN_VALIDATION: usize = 10;
 
 impl Identify for ModifiedPrandtlIshlinskii {

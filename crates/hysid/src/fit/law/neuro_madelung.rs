@@ -39,9 +39,9 @@ use crate::termination::Termination;
 
 /// Weight of the squared parameters beside the mean square error of the scaled output.
 const DECAY: f64 = 1e-5;
-/// Share of the data that judges the starts.
+/// Share of the data that the starts are validated on.
 const HELD_OUT: f64 = 0.25;
-/// After so many epochs of free run half of the starts are given up, and again after as many more.
+/// Epochs of free run after which half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 8;
 
 impl Identify for NeuroMadelung {
@@ -500,7 +500,7 @@ impl MadelungWalk {
         self.search.known_value().expect("a walk begins at a known value")
     }
 
-    /// Where a free run over what was held out has the smallest error; the present place if none was judged.
+    /// Where a free run over held-out data has the smallest error; the present place if it was not validated.
     fn best_parameters(&self) -> &[f64] {
         self.best.as_ref().map_or(self.parameters(), |(_, parameters)| parameters)
     }
@@ -511,7 +511,7 @@ impl MadelungWalk {
 }
 
 impl SearchStart for MadelungWalk {
-    /// By what was held out once that has been judged.
+    /// By the error on held-out data once there is one.
     fn order(&self, other: &Self) -> Ordering {
         let rank =
             |walk: &MadelungWalk| walk.best.as_ref().map_or(walk.value().objective, |(error, _)| *error);

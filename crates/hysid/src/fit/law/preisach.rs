@@ -125,7 +125,7 @@ pub(crate) struct PreisachProblem {
 const FIRST: usize = 2;
 
 impl PreisachProblem {
-    /// A plane of so many intervals, whose lines are where the output changes.
+    /// A plane with this number of intervals, whose lines are where the output changes.
     pub fn of(series: &[Series], range: (f64, f64), intervals: usize) -> Self {
         Self::new(Plane::new(LineDensity::new(series, range).lines(intervals)))
     }

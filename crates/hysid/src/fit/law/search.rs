@@ -50,7 +50,7 @@ const DRAWS_PER_START: usize = 24;
 /// Least distance of starts, root mean square of the differences in `u`, where there are enough points.
 const APART: f64 = 0.12;
 
-/// After so many rounds half of the starts are given up, and again after as many more.
+/// Rounds after which half of the starts are given up, and again after as many more.
 const ROUNDS_TO_PROVE_ITSELF: usize = 6;
 
 const FINALISTS: usize = 2;
@@ -101,8 +101,8 @@ pub(crate) struct Unknowns {
     pub non_negative: Vec<bool>,
 }
 
-/// A family of laws, in the form of the search. The search knows it by reference only, so that the compiler makes one
-/// search for all families: a call costs nothing beside the run over a record that it asks for.
+/// A family of laws, in the form of the search. The search takes it by reference only, so that the compiler makes one
+/// search for all families: a call costs nothing beside its run over a record.
 pub(crate) trait SearchFamily: Sync {
     fn unknowns(&self) -> &Unknowns;
 
@@ -121,7 +121,7 @@ type MakesLaw<'a> = dyn Fn(&[f64], &[f64]) -> Option<Classical> + Sync + 'a;
 /// An identified law with the result of its search.
 #[derive(Debug, Clone)]
 pub struct IdentifiedLaw<L> {
-    /// The law.
+    /// The law with its searched parameters and weights.
     pub law: L,
     /// Error over the training rows, in percent of the standard deviation of the output.
     pub train_nrmse_percent: f64,
@@ -186,7 +186,7 @@ impl LawObjective<'_> {
 /// start is walked by itself, and the starts are compared in their order.
 ///
 /// # Errors
-/// No start asked for, or a stop before any start was evaluated. The data must have been found identifiable
+/// No start requested, or a stop before any start was evaluated. The data must have been found identifiable
 /// before.
 pub(crate) fn search<F: LawFamily>(
     family: &F,
@@ -205,7 +205,7 @@ where
     found.try_map(|weights| law(&searched, &weights))
 }
 
-/// Searches parameters and weights; `law` is made of both for an observer that asks for it.
+/// Searches parameters and weights; `law` is made of both for an observer that needs it.
 fn search_parameters(
     family: &dyn SearchFamily,
     law: &MakesLaw<'_>,

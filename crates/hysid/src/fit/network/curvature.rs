@@ -7,7 +7,7 @@
 //! (A + D)⁻¹ (Uᵀv + t) = q + C⁻¹Uᵀ (I + U C⁻¹Uᵀ)⁻¹ (v - Uq),   C = κ + D,  q = C⁻¹t
 //! ```
 //!
-//! The second line (Woodbury) asks for a matrix as large as there are rows and features, in place of one as
+//! The second line (Woodbury) needs a matrix as large as there are rows and features, in place of one as
 //! large as there are parameters: 50 rows of 99 inputs need 2 MB, not 500.
 
 use crate::fit::sums::output_weights::OutputSolution;

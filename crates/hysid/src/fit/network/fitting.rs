@@ -1,7 +1,7 @@
 //! A fit on its way: which runs there are, and in which order.
 //!
 //! Several starts are trained on everything, and the lowest objective wins. The same is done on the folds of a
-//! cross-validation, from fewer starts: that tells the error on new data, and whether penalties are needed.
+//! cross-validation, from fewer starts: that estimates the error on new data, and shows whether penalties are needed.
 //!
 //! Runs advance in rounds, one epoch of a few runs at a time; between rounds the whole state is plain
 //! data, so that the observer can store it. No run depends on another, nor on how many advance
@@ -39,7 +39,7 @@ const MOST_FOLDS: usize = 5;
 
 const STARTS_ON_FOLDS: usize = 3;
 
-/// Penalties of data without noise, as good as none: what they would bias is exact.
+/// Near-zero penalties for noise-free data, where any bias would show.
 const NO_PENALTIES: Regularisation = Regularisation { ridge: 1e-10, decay: 1e-12 };
 
 /// Largest error without penalties, as a share of the error with them, at which they are left out.
@@ -72,7 +72,7 @@ pub(crate) struct State {
 pub(crate) struct Fitting<'a> {
     measured: &'a Dataset,
     asked: FitOptions,
-    /// The data as the network sees them.
+    /// The data in scaled units, with their rates.
     whole: TrainingPart<'a>,
     architecture: Architecture,
     state: State,
@@ -529,7 +529,7 @@ impl PartialFit for Fitting<'_> {
     }
 }
 
-/// Runs of so many parameters and epochs that advance together: the state of one may be a dilated space.
+/// Runs with this number of parameters and epochs that advance together: the state of one may be a dilated space.
 pub(crate) fn room(parameters: usize, epochs: usize, threads: usize) -> usize {
     let numbers = DilatedSpace::numbers(parameters, epochs);
     (MOST_NUMBERS / numbers.max(1)).clamp(1, RUNS_PER_THREAD * threads)

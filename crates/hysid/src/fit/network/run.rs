@@ -256,7 +256,7 @@ impl TrainingRun {
         }
     }
 
-    /// Ends it where it is, because the user wants no more.
+    /// Ends the run where it is, after a stop.
     pub fn stop(&mut self) {
         if self.termination.is_none() {
             self.end(Termination::Stopped);
@@ -326,7 +326,7 @@ impl TrainingRun {
         self.termination.is_some()
     }
 
-    /// Why it ended; a run that was not asked to go on was stopped.
+    /// Why it ended; a run that could have gone on was stopped.
     pub fn termination(&self) -> Termination {
         self.termination.unwrap_or(Termination::Stopped)
     }

@@ -19,7 +19,7 @@ struct ObserverState<'o, 'a> {
 }
 
 impl<'o, 'a> SharedObserver<'o, 'a> {
-    /// `first` is told if it is asked before there is any progress; without it, it is not asked then.
+    /// `first` is the progress to report before there is any; without it, nothing is reported then.
     pub fn new(observer: &'o mut Observer<'a>, first: Option<Progress<'static>>) -> Self {
         Self {
             observer: Mutex::new(ObserverState { observer, last: first }),
@@ -27,7 +27,7 @@ impl<'o, 'a> SharedObserver<'o, 'a> {
         }
     }
 
-    /// Tells the progress. After it has said stop it is not asked again.
+    /// Reports the progress. Once the observer has broken off, it is not called again.
     pub fn tell(&self, progress: &Progress) -> ControlFlow<()> {
         let mut told = self.told();
         // It may have said stop to another thread that was waited for.

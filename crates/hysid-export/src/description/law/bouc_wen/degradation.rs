@@ -96,7 +96,7 @@ impl DegradingElement<'_> {
         builder.value(ratio * largest.powf(self.n - 1.0))
     }
 
-    /// Parts for a yield displacement that a narrow pinched range asks for.
+    /// Parts for a yield displacement that a narrow pinched range requires.
     pub fn narrowness(&self) -> f64 {
         let d = self.degradation;
         (0.5 / (d.psi_0 * (d.lambda + d.zeta_s))).clamp(1.0, 2.0)

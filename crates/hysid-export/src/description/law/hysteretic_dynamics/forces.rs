@@ -15,11 +15,11 @@ const PASSES: usize = 3;
 
 /// Differences of forces, relative to the largest.
 struct ForceDifferences {
-    /// Two trials that differ by less do not tell the slope.
+    /// Least difference of two trials that determines the slope.
     least_difference: f64,
-    /// A mismatch that counts as none.
+    /// Largest mismatch that is neglected.
     tolerance: f64,
-    /// How far the trial goes that tells the slope for derivatives.
+    /// Distance of the trial that determines the slope for derivatives.
     probe: f64,
 }
 
@@ -86,7 +86,7 @@ impl DynamicsParts<'_> {
     }
 
     /// The derivatives of the forces by the input: each pass moves them by their mismatch over `1 - ∂R/∂r`, as trials
-    /// move the forces themselves, which stay as they are. Before, a trial beside the forces tells `∂R/∂r`.
+    /// move the forces themselves, which stay as they are. Before, a trial beside the forces gives `∂R/∂r`.
     fn derive_forces(
         &self,
         builder: &mut Builder,

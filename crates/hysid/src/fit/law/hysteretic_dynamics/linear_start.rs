@@ -41,7 +41,7 @@ const OF_RANDOM_SEQUENCE: f64 = 70.0;
 /// state space model follow a constant and a linear hold equally well, because a velocity in the output shifts it in time.
 const CLEARLY_BETTER: f64 = 0.95;
 
-/// Rows at most that tell how a motion began.
+/// Rows at most from which the beginning of a motion is found.
 const MOST_FIRST_ROWS: f64 = 1000.0;
 
 /// Largest distance of the first rows from a motion from rest, in standard deviations, for a record at rest.
@@ -50,7 +50,7 @@ const LEAST_MOTION: f64 = 0.1;
 /// Records whose beginnings are searched, at most: the first. Each adds parameters.
 const MOST_IN_MOTION: usize = 50;
 
-/// Rows at the beginning of a record whose input tells how far the hold may be off between the first of them.
+/// Rows at the beginning of a record whose input bounds the error of the hold between the first of them.
 const FIRST_ROWS: usize = 4;
 
 /// An expected displacement or velocity below this, in standard deviations of the output, is rest.
