@@ -7,7 +7,7 @@ use hysid::data::record::Record;
 use hysid::fit::network::{fit, resume};
 use hysid::fit::progress::Checkpoint;
 use hysid::model::Model;
-use hysid::network::{Architecture, Drive, Family, Layout, Network, Sizes};
+use hysid::network::{Architecture, Family, Network, NetworkDrive, ParameterLayout, Sizes};
 use hysid::options::network::{FitOptions, Trainer};
 
 use crate::bytes::Bytes;
@@ -31,7 +31,7 @@ fn kernels_are_scalar(bytes: &mut Bytes) {
     let inputs = if family.takes_further_inputs() { 1 + bytes.below(3) } else { 1 };
     let (rate, time) = (bytes.below(2) == 0, bytes.below(2) == 0);
     let architecture = Architecture::new(family, sizes, inputs, rate && time, time).expect("an architecture");
-    let layout = Layout::new(architecture);
+    let layout = ParameterLayout::new(architecture);
     let parameter = |index: usize| {
         let value = bytes.ordinary();
         if layout.ln_beta.contains(&index) {
@@ -50,7 +50,7 @@ fn kernels_are_scalar(bytes: &mut Bytes) {
         (0..architecture.channels()).map(|_| (0..rows).map(|_| bytes.ordinary()).collect()).collect();
     let step = |k: usize| if k == 0 { 0.0 } else { 0.01 + bytes.ordinary().abs() };
     let steps = if architecture.relaxation > 0 { (0..rows).map(step).collect() } else { Vec::new() };
-    let drive = Drive { channels, steps };
+    let drive = NetworkDrive { channels, steps };
     let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
     let mut fast = vec![0.0; rows];
     network.simulator().run(&u, &drive.steps, &mut fast);

@@ -1,13 +1,13 @@
 //! The networks as theory.md has them, (2.2) to (2.6): one sample and one neuron at a time, from the operators alone.
 
 use hysid::elementary::{exp, tanh};
-use hysid::network::{Drive, Layout, Network};
+use hysid::network::{Network, NetworkDrive, ParameterLayout};
 use hysid::operator::{DeterioratingStop, Operator, Relaxation};
 
 /// The scaled outputs of a network, from the virgin state.
-pub fn outputs(network: &Network, drive: &Drive) -> Vec<f64> {
+pub fn outputs(network: &Network, drive: &NetworkDrive) -> Vec<f64> {
     let (a, all) = (network.architecture(), network.parameters());
-    let layout = Layout::new(*a);
+    let layout = ParameterLayout::new(*a);
     let weights: Vec<&[f64]> = all[layout.stop_weights].chunks_exact(a.channels()).collect();
     let linear = &all[layout.linear];
     let hidden: Vec<&[f64]> = all[layout.hidden].chunks_exact(1 + a.memory_neurons()).collect();

@@ -17,7 +17,7 @@ use hysid::data::record::Dataset;
 use hysid::fit::network::fit;
 use hysid::fit::network::objective::Objective;
 use hysid::model::input_transform::InputTransform;
-use hysid::model::{Ensemble, Found, Group, Model, Node, NodeKind, Predictor, Weights};
+use hysid::model::{Ensemble, Group, Model, Node, NodeKind, Predictor, ProvenanceDraft, Weights};
 use hysid::network::scaling::Scaling;
 use hysid::options::FitSpec;
 use hysid::options::fit_spec::AutoOptions;
@@ -177,7 +177,7 @@ fn ensemble(members: &[Model], data: &Dataset) -> Model {
     let node = |member| Node { weights: Weights::equal(), kind: NodeKind::Member(member) };
     let group = Group { name: "all".into(), nodes: (0..members.len()).map(node).collect() };
     let ensemble = Ensemble::new(members.to_vec(), group, data.input_range(0)).unwrap();
-    let found = Found {
+    let found = ProvenanceDraft {
         options: FitSpec::Auto(AutoOptions::default()),
         chosen_start: 0,
         termination: Termination::Converged,

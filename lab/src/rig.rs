@@ -5,7 +5,7 @@ pub mod drives;
 use anyhow::{Context, Result};
 use hysid::Model;
 use hysid::data::record::{Dataset, Record};
-use hysid::plan::{Limits, Path, Wave};
+use hysid::plan::{DrivePath, Limits, Wave};
 use hysid::specimens::with_noise;
 use hysid_lab::generated::{DrivenSpecimen, driven_specimen};
 
@@ -23,7 +23,7 @@ const ROWS_UNSEEN: usize = 700;
 pub struct Rig {
     pub specimen: DrivenSpecimen,
     /// What the machine can do: as fast as half the specimen's highest frequency over the whole range.
-    pub path: Path,
+    pub path: DrivePath,
 }
 
 impl Rig {
@@ -41,7 +41,7 @@ impl Rig {
         let step = specimen.frequencies.map(|(_, highest)| 1.0 / (0.5 * highest * 2.0 * rows_of_a_swing));
         let max_rate = wave.peak() * (high - low) / (rows_of_a_swing * step.unwrap_or(1.0));
         let limits = Limits { range: (low, high), start, step, max_rate, rows };
-        Ok(Self { specimen, path: Path { limits, wave } })
+        Ok(Self { specimen, path: DrivePath { limits, wave } })
     }
 
     /// An untouched specimen along a drive, without noise.

@@ -4,7 +4,7 @@ use hysid::data::unit::of_column;
 use hysid::diagnosis::frequency_response::{
     AtAmplitude, FrequencyResponse, ModelResponses, ResponsePoint, Segments, Window,
 };
-use hysid::diagnosis::resonance::{Compared, LinearOscillator};
+use hysid::diagnosis::resonance::{ComparedSignal, LinearOscillator};
 use hysid::elementary::{log10, powf};
 use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, thin};
@@ -192,8 +192,8 @@ impl<'a> Section<'a> {
             number(self.responses.resolution.max(segments.distance()), 2),
             self.hertz,
             match self.responses.compared() {
-                Compared::Output => "of the largest magnitude",
-                Compared::Changes =>
+                ComparedSignal::Output => "of the largest magnitude",
+                ComparedSignal::Changes =>
                     "where frequency times magnitude is largest; this product is proportional to the response of the changes of \
                      the output from row to row, and only these show the resonance",
             }
@@ -205,8 +205,8 @@ impl<'a> Section<'a> {
             "Best linear oscillator: mass, spring and damper plus a constant gain, fitted {}in a free run; natural \
              frequency {} {}, damping ratio {} %. ",
             match oscillator.compared {
-                Compared::Output => "",
-                Compared::Changes => "to the changes of the output from row to row ",
+                ComparedSignal::Output => "",
+                ComparedSignal::Changes => "to the changes of the output from row to row ",
             },
             number(oscillator.natural_frequency, 4),
             self.hertz,

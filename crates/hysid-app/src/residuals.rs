@@ -1,6 +1,6 @@
 //! What the model leaves unexplained: tests of the residual, for training and other data apart.
 
-use hysid::diagnosis::residuals::{Place, ResidualFinding, ResidualTest, Residuals};
+use hysid::diagnosis::residuals::{GroupedResiduals, ResidualFinding, ResidualTest, Residuals};
 use hysid_document::{Axis, Chart, Colour, Curve, Item, Part, Table, count, number, unit};
 
 use crate::Report;
@@ -81,7 +81,8 @@ fn autocorrelation(data: &str, residuals: &Residuals) -> Option<Chart> {
 
 /// Root mean squares by place, one after another.
 fn by_place(data: &str, residuals: &Residuals) -> Option<Chart> {
-    let places: Vec<&Place> = residuals.places.iter().filter(|place| !place.groups.is_empty()).collect();
+    let places: Vec<&GroupedResiduals> =
+        residuals.places.iter().filter(|place| !place.groups.is_empty()).collect();
     if places.is_empty() {
         return None;
     }

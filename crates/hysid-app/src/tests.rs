@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Record};
-use hysid::diagnosis::resonance::Compared;
+use hysid::diagnosis::resonance::ComparedSignal;
 use hysid::elementary::sin;
 use hysid::fit::network::fit;
 use hysid::network::Sizes;
@@ -149,7 +149,7 @@ fn frequency_responses_are_drawn_and_their_resonances_told() {
         let simulated: Vec<Vec<f64>> =
             data.records().iter().map(|record| model.simulate(record).unwrap()).collect();
         let responses = ModelResponses::of(&model, &data, &simulated).unwrap();
-        let peak = responses.as_ref().unwrap().measured.peak(Compared::Output).unwrap();
+        let peak = responses.as_ref().unwrap().measured.peak(ComparedSignal::Output).unwrap();
         // sqrt(1)/(2 pi), and a height of 1/(2 * 0.05) less what the resolution takes.
         assert!(
             (peak.frequency - 0.159).abs() < 0.004 && (8.0..11.0).contains(&peak.magnitude()),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use hysid::model::Model;
-use hysid_records::{Data, Factors, Roles};
+use hysid_records::{Data, Roles, UnitFactors};
 use hysid_tables::Table;
 
 use crate::arguments::{ColumnOptions, ReadingOptions};
@@ -28,15 +28,15 @@ pub fn data_with(tables: Vec<Table>, roles: Roles, zero: Option<usize>) -> Resul
     Ok(data)
 }
 
-/// Factors to the units of a model, as [`Factors::of`] finds them.
+/// Factors to the units of a model, as [`UnitFactors::of`] finds them.
 pub fn factors(
     model: &Model,
     roles: &Roles,
     file: &str,
     is_scored: bool,
     are_the_same: bool,
-) -> Result<Factors> {
-    let factors = Factors::of(model, roles, file, is_scored, are_the_same)?;
+) -> Result<UnitFactors> {
+    let factors = UnitFactors::of(model, roles, file, is_scored, are_the_same)?;
     factors.conversions.iter().for_each(|conversion| note(format_args!("{conversion}")));
     Ok(factors)
 }

@@ -67,7 +67,7 @@ impl MeasuredMotion {
         let time = columns[0].as_mut().expect("there is a time");
         let spread: usize =
             places.iter().map(|place| spread_equal(&mut time[place.rows.clone()], None, &mut None)).sum();
-        let record = |place: hysid_records::Place| MotionRecord {
+        let record = |place: hysid_records::RecordPlace| MotionRecord {
             columns: std::array::from_fn(|at| {
                 columns[at].as_ref().map(|values| values[place.rows.clone()].to_vec())
             }),

@@ -9,8 +9,8 @@ use hysid::data::record::{Fingerprint, Record};
 use hysid::data::warning::Warning;
 use hysid::model::{BandLevel, Model, Prediction, Simulation};
 use hysid_records::{
-    Factors, Kind, MOST_ROWS_OF_ZERO, RecordNames, Roles, checked, equal_stamps, explained, offset_of,
-    place_of,
+    CellNeed, MOST_ROWS_OF_ZERO, RecordNames, Roles, UnitFactors, checked, equal_stamps, explained,
+    offset_of, place_of,
 };
 use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, spread_equal, starts_again};
 
@@ -95,7 +95,7 @@ pub fn run(
     model: &Model,
     rows: &mut Rows,
     roles: &Roles,
-    factors: &Factors,
+    factors: &UnitFactors,
     wanted: Wanted,
     take: &mut Take<'_>,
 ) -> Result<Option<Vec<Warning>>> {
@@ -127,7 +127,7 @@ pub fn run(
 struct TableRun<'r, 'm> {
     file: String,
     roles: &'r Roles,
-    factors: &'r Factors,
+    factors: &'r UnitFactors,
     wanted: Wanted,
     columns: Columns,
     names: RecordNames,
@@ -198,7 +198,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         model: &'m Model,
         head: &Head,
         roles: &'r Roles,
-        factors: &'r Factors,
+        factors: &'r UnitFactors,
         wanted: Wanted,
     ) -> Result<Self> {
         let simulation = match wanted.band {
@@ -241,7 +241,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
     fn begins_record(&mut self, head: &Head, row: &Row<'_>) -> Result<bool> {
         let is_first = self.waiting.lines.is_empty() && self.simulated == 0;
         if let Some((column, name)) = self.columns.time.as_mut().zip(self.roles.time.as_ref()) {
-            let now = read(column, &mut self.numbers, head, row, (name, Kind::INPUT, is_first))?;
+            let now = read(column, &mut self.numbers, head, row, (name, CellNeed::INPUT, is_first))?;
             self.clock.previous = self.clock.now;
             self.clock.now = self.factors.time.map_or(now, |factor| factor * now);
         }
@@ -290,7 +290,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
     /// Takes the numbers of a row.
     fn push(&mut self, head: &Head, row: &Row<'_>) -> Result<()> {
         let is_first = self.waiting.lines.is_empty() && self.simulated == 0;
-        let mut number = |column: &mut ColumnReader, name: &str, kind: Kind, factor: Option<f64>| {
+        let mut number = |column: &mut ColumnReader, name: &str, kind: CellNeed, factor: Option<f64>| {
             let number = read(column, &mut self.numbers, head, row, (name, kind, is_first))?;
             anyhow::Ok(factor.map_or(number, |factor| factor * number))
         };
@@ -300,13 +300,13 @@ impl<'r, 'm> TableRun<'r, 'm> {
         }
         let columns = self.columns.inputs.iter_mut().zip(&self.roles.inputs).zip(&factors.inputs);
         for (input, ((column, name), &factor)) in self.block.inputs.iter_mut().zip(columns) {
-            input.push(number(column, name, Kind::INPUT, factor)?);
+            input.push(number(column, name, CellNeed::INPUT, factor)?);
         }
         if let Some((column, name)) = self.columns.rate.as_mut().zip(self.roles.rate.as_ref()) {
-            self.block.rate.push(number(column, name, Kind::INPUT, factors.rate)?);
+            self.block.rate.push(number(column, name, CellNeed::INPUT, factors.rate)?);
         }
         let output = match &mut self.columns.output {
-            Some(column) => number(column, &self.roles.output, Kind::OUTPUT, factors.output)?,
+            Some(column) => number(column, &self.roles.output, CellNeed::OUTPUT, factors.output)?,
             None => f64::NAN,
         };
         self.block.output.push(output);
@@ -411,7 +411,7 @@ fn read(
     numbers: &mut CellReader,
     head: &Head,
     row: &Row<'_>,
-    what: (&str, Kind, bool),
+    what: (&str, CellNeed, bool),
 ) -> Result<f64> {
     let (name, kind, is_first) = what;
     let cell = row.cell(column.place());

@@ -4,13 +4,13 @@ pub mod column;
 pub mod initial_state;
 pub mod likeness;
 pub mod metrics;
-pub mod part;
 pub mod polyline;
 pub mod rate;
 pub mod record;
 pub mod summary;
 pub mod turning_points;
 pub mod unit;
+pub mod usual_role;
 pub mod warning;
 
 /// Least number of rows with an output for an identification.

@@ -19,7 +19,7 @@ pub enum Error {
     /// A column of a measured motion cannot be used.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// Data that a model was not fitted to, where only those tell.
+    /// The model was not trained on this record.
     #[error(
         "record {0:?} is not among those that the model was fitted to: intervals of parameters need the training data"
     )]
@@ -29,7 +29,7 @@ pub enum Error {
     Option(#[from] OptionError),
     #[error("{what} `{}` is unknown: choose one of {}", one_line(.name), .known.join(", "))]
     UnknownName {
-        /// What the name is of, such as "model".
+        /// Kind of thing that the name is of, such as "model".
         what: &'static str,
         name: String,
         known: Vec<&'static str>,
@@ -120,7 +120,7 @@ pub struct DataError {
     pub row: Option<usize>,
     /// The column meant; `None` if no single one.
     pub channel: Option<Channel>,
-    /// What is wrong.
+    /// Problem of the data.
     pub problem: DataProblem,
 }
 
@@ -149,7 +149,7 @@ impl fmt::Display for Channel {
     }
 }
 
-/// What is wrong with a record.
+/// Problem of a record.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs, reason = "the message of each has its fields")]
@@ -282,7 +282,7 @@ pub struct MotionError {
     pub row: Option<usize>,
     /// The column meant.
     pub column: MotionColumn,
-    /// What is wrong.
+    /// Problem of the row or column.
     pub problem: DataProblem,
 }
 
@@ -299,7 +299,7 @@ pub enum MotionColumn {
 }
 
 impl MotionColumn {
-    /// What it is, in words.
+    /// Names the column, in words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Time => "time",
@@ -338,7 +338,7 @@ pub enum SampleError {
     /// No time, or one that is not a finite number, where it is needed.
     #[error("the time of the sample is missing or not finite, and {needed_by} needs it")]
     NoTime {
-        /// What needs it, in words.
+        /// Part of the model that needs time, in words.
         needed_by: &'static str,
     },
     /// NaN or infinity.
@@ -386,11 +386,11 @@ pub enum InverseError {
 pub struct OptionError {
     /// The name of the option, in words joined by underscores.
     pub option: String,
-    /// What is wrong with it.
+    /// Problem of the value.
     pub problem: OptionProblem,
 }
 
-/// What is wrong with an option of a fit.
+/// Problem of an option of a fit.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 #[allow(missing_docs, reason = "the message of each has its fields")]
@@ -401,7 +401,7 @@ pub enum OptionProblem {
     Value {
         /// The value, as JSON.
         value: String,
-        /// What is needed, in words.
+        /// Valid values, in words.
         needed: String,
     },
 }

@@ -82,7 +82,7 @@ pub trait Law: Sized {
     /// The state: the memory of the law between two samples.
     type State: Clone + std::fmt::Debug;
 
-    /// What holds for the law with any parameters.
+    /// Facts that hold for all parameters.
     const FACTS: Facts;
 
     /// The state before the first sample of a record.
@@ -124,7 +124,7 @@ pub trait Law: Sized {
         false
     }
 
-    /// True if it has a mass: its output answers later than by the next sample.
+    /// True if it has a mass: its output responds later than by the next sample.
     fn has_inertia(&self) -> bool {
         false
     }
@@ -282,7 +282,7 @@ macro_rules! any_of {
         }
 
         impl Classical {
-            /// What holds for the law with any parameters.
+            /// Facts that hold for all parameters.
             pub fn facts(&self) -> &'static Facts {
                 match self {
                     $(Self::$law(_) => &<$module::$law as Law>::FACTS,)*

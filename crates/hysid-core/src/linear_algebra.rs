@@ -33,7 +33,7 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// An empty batch of so many columns.
+    /// An empty batch of `columns` columns.
     pub fn new(columns: usize) -> Self {
         let stride = columns.next_multiple_of(TILE);
         let capacity = (IN_CACHE / stride.max(1) / 64 * 64).clamp(FEWEST_ROWS, MOST_ROWS);

@@ -54,7 +54,7 @@ pub use ensemble::{Excursion, MedianBuffers, Predictions};
 pub use file::FORMAT_VERSION;
 pub use inverse::{Inverse, Inversion, Inverted, MOST_TRIALS, Reach, Reference};
 use ranges::Ranges;
-use runner::{Runner, Spread};
+use runner::{OutputSpread, Runner};
 pub use simulation::Simulation;
 pub use stepper::{Snapshot, Stepper};
 
@@ -74,12 +74,12 @@ pub struct Model {
     provenance: Provenance,
 }
 
-/// What simulates.
+/// Network, law or ensemble that simulates.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Predictor {
     /// A network in scaled units, with its scale factors.
     Network {
-        /// The network.
+        /// Weights and architecture, in scaled units.
         network: Network,
         /// Factors between the user's units and the network's.
         scaling: Scaling,
@@ -100,7 +100,7 @@ impl Predictor {
         }
     }
 
-    /// True if it, or a member of it, has a mass: its output answers later than by the next sample.
+    /// True if it, or a member of it, has a mass: its output responds later than by the next sample.
     fn has_inertia(&self) -> bool {
         match self {
             Self::Network { .. } => false,
@@ -173,11 +173,11 @@ fn behind(data: &Dataset, rows: usize) -> Option<Dataset> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainedRanges {
-    /// Of each input.
+    /// Smallest and largest value of each input.
     pub inputs: Vec<(f64, f64)>,
-    /// Of the rate of the first input, if the model has one.
+    /// Smallest and largest rate of the first input, if the model has one.
     pub rate: Option<(f64, f64)>,
-    /// Of the output.
+    /// Smallest and largest output.
     pub output: (f64, f64),
     /// The records, by their [`Fingerprint`]s, at most [`MOST_REMEMBERED`]; empty in a member of an ensemble.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -202,11 +202,11 @@ impl TrainedRanges {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// The requested value.
+    /// Options of the fit, as requested.
     pub options: FitSpec,
     /// Rows with an output.
     pub samples: usize,
-    /// Records.
+    /// Number of training records.
     pub records: usize,
     /// The start that became the model, counted from 0.
     pub chosen_start: usize,
@@ -251,8 +251,8 @@ impl Provenance {
 
 /// How a model was fitted, before its errors on the data are known; with them it becomes the [`Provenance`].
 #[derive(Debug, Clone)]
-pub struct Found {
-    /// The requested value.
+pub struct ProvenanceDraft {
+    /// Options of the fit, as requested.
     pub options: FitSpec,
     /// The start that became the model, counted from 0.
     pub chosen_start: usize,
@@ -268,7 +268,7 @@ pub struct Found {
     pub selection: Option<Selection>,
 }
 
-impl Found {
+impl ProvenanceDraft {
     /// Of a fit from one start, without more that is known of it.
     pub fn of(options: FitSpec, termination: Termination) -> Self {
         let (validation, penalties, runs, selection) = Default::default();
@@ -294,7 +294,7 @@ impl Found {
     }
 }
 
-impl From<Provenance> for Found {
+impl From<Provenance> for ProvenanceDraft {
     fn from(known: Provenance) -> Self {
         let Provenance { options, chosen_start, termination, validation, penalties, runs, selection, .. } =
             known;
@@ -320,7 +320,7 @@ impl Model {
         preprocessing: InputTransform,
         rate: Option<RateMethod>,
         data: &Dataset,
-        found: Found,
+        found: ProvenanceDraft,
     ) -> Result<Self> {
         let uses_rate = match &body {
             Predictor::Network { network, .. } => network.architecture().rate,
@@ -383,7 +383,7 @@ impl Model {
         self.provenance.options.model()
     }
 
-    /// What simulates.
+    /// Network, law or ensemble that simulates.
     pub fn predictor(&self) -> &Predictor {
         &self.body
     }
@@ -628,7 +628,7 @@ impl Model {
         let band = self.checked_band(level)?;
         self.check_time(excitation)?;
         let mut output = vec![0.0; excitation.len()];
-        let mut spreads = vec![Spread::default(); excitation.len()];
+        let mut spreads = vec![OutputSpread::default(); excitation.len()];
         Runner::of_model(self).rows(excitation, 0, &mut output, Some(&mut spreads))?;
         Ok(Prediction::of(Some((band, level)), output, &spreads))
     }
@@ -655,7 +655,7 @@ impl Model {
         Ok(Self::new(body, preprocessing, rate, data, provenance.into())?.with_band(band))
     }
 
-    /// The same model with this band, at least as wide as its errors on these data ask for, or without one.
+    /// The same model with this band, at least as wide as its errors on these data require, or without one.
     ///
     /// # Errors
     /// As [`Model::simulate`].
@@ -664,7 +664,7 @@ impl Model {
         let mut errors = Predictions::default();
         for record in data.records() {
             let mut output = vec![0.0; record.len()];
-            let mut spreads = vec![Spread::default(); record.len()];
+            let mut spreads = vec![OutputSpread::default(); record.len()];
             Runner::of_model(&self).rows(&record.excitation(), 0, &mut output, Some(&mut spreads))?;
             for ((y, simulated), spread) in record.output().iter().zip(output).zip(spreads) {
                 if !y.is_nan() {

@@ -63,19 +63,19 @@ pub mod tanh;
 mod transpose;
 
 pub use architecture::{Architecture, Family, Sizes};
-pub use jacobian::Linearised;
+pub use jacobian::LinearisedNetwork;
 pub use memory::MemoryState;
-pub use parameters::Layout;
-pub use sweep::Drive;
+pub use parameters::ParameterLayout;
+pub use sweep::NetworkDrive;
 
 pub use gradient::GradientOverRecords;
-pub use jacobian::{Columns, GramOverRecords, RowsOverRecords};
+pub use jacobian::{GramOverRecords, JacobianColumns, RowsOverRecords};
 
 use pulp::{Simd, WithSimd};
 
 use crate::error::{Error, Result};
 use crate::simd;
-use memory::{BLOCK, MemoryLayer, Row, limited};
+use memory::{BLOCK, BlockValues, MemoryLayer, limited};
 use readout::{Readout, SampleReadout};
 
 /// Largest magnitude of an output weight, which keeps a free run finite.
@@ -92,15 +92,15 @@ pub struct Network {
 impl Network {
     /// A network from its parts.
     ///
-    /// `parameters` are those found by search, in the order of [`Layout`]. `output` are the output weights,
+    /// `parameters` are those found by search, in the order of [`ParameterLayout`]. `output` are the output weights,
     /// in the order constant `c_0`, tanh neurons `c_i`, direct path `d_j`; parts that the architecture lacks
     /// are left out. Both are in scaled units.
     ///
     /// # Errors
-    /// A length that does not fit the architecture, a parameter outside its bounds ([`Layout::bounds`]), an
+    /// A length that does not fit the architecture, a parameter outside its bounds ([`ParameterLayout::bounds`]), an
     /// output weight that is not finite or beyond 1e50.
     pub fn new(architecture: Architecture, parameters: Vec<f64>, output: Vec<f64>) -> Result<Self> {
-        Layout::new(architecture).check(&parameters)?;
+        ParameterLayout::new(architecture).check(&parameters)?;
         if output.len() != architecture.output_weights() {
             return Err(Error::Parts(format!(
                 "{} output weights where the architecture has {}",
@@ -119,7 +119,7 @@ impl Network {
         &self.architecture
     }
 
-    /// The parameters found by search, in the order of [`Layout`].
+    /// The parameters found by search, in the order of [`ParameterLayout`].
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
     }
@@ -141,9 +141,9 @@ impl Network {
             output: self.output.clone(),
             inputs: vec![0.0; self.architecture.channels()],
             neurons: vec![0.0; self.architecture.memory_neurons()],
-            u: vec![Row([0.0; BLOCK]); self.architecture.channels()],
-            z: vec![Row([0.0; BLOCK]); self.architecture.memory_neurons()],
-            h: vec![Row([0.0; BLOCK]); self.architecture.hidden],
+            u: vec![BlockValues([0.0; BLOCK]); self.architecture.channels()],
+            z: vec![BlockValues([0.0; BLOCK]); self.architecture.memory_neurons()],
+            h: vec![BlockValues([0.0; BLOCK]); self.architecture.hidden],
         }
     }
 }
@@ -162,9 +162,9 @@ pub struct Simulator {
     inputs: Vec<f64>,
     neurons: Vec<f64>,
     /// The same in a block of rows, and outputs of the tanh neurons.
-    u: Vec<Row>,
-    z: Vec<Row>,
-    h: Vec<Row>,
+    u: Vec<BlockValues>,
+    z: Vec<BlockValues>,
+    h: Vec<BlockValues>,
 }
 
 impl Simulator {
@@ -196,37 +196,37 @@ impl Simulator {
         assert_eq!(u.len(), self.u.len(), "one slice for each channel");
         assert!(u.iter().all(|u| u.len() == y.len()), "as many inputs as outputs");
         assert!(steps.len() == y.len() || steps.is_empty(), "as many time steps as outputs");
-        simd::run(Run { simulator: self, u, steps, y });
+        simd::run(NetworkRun { simulator: self, u, steps, y });
     }
 
     /// Simulates one sample and returns its scaled output: [`Simulator::run`] with one row.
     pub fn step(&mut self, u: &[f64], step: f64) -> f64 {
         assert_eq!(u.len(), self.inputs.len(), "one value for each channel");
-        simd::run(Step { simulator: self, u, step })
+        simd::run(NetworkStep { simulator: self, u, step })
     }
 
     #[inline(always)]
-    fn block<S: Simd>(&mut self, simd: S, steps: &Row, rows: usize, y: &mut Row) {
+    fn block<S: Simd>(&mut self, simd: S, steps: &BlockValues, rows: usize, y: &mut BlockValues) {
         self.memory.forward(simd, &mut self.state, &self.u, steps, rows, &mut self.z);
         self.readout.tanh_layer(simd, &self.z, rows, &mut self.h);
         self.readout.output(simd, &self.output, &self.z, &self.h, rows, y);
     }
 }
 
-struct Run<'a> {
+struct NetworkRun<'a> {
     simulator: &'a mut Simulator,
     u: &'a [&'a [f64]],
     steps: &'a [f64],
     y: &'a mut [f64],
 }
 
-impl WithSimd for Run<'_> {
+impl WithSimd for NetworkRun<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let mut steps = Row([0.0; BLOCK]);
-        let mut output = Row([0.0; BLOCK]);
+        let mut steps = BlockValues([0.0; BLOCK]);
+        let mut output = BlockValues([0.0; BLOCK]);
         for (index, y) in self.y.chunks_mut(BLOCK).enumerate() {
             let (start, rows) = (index * BLOCK, y.len());
             for (block, u) in self.simulator.u.iter_mut().zip(self.u) {
@@ -241,13 +241,13 @@ impl WithSimd for Run<'_> {
     }
 }
 
-struct Step<'a> {
+struct NetworkStep<'a> {
     simulator: &'a mut Simulator,
     u: &'a [f64],
     step: f64,
 }
 
-impl WithSimd for Step<'_> {
+impl WithSimd for NetworkStep<'_> {
     type Output = f64;
 
     #[inline(always)]

@@ -30,7 +30,7 @@ pub enum Property {
     LoopClosure,
     /// The force at the tips of cycles falls with the amplitude, or from cycle to cycle. Of measured forces only.
     StrengthLoss,
-    /// Near zero load the stiffness is low, and grows again on the way to the tip. Only measured forces are asked.
+    /// Near zero load the stiffness is low, and grows again on the way to the tip. Only measured forces are tested.
     Pinching,
     /// After any past, each output that can be reached in one step belongs to one input. Of models only.
     Invertible,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use hysid_core::options::ModelName;
-use hysid_core::options::table::{FitOption, Group, OPTIONS, Values};
+use hysid_core::options::table::{FitOption, OPTIONS, OptionGroup, OptionValues};
 
 const HEAD: &str = "\
 # Options of a fit
@@ -45,15 +45,15 @@ for reading tables.
 
 fn values(option: &FitOption) -> String {
     match option.values {
-        Values::Count(low, high) => format!("{low} to {high}"),
-        Values::Whole => "0 or more".into(),
-        Values::Fraction => "between 0 and 1".into(),
-        Values::ZeroOr(low, high) => format!("0, or {low:e} to {high:e}"),
-        Values::Number(low, high) => format!("{low} to {high:e}"),
-        Values::Positive => "numbers above 0".into(),
-        Values::Flag => "a flag".into(),
-        Values::Truth => "true or false".into(),
-        Values::Names(names) => format!("`{}`", names().join("`, `")),
+        OptionValues::Count(low, high) => format!("{low} to {high}"),
+        OptionValues::Whole => "0 or more".into(),
+        OptionValues::Fraction => "between 0 and 1".into(),
+        OptionValues::ZeroOr(low, high) => format!("0, or {low:e} to {high:e}"),
+        OptionValues::Number(low, high) => format!("{low} to {high:e}"),
+        OptionValues::Positive => "numbers above 0".into(),
+        OptionValues::Flag => "a flag".into(),
+        OptionValues::Truth => "true or false".into(),
+        OptionValues::Names(names) => format!("`{}`", names().join("`, `")),
     }
 }
 
@@ -68,7 +68,7 @@ fn users(option: &FitOption) -> String {
 
 fn page() -> String {
     let mut page = HEAD.to_string();
-    for group in Group::ALL {
+    for group in OptionGroup::ALL {
         let _ = write!(page, "\n## {}\n", group.heading());
         for option in OPTIONS.iter().filter(|option| option.group == group) {
             let _ = write!(

@@ -31,8 +31,8 @@ fn by_name<S: Serializer>(model: &Option<ModelName>, serializer: S) -> Result<S:
     model.map(ModelName::name).serialize(serializer)
 }
 
-/// What the data say about the properties that decide.
-struct Found {
+/// Findings on the properties that decide.
+struct DecidingProperties {
     static_hysteresis: Verdict,
     rate_dependence: Verdict,
     wiping_out: Verdict,
@@ -45,7 +45,7 @@ struct Found {
     resonates: bool,
 }
 
-impl Found {
+impl DecidingProperties {
     fn of(findings: &[Finding], resonates: bool) -> Self {
         let verdict = |property| {
             let finding = findings.iter().find(|finding| finding.property == property);
@@ -76,7 +76,7 @@ impl Found {
 }
 
 pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>, resonates: bool) -> Advice {
-    let found = Found::of(findings, resonates);
+    let found = DecidingProperties::of(findings, resonates);
     let (model, reason) = simplest(&found);
     let mut statement = vec![match model {
         Some(model) => {
@@ -120,8 +120,8 @@ pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>, resonates: boo
     }
 }
 
-/// The model and the reason, the property that asks for most first.
-fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
+/// The model and the reason, the property with the largest requirement first.
+fn simplest(found: &DecidingProperties) -> (Option<ModelName>, &'static str) {
     use Verdict::{No, Yes};
     let network = |family| Some(ModelName::Network(family));
     let rival = |rival| Some(ModelName::Classical(rival));
@@ -190,7 +190,7 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
 
 /// A law with few parameters that holds what only networks hold otherwise. Whether its shape fits, only a fit
 /// tells.
-fn law(found: &Found) -> Option<&'static str> {
+fn law(found: &DecidingProperties) -> Option<&'static str> {
     if found.is_a_function() || found.resonates {
         return None;
     }
@@ -208,8 +208,8 @@ fn law(found: &Found) -> Option<&'static str> {
     )
 }
 
-/// What was not testable and is taken for granted.
-fn assumptions(found: &Found) -> Vec<String> {
+/// Assumptions on properties that were not testable.
+fn assumptions(found: &DecidingProperties) -> Vec<String> {
     let mut assumed = Vec::new();
     let mut assume = |verdict: Verdict, what: &str| {
         if verdict == Verdict::NotTestable {

@@ -24,7 +24,7 @@ const LAGS: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0];
 /// Drifts of the output over a record, as shares of its range.
 const DRIFTS: [f64; 10] = [0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.04, 0.05, 0.06, 0.08];
 
-/// A lag of so many rows is at most this share of the rows of a typical branch.
+/// Largest lag, as a share of the rows of a typical branch.
 const LONGEST_LAG: f64 = 0.1;
 
 /// Share of the comparisons that must remain without an artifact, and of the difference that may.
@@ -40,7 +40,7 @@ const SMALLER: f64 = 0.9;
 /// Something in the measurement that is not the specimen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Artifact {
-    /// The output comes so many rows after the input; before it, if negative.
+    /// Rows by which the output comes after the input; before it, if negative.
     Lag(f64),
     /// The output moves steadily by this share of its range over each record.
     Drift(f64),

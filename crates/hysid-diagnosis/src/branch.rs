@@ -5,9 +5,9 @@ mod reversals;
 
 use std::ops::Range;
 
-use super::noise::{self, Noise, Run, resolution};
+use super::noise::{self, ChannelRun, Noise, resolution};
 use super::significance;
-use super::smoothing::{Parabola, Place, Points, Smoothed, choose_window, smooth_where_straight};
+use super::smoothing::{BranchRow, Parabola, Points, SmoothedRow, choose_window, smooth_where_straight};
 use super::{DiagnosisOptions, PictureCurve, Piece};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::elementary::hypot;
@@ -59,7 +59,7 @@ pub(crate) struct Branch {
     /// Loops that it closes on its way.
     pub closes: Vec<Closing>,
     /// The output over the input.
-    pub curve: Curve,
+    pub curve: BranchCurve,
 }
 
 /// A turning point that a branch comes back to.
@@ -99,7 +99,7 @@ impl Branch {
 
 /// Output over input along a branch, in the order of the input.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Curve {
+pub(crate) struct BranchCurve {
     points: Vec<CurvePoint>,
 }
 
@@ -114,14 +114,14 @@ struct CurvePoint {
 
 /// A value read from a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Reading {
+pub(crate) struct CurveReading {
     pub y: f64,
     pub deviation: f64,
     /// How far smoothing and reading between the rows may be off.
     pub bend: f64,
 }
 
-impl Curve {
+impl BranchCurve {
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
@@ -142,7 +142,7 @@ impl Curve {
     }
 
     /// The output at an input; `None` beyond the curve by more than the distance of its last points.
-    pub fn at(&self, x: f64) -> Option<Reading> {
+    pub fn at(&self, x: f64) -> Option<CurveReading> {
         let count = self.points.len();
         if count < 2 {
             return None;
@@ -151,7 +151,7 @@ impl Curve {
         let (a, b) = (&self.points[above - 1], &self.points[above]);
         let width = b.x - a.x;
         if width <= 0.0 {
-            return (a.x == x).then_some(Reading { y: b.y, deviation: b.deviation, bend: b.bend });
+            return (a.x == x).then_some(CurveReading { y: b.y, deviation: b.deviation, bend: b.bend });
         }
         let share = (x - a.x) / width;
         if !(-1.0..=2.0).contains(&share) {
@@ -171,7 +171,7 @@ impl Curve {
             })
             .fold(0.0, f64::max);
         let on_a_point = share == 0.0 || share == 1.0;
-        Some(Reading {
+        Some(CurveReading {
             y: a.y + share * (b.y - a.y),
             deviation: a.deviation + share.clamp(0.0, 1.0) * (b.deviation - a.deviation),
             bend: a.bend.max(b.bend) + if on_a_point { 0.0 } else { bend.min((b.y - a.y).abs()) },
@@ -232,11 +232,11 @@ impl<'a> BranchSet<'a> {
         }
         let input_noise = Noise::of(branches.iter().map(|branch| {
             let (values, output) = channels(data, branch);
-            Run { values, beside: if is_scored(output) { output } else { &[] } }
+            ChannelRun { values, beside: if is_scored(output) { output } else { &[] } }
         }));
         let scored = branches.iter().map(|branch| channels(data, branch)).filter(|(_, y)| is_scored(y));
-        let output_noise = Noise::of(scored.map(|(beside, values)| Run { values, beside }));
-        let reading = Reader {
+        let output_noise = Noise::of(scored.map(|(beside, values)| ChannelRun { values, beside }));
+        let reading = BranchReader {
             data,
             by_rows: input_noise.deviation() > JITTERS * width,
             resolutions: resolutions(data),
@@ -323,7 +323,7 @@ impl<'a> BranchSet<'a> {
         }
     }
 
-    /// Deviation by which slow noise and drift move the output from a row to one so many rows away.
+    /// Deviation by which slow noise and drift move the output over a number of rows.
     pub fn wander(&self, rows: f64) -> f64 {
         self.output_noise.wander(rows).max(self.slow_noise)
     }
@@ -409,7 +409,7 @@ fn follow(
             known,
             around,
             closes,
-            curve: Curve::default(),
+            curve: BranchCurve::default(),
         });
     }
 }
@@ -433,7 +433,7 @@ fn resolutions(data: &Dataset) -> (f64, f64) {
 }
 
 /// How branches are read from the rows of a data set.
-struct Reader<'r> {
+struct BranchReader<'r> {
     data: &'r Dataset,
     /// True if the input is so noisy that, without time, the row number gives the order of rows better than the input.
     by_rows: bool,
@@ -442,7 +442,7 @@ struct Reader<'r> {
     output_noise: &'r Noise,
 }
 
-impl Reader<'_> {
+impl BranchReader<'_> {
     /// Points of a branch in the order of time, averaged in blocks where there are very many.
     fn points(&self, branch: &Branch) -> Points {
         let record = &self.data.records()[branch.record];
@@ -457,8 +457,10 @@ impl Reader<'_> {
             None => blocks(0).collect(),
         };
         let rows = stations.into_iter().zip(blocks(0).zip(blocks(1)));
-        let mut places: Vec<Place> =
-            rows.filter(|(_, (_, y))| !y.is_nan()).map(|(station, (x, y))| Place { station, x, y }).collect();
+        let mut places: Vec<BranchRow> = rows
+            .filter(|(_, (_, y))| !y.is_nan())
+            .map(|(station, (x, y))| BranchRow { station, x, y })
+            .collect();
         if places.len() < 4 {
             places.clear();
         }
@@ -471,9 +473,9 @@ impl Reader<'_> {
     }
 
     /// The output over the input along a branch, with what its noise and that of the input leave.
-    fn curve(&self, points: &Points, window: usize) -> Curve {
+    fn curve(&self, points: &Points, window: usize) -> BranchCurve {
         let smoothed = smooth_where_straight(points, window);
-        let place = |(place, value): (&Place, &Smoothed)| self.curve_point(points, place, value);
+        let place = |(place, value): (&BranchRow, &SmoothedRow)| self.curve_point(points, place, value);
         let mut points: Vec<CurvePoint> = points.places.iter().zip(&smoothed).map(place).collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         let deviations: Vec<(f64, f64)> =
@@ -482,11 +484,11 @@ impl Reader<'_> {
             point.deviation = hypot(point.deviation, deviation);
             point.bend += bend + 0.5 * self.resolutions.1;
         }
-        Curve { points }
+        BranchCurve { points }
     }
 
     /// A point without what the input's noise adds.
-    fn curve_point(&self, points: &Points, place: &Place, value: &Smoothed) -> CurvePoint {
+    fn curve_point(&self, points: &Points, place: &BranchRow, value: &SmoothedRow) -> CurvePoint {
         let jitters = self.by_rows;
         if points.output_noise.is_white() && !jitters {
             let deviation = value.deviation * points.output_noise.deviation();

@@ -2,17 +2,17 @@
 
 use hysid_core::elementary::{hypot, square};
 
-use super::branch::Reading;
+use super::branch::CurveReading;
 use super::significance;
 use super::{PictureCurve, Piece, Verdict};
 
-/// A property holds if no difference can be larger than so many times the effect that matters. Designed.
+/// A property holds if no difference can be larger than this multiple of the effect that matters. Designed.
 pub(crate) const BOUND: f64 = 3.0;
 
 /// The same where one turning point decides: return points and congruency. Designed.
 pub(crate) const NARROW_BOUND: f64 = 2.0;
 
-/// A property does not hold if a gap, which is read at one point, is so many times its limit. Designed.
+/// A property does not hold if a gap, which is read at one point, is this multiple of its limit. Designed.
 const CLEAR_GAP: f64 = 1.2;
 
 /// A difference beyond this share of the effect that matters is too close to it for a property to hold.
@@ -21,7 +21,7 @@ const CLOSE: f64 = 0.6;
 /// Deviations by which a difference may be larger than it was found.
 const UP_TO: f64 = 1.28;
 
-/// What reading between rows and other causes add may be so many times as large as estimated.
+/// Factor by which reading between rows and other causes may exceed their estimate.
 const UNSURE: f64 = 2.5;
 
 /// Independent numbers in a gap, and in a difference of shapes: a branch is smoothed over up to a fifth of it, and its
@@ -45,11 +45,11 @@ pub(crate) struct Comparison {
     pub index: f64,
     /// Standard deviation of the noise in it.
     pub deviation: f64,
-    /// What reading between rows may add to it.
+    /// Largest error of it from reading between rows.
     pub bend: f64,
     /// Independent numbers in it: 1 for a gap, several for a shape.
     pub freedom: f64,
-    /// What other causes may add to it: turning points between rows, wear.
+    /// Largest error of it from other causes: turning points between rows, wear.
     pub other: f64,
     pub pieces: Vec<Piece>,
     pub curves: Vec<PictureCurve>,
@@ -57,7 +57,7 @@ pub(crate) struct Comparison {
 
 impl Comparison {
     /// Of two readings that should be equal, between which slow noise may have wandered so far. Nothing is drawn.
-    pub fn of_readings(height: f64, [a, b]: [Reading; 2], wander: f64) -> Self {
+    pub fn of_readings(height: f64, [a, b]: [CurveReading; 2], wander: f64) -> Self {
         Self {
             index: (a.y - b.y).abs() / height,
             deviation: hypot(hypot(a.deviation, b.deviation), wander) / height,
@@ -72,12 +72,12 @@ impl Comparison {
 
 /// Result of all comparisons of a property.
 #[derive(Debug, Clone)]
-pub(crate) struct Judgement {
+pub(crate) struct PropertyResult {
     /// `Yes` if no difference is distinguishable from noise or close to the relevant size.
     pub verdict: Verdict,
     /// The difference that decides.
     pub index: f64,
-    /// What noise alone gives.
+    /// Size that noise alone gives.
     pub noise: f64,
     /// The difference beyond which the property does not hold.
     pub threshold: f64,
@@ -103,7 +103,7 @@ fn are_doubtful_together(comparisons: &[Comparison], effect: f64) -> bool {
 /// Judges comparisons: a difference counts if it is above `effect` and cannot be noise, theory.md (10.3).
 ///
 /// `bound` is [`BOUND`] or [`NARROW_BOUND`].
-pub(crate) fn judge(comparisons: &[Comparison], effect: f64, bound: f64) -> Option<Judgement> {
+pub(crate) fn judge(comparisons: &[Comparison], effect: f64, bound: f64) -> Option<PropertyResult> {
     let count = comparisons.len();
     let (critical, doubtful) = (significance::critical_value(count), significance::doubtful_value(count));
     let limit = |c: &Comparison| (effect + UNSURE * (c.bend + c.other)).max(critical * c.deviation);
@@ -137,7 +137,7 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64, bound: f64) -> Opti
         true => "with its uncertainty, the largest difference may be below or above the size that matters",
         false => "noise or widely spaced rows may hide a relevant difference",
     };
-    Some(Judgement {
+    Some(PropertyResult {
         doubt,
         verdict,
         index: deciding.index,

@@ -36,7 +36,7 @@ const EXPERIMENT: &str =
 
 /// Tests for congruent minor loops. `needs_loops_apart` where the output has loops and the path was not chosen for this
 /// test: loops at the same output may then be the same loop.
-pub(crate) fn test(survey: &BranchSet, equal_speed: bool, needs_loops_apart: bool) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet, equal_speed: bool, needs_loops_apart: bool) -> Finding {
     let (mut comparisons, mut apart) = (Vec::new(), Vec::new());
     for group in same_beginning(survey).values() {
         let pairs = (0..group.len()).flat_map(|i| (i + 1..group.len()).map(move |j| (group[i], group[j])));

@@ -27,7 +27,7 @@ pub use self::backbone::{BackbonePoint, Direction};
 pub use self::correction::{Correction, corrected};
 pub use self::division::Division;
 pub use self::field::Field;
-pub use self::figure::{FIGURES, Figure, Quantity};
+pub use self::figure::{FIGURES, Figure, FigureQuantity};
 pub use self::losses::LossAtFrequency;
 pub use self::quantities::Quantities;
 pub use self::row::CycleRow;
@@ -171,10 +171,10 @@ pub(crate) fn repeated<'c>(survey: &BranchSet, cycles: &'c [Cycle]) -> Vec<Vec<&
     groups
 }
 
-/// Fewest second differences of successive tips that tell how they scatter.
+/// Fewest second differences of successive tips from which their scatter is estimated.
 const FEWEST_TIPS: usize = 6;
 
-/// The scatter of few tips may be so many times as large.
+/// Factor by which the scatter of few tips may be larger.
 const UNSURE: f64 = 1.5;
 
 /// Looks through the data, with the noise that only repeated cycles show.

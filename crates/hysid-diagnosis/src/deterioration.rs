@@ -26,8 +26,8 @@ const NEARLY_LARGEST: f64 = 0.95;
 
 const EXPERIMENT: &str = "repeat a large loop five times or more, without changing its ends";
 
-/// What the cycles between two inputs say.
-struct Trend<'c> {
+/// Loss of energy over the cycles between two inputs.
+struct CycleTrend<'c> {
     cycles: Vec<&'c Cycle>,
     /// All of them, with a first one that is left out.
     repetitions: usize,
@@ -39,24 +39,25 @@ struct Trend<'c> {
     variance: f64,
 }
 
-pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
     let groups = repeated(survey, cycles);
     let largest = groups.iter().flatten().map(|cycle| cycle.area).fold(0.0, f64::max);
-    let trends: Vec<Trend> = groups.iter().filter_map(|group| trend(survey, group, largest)).collect();
+    let trends: Vec<CycleTrend> = groups.iter().filter_map(|group| trend(survey, group, largest)).collect();
     let count: usize = trends.iter().map(|trend| trend.repetitions).sum();
     if count < FEWEST {
         let statement = format!("{count} loops are repeated between the same inputs; {FEWEST} are needed");
         return Finding::not_testable(Property::Deterioration, statement, EXPERIMENT);
     }
     let critical = significance::critical_value(trends.len());
-    let excess = |trend: &Trend| trend.loss / EFFECT.max(critical * trend.deviation);
+    let excess = |trend: &CycleTrend| trend.loss / EFFECT.max(critical * trend.deviation);
     let strongest = trends.iter().max_by(|a, b| excess(a).total_cmp(&excess(b))).expect("there are trends");
     // Loops that were run twice may shrink while they settle: the largest must, or most.
-    let decides = |trend: &Trend| trend.repetitions > 2 || trend.cycles[0].area > NEARLY_LARGEST * largest;
-    let energy = |trend: &Trend| trend.cycles.len() as f64 * trend.cycles[0].area;
-    let shrinking: Vec<&Trend> =
+    let decides =
+        |trend: &CycleTrend| trend.repetitions > 2 || trend.cycles[0].area > NEARLY_LARGEST * largest;
+    let energy = |trend: &CycleTrend| trend.cycles.len() as f64 * trend.cycles[0].area;
+    let shrinking: Vec<&CycleTrend> =
         trends.iter().filter(|trend| excess(trend) > 1.0 && trend.falls > 0.0).collect();
-    let sum = |trends: &[&Trend]| trends.iter().map(|trend| energy(trend)).sum::<f64>();
+    let sum = |trends: &[&CycleTrend]| trends.iter().map(|trend| energy(trend)).sum::<f64>();
     let falls: f64 = trends.iter().map(|trend| trend.falls).sum();
     let variance: f64 = trends.iter().map(|trend| trend.variance).sum();
     let trend_score = falls / variance.sqrt().max(1.0);
@@ -114,7 +115,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
     }
 }
 
-fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Trend<'c>> {
+fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<CycleTrend<'c>> {
     // Loops of different speed differ for other reasons.
     let branch = |cycle: &Cycle| &survey.branches[cycle.branches.0];
     let alike: Vec<&Cycle> =
@@ -137,7 +138,7 @@ fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Tr
     let scale = energy(first);
     let deviation = hypot(first.energy_deviation, cycles[n - 1].energy_deviation) / scale;
     let size = n as f64;
-    Some(Trend {
+    Some(CycleTrend {
         loss: -slope * (size - 1.0) / scale,
         deviation,
         falls,
@@ -163,11 +164,11 @@ fn slope_and_falls(cycles: &[&Cycle], energy: impl Fn(&Cycle) -> f64) -> (f64, f
 }
 
 /// Energy over the number of the cycle, each kind of loop by itself.
-fn energies(trends: &[Trend]) -> Picture {
+fn energies(trends: &[CycleTrend]) -> Picture {
     const SHOWN: usize = 6;
-    let mut kinds: Vec<&Trend> = trends.iter().collect();
+    let mut kinds: Vec<&CycleTrend> = trends.iter().collect();
     kinds.sort_by(|a, b| b.cycles[0].area.total_cmp(&a.cycles[0].area));
-    let curve = |trend: &&Trend| PictureCurve {
+    let curve = |trend: &&CycleTrend| PictureCurve {
         label: format!(
             "{:.3} to {:.3}",
             Significant(trend.cycles[0].input.0),

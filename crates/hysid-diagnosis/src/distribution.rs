@@ -17,7 +17,7 @@ const TERMS: usize = 20_000;
 /// Relative change below which a series or fraction has converged.
 const PRECISION: f64 = 1e-15;
 
-/// What stands in for a denominator of 0 in a continued fraction.
+/// Stands in for a denominator of 0 in a continued fraction.
 const TINY: f64 = 1e-300;
 
 /// The probability that a chi-square number with `degrees` degrees of freedom exceeds `x`.

@@ -31,10 +31,10 @@ use hysid_core::data::unit;
 use hysid_core::error::Result;
 use hysid_core::significant::Significant;
 
-/// Complaints of one kind are told one by one up to this many.
+/// Most issues of one kind that are listed one by one.
 const TOLD: usize = 2;
 
-/// What may be wrong with data.
+/// Kind of a problem in the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DataIssueKind {
@@ -74,7 +74,7 @@ pub enum DataIssueKind {
     OutputOffset,
     /// The output falls as the input grows.
     WrongSign,
-    /// The output looks like the command, the input like the answer.
+    /// The output looks like the command, the input like the response.
     SwappedColumns,
     /// Few rows between turning points.
     FewSamples,
@@ -90,7 +90,7 @@ pub enum DataIssueKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
-    /// Good to know.
+    /// Worth noting.
     Note,
     /// Mend it first.
     Warning,
@@ -99,15 +99,15 @@ pub enum Severity {
 /// Something in the data that would mislead.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DataIssue {
-    /// What it is.
+    /// Kind of the problem.
     pub kind: DataIssueKind,
     /// Name of the record; `None` for all of them together.
     pub record: Option<String>,
     /// How much it matters.
     pub severity: Severity,
-    /// What was found, and what helps, in words.
+    /// Problem and remedy, in words.
     pub statement: String,
-    /// The number that tells how much.
+    /// Size of the problem.
     pub value: Option<f64>,
     /// Its unit, where it has one that is known.
     pub unit: Option<String>,
@@ -125,7 +125,7 @@ impl DataIssue {
         Self { record, evidence: rows, ..Self::of_all(kind, severity, statement) }
     }
 
-    /// The same with the number that tells how much, and its unit.
+    /// The same with the size of the problem, and its unit.
     fn measured(self, value: f64, unit: &Option<String>) -> Self {
         Self { value: Some(value), unit: unit.clone(), ..self }
     }
@@ -179,7 +179,7 @@ pub(crate) fn examine(
     told
 }
 
-/// What of the values themselves should be known before any fit: marks of missing values, and clipped channels.
+/// Problems of the values themselves to report before any fit: marks of missing values, and clipped channels.
 ///
 /// # Errors
 /// Data that nothing can be said about: a constant input or output, hardly any rows.
@@ -209,19 +209,19 @@ pub(crate) fn without_defects(survey: &BranchSet, clipped: &[(usize, Range<usize
 }
 
 /// The longest time by which the output may lag behind the input or lead it, from how it turns where the input
-/// turns, theory.md (10.21); `None` where the turning points do not tell.
+/// turns, theory.md (10.21); `None` where the turning points do not show it.
 pub(crate) fn longest_lag(survey: &BranchSet) -> Option<f64> {
     lag::longest(survey)
 }
 
-/// Units of the columns, as their names tell them.
-struct Units {
+/// Units of the columns, by their names.
+struct ColumnUnits {
     input: Option<String>,
     output: Option<String>,
     time: Option<String>,
 }
 
-impl Units {
+impl ColumnUnits {
     fn of(survey: &BranchSet) -> Self {
         let names = survey.data.names();
         Self {

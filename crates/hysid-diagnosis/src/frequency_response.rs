@@ -33,7 +33,7 @@ pub use spectra::Window;
 
 use hysid_core::elementary::{atan2, hypot};
 
-use crate::resonance::{Compared, LinearOscillator};
+use crate::resonance::{ComparedSignal, LinearOscillator};
 
 /// The response at a frequency: output per unit of input, a complex number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,7 +61,7 @@ impl ResponsePoint {
     }
 }
 
-/// A frequency response.
+/// A frequency response: complex ratio of output to input over frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrequencyResponse {
     /// Its points, by rising frequency: only those at which the input has power.
@@ -91,20 +91,20 @@ impl FrequencyResponse {
     ///
     /// The response of the changes is that of the output times a factor in proportion to the frequency, as long as this is
     /// far below half the sampling rate. It shows the resonance of a structure whose output drifts.
-    pub fn peak(&self, compared: Compared) -> Option<ResponsePoint> {
+    pub fn peak(&self, compared: ComparedSignal) -> Option<ResponsePoint> {
         self.peak_index(compared).map(|peak| self.points[peak])
     }
 
     /// Uncertainty of the frequency of the peak: its mean distance from the frequencies of the points beside it.
-    pub fn peak_resolution(&self, compared: Compared) -> Option<f64> {
+    pub fn peak_resolution(&self, compared: ComparedSignal) -> Option<f64> {
         let peak = self.peak_index(compared)?;
         Some(0.5 * (self.points[peak + 1].frequency - self.points[peak - 1].frequency))
     }
 
-    fn peak_index(&self, compared: Compared) -> Option<usize> {
+    fn peak_index(&self, compared: ComparedSignal) -> Option<usize> {
         let magnitude = |point: &ResponsePoint| match compared {
-            Compared::Output => point.magnitude(),
-            Compared::Changes => point.frequency * point.magnitude(),
+            ComparedSignal::Output => point.magnitude(),
+            ComparedSignal::Changes => point.frequency * point.magnitude(),
         };
         let magnitudes = self.points.iter().map(magnitude).enumerate();
         let (largest, _) = magnitudes.max_by(|a, b| a.1.total_cmp(&b.1))?;

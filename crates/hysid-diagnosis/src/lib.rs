@@ -1,9 +1,9 @@
-//! What kind of hysteresis is this? Properties of a measured record or of a fitted model, each with its
+//! Kinds of hysteresis: properties of a measured record or of a fitted model, each with its
 //! evidence.
 //!
 //! The input is cut into branches between turning points; a property is a statement about branches that
 //! must coincide. Each test compares such branches, and says *yes*, *no*, or that the record does not
-//! contain what would tell. Definitions: theory.md section 10.
+//! contain what is needed. Definitions: theory.md section 10.
 //!
 //! ```
 //! use hysid_diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
@@ -82,7 +82,7 @@ impl Default for DiagnosisOptions {
 }
 
 impl DiagnosisOptions {
-    /// How the cycles of the same data are found: by the noise, unless a smallest reversal is asked for.
+    /// How the cycles of the same data are found: by the noise, unless a smallest reversal is given.
     fn of_cycles(&self) -> CycleOptions {
         let asked = self.smallest_reversal != Self::default().smallest_reversal;
         CycleOptions {
@@ -93,7 +93,7 @@ impl DiagnosisOptions {
     }
 }
 
-/// What a test of a property says.
+/// Verdict on a property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 pub enum Verdict {
     /// It has the property.
@@ -102,7 +102,7 @@ pub enum Verdict {
     /// It does not.
     #[serde(rename = "no")]
     No,
-    /// The data do not tell.
+    /// The data do not decide.
     #[serde(rename = "not testable")]
     NotTestable,
 }
@@ -120,10 +120,10 @@ impl fmt::Display for Verdict {
 /// A property and what the data say about it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
-    /// The property.
+    /// Property that the finding is about.
     #[serde(rename = "name")]
     pub property: Property,
-    /// What the test says.
+    /// Verdict on the property.
     pub verdict: Verdict,
     /// The measure that decides, a share without unit.
     pub index: Option<f64>,
@@ -133,9 +133,9 @@ pub struct Finding {
     pub noise: Option<f64>,
     /// How many comparisons it is the largest of.
     pub comparisons: usize,
-    /// What was found, in words.
+    /// Result in words.
     pub statement: String,
-    /// Where the data do not tell: the experiment that would.
+    /// Experiment that would decide, where the data do not.
     pub experiment: Option<String>,
     /// The rows that show it, the strongest first.
     pub evidence: Vec<Evidence>,
@@ -145,7 +145,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// The data do not tell.
+    /// The data do not decide.
     fn not_testable(property: Property, statement: impl Into<String>, experiment: impl Into<String>) -> Self {
         Self {
             property,
@@ -167,7 +167,7 @@ impl Finding {
 pub struct Evidence {
     /// Their difference, in the unit of the index.
     pub index: f64,
-    /// The pieces.
+    /// Rows that were compared, piece by piece.
     pub pieces: Vec<Piece>,
 }
 
@@ -189,9 +189,9 @@ impl Piece {
 /// Curves that show a verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    /// What is drawn to the right; empty for the input.
+    /// Label of the horizontal axis; empty for the input.
     pub x_label: String,
-    /// What is drawn upwards; empty for the output.
+    /// Label of the vertical axis; empty for the output.
     pub y_label: String,
     /// The curves.
     pub curves: Vec<PictureCurve>,
@@ -200,9 +200,9 @@ pub struct Picture {
 /// A curve of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureCurve {
-    /// What it is; empty for what is there for comparison only.
+    /// Label of the curve; empty if it is there for comparison only.
     pub label: String,
-    /// Its points.
+    /// Points `(x, y)` in the units of the axes.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -223,7 +223,7 @@ pub struct Diagnosis {
     /// The rows where they are, record by record, counted from 0 at the beginning of each.
     #[serde(skip)]
     pub turning_rows: Vec<Vec<usize>>,
-    /// Reversals of the first input below this are none, in its unit.
+    /// Smallest reversal of the first input that counts, in its unit.
     #[serde(skip)]
     pub smallest_reversal: f64,
     /// The backbone of each record.
@@ -232,7 +232,7 @@ pub struct Diagnosis {
     /// The cycles of the first input: the table of `hysid cycles`.
     #[serde(flatten)]
     pub cycles: CycleTable,
-    /// What in the data would mislead a fit, warnings first.
+    /// Problems of the data that would mislead a fit, warnings first.
     pub doctor: Vec<DataIssue>,
     /// The simplest model that can hold what was found.
     pub advice: Advice,
@@ -261,10 +261,10 @@ impl Diagnosis {
         let survey = sound.as_ref().map(|data| cycles::survey(data, options));
         let survey = survey.as_ref().unwrap_or(&measured);
         let cycles = cycles::cycles(survey);
-        let (rate, delay) = rate_dependence::test(survey);
+        let (rate, delay) = rate_dependence::verdict(survey);
         // Branches of different speed say nothing about memory where the speed matters, or may matter.
         let equal_speed = data.has_time() && rate.verdict != Verdict::No;
-        let wear = deterioration::test(survey, &cycles);
+        let wear = deterioration::verdict(survey, &cycles);
         // Memory that fades keeps loops open at first, but loses no energy.
         let may_fade = equal_speed && wear.verdict != Verdict::Yes;
         let at_rest =
@@ -272,13 +272,13 @@ impl Diagnosis {
         let has_loops = at_rest.verdict != Verdict::No;
         let mut properties = vec![
             at_rest,
-            orientation::test(survey),
+            orientation::verdict(survey),
             rate,
-            wiping_out::test(survey, equal_speed),
-            congruency::test(survey, equal_speed, has_loops),
-            masing::test(survey, equal_speed),
-            odd_symmetry::test(survey, equal_speed),
-            saturation::test(survey),
+            wiping_out::verdict(survey, equal_speed),
+            congruency::verdict(survey, equal_speed, has_loops),
+            masing::verdict(survey, equal_speed),
+            odd_symmetry::verdict(survey, equal_speed),
+            saturation::verdict(survey),
             wear,
             loop_closure::test(survey, &cycles, may_fade),
         ];
@@ -288,10 +288,10 @@ impl Diagnosis {
         let resonance = Resonance::of(data).filter(Resonance::is_found);
         let explanations =
             artifact::withhold(survey, options, &mut properties, |corrected, property| match property {
-                Property::WipingOut => wiping_out::test(corrected, equal_speed),
-                Property::Congruency => congruency::test(corrected, equal_speed, has_loops),
-                Property::Masing => masing::test(corrected, equal_speed),
-                Property::OddSymmetry => odd_symmetry::test(corrected, equal_speed),
+                Property::WipingOut => wiping_out::verdict(corrected, equal_speed),
+                Property::Congruency => congruency::verdict(corrected, equal_speed, has_loops),
+                Property::Masing => masing::verdict(corrected, equal_speed),
+                Property::OddSymmetry => odd_symmetry::verdict(corrected, equal_speed),
                 _ => loop_closure::test(corrected, &cycles::cycles(corrected), may_fade),
             });
         let table = CycleTable::of(data, &options.of_cycles())?;
@@ -301,8 +301,8 @@ impl Diagnosis {
         };
         if is_member {
             let rate = properties[2].verdict;
-            properties.push(strength_loss::test(survey, &table.cycles, rate));
-            properties.push(pinching::test(survey, &table.cycles));
+            properties.push(strength_loss::verdict(survey, &table.cycles, rate));
+            properties.push(pinching::verdict(survey, &table.cycles));
         }
         if resonance.is_some() {
             artifact::withhold_what_inertia_makes(&mut properties);

@@ -15,7 +15,7 @@ const EFFECT: f64 = 0.05;
 /// Branches shorter than this share of the input's range.
 const SHORTEST: f64 = 0.05;
 
-/// Branches as long as the longest, to this share, tell nothing new.
+/// Length of a branch, as a share of the longest, from which on a comparison shows nothing new.
 const SAME_LENGTH: f64 = 0.9;
 
 /// Branches that are compared at most.
@@ -50,7 +50,7 @@ impl OwnPart<'_> {
     }
 }
 
-pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet, equal_speed: bool) -> Finding {
     let mut parts: Vec<OwnPart> =
         survey.branches.iter().filter_map(|branch| own_part(survey, branch)).collect();
     parts.sort_by(|a, b| b.length.total_cmp(&a.length));

@@ -6,7 +6,7 @@ const PLACES: i32 = 4;
 /// Searches, each of which narrows the interval.
 const ROUNDS: usize = 8;
 
-/// An interval reaches so many distances between places around the best of them.
+/// Distances between places that an interval extends around the best of them.
 const WIDER: f64 = 1.2;
 
 /// Where a function is lowest within `centre ± reach`: the best of so many places on either side of the centre, then

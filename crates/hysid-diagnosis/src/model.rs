@@ -1,8 +1,8 @@
-//! What kind of hysteresis has a fitted model learnt? The properties of measured data, found by driving the
-//! model with probes chosen for each, and what its equations promise beside that.
+//! Kind of hysteresis of a fitted model: the properties of measured data, found by driving the
+//! model with probes chosen for each, and those that its equations guarantee.
 //!
 //! A probe stays within the input range and the rates that the model was trained on; further inputs are held in
-//! the middle of theirs. What is a property of memory is asked at a vanishing speed. Definitions: theory.md,
+//! the middle of theirs. Properties of memory are tested at a vanishing speed. Definitions: theory.md,
 //! end of section 10.
 //!
 //! ```
@@ -39,7 +39,7 @@ pub use cycles::ModelCycles;
 use hysid_core::error::Result;
 use hysid_core::model::Model;
 use hysid_core::options::ModelName;
-pub use invertibility::{AtTimeStep, Direction, Invertibility, Place, PlaceKind, Scans};
+pub use invertibility::{AtTimeStep, Invertibility, NonMonotonePlace, OutputDirection, PlaceKind, Scans};
 pub use loop_widths::{LoopWidths, WidthAtSpeed};
 use probe::Probe;
 pub use probe::{Probing, TimeScale};
@@ -50,13 +50,13 @@ pub use structure::StructuralProperty;
 pub struct ModelDiagnosis {
     /// Which model it is.
     pub model: ModelName,
-    /// What it was driven with.
+    /// Drives of the model.
     pub probing: Probing,
     /// The properties, in the order of [`Property::ALL`], found by driving it.
     pub properties: Vec<Finding>,
     /// Whether it can be inverted sample by sample; serialized as the last of the properties.
     pub invertibility: Invertibility,
-    /// What its equations promise.
+    /// Properties that its equations guarantee.
     pub promises: Vec<StructuralProperty>,
     /// Widths of its loops, the paper's `K` and `P`.
     pub loop_widths: LoopWidths,
@@ -100,7 +100,7 @@ impl ModelDiagnosis {
 /// An element of the serialized properties.
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Listed<'a> {
+enum PropertyEntry<'a> {
     Property(&'a Finding),
     Invertible(&'a Invertibility),
 }
@@ -108,8 +108,9 @@ enum Listed<'a> {
 impl Serialize for ModelDiagnosis {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let Self { model, probing, properties, invertibility, promises, loop_widths } = self;
-        let properties = properties.iter().map(Listed::Property);
-        let properties: Vec<Listed> = properties.chain([Listed::Invertible(invertibility)]).collect();
+        let properties = properties.iter().map(PropertyEntry::Property);
+        let properties: Vec<PropertyEntry> =
+            properties.chain([PropertyEntry::Invertible(invertibility)]).collect();
         let mut object = serializer.serialize_struct("ModelDiagnosis", 5)?;
         object.serialize_field("model", model)?;
         object.serialize_field("probing", probing)?;

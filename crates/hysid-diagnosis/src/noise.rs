@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 use hysid_core::elementary::{cos, powf, sin_cos, square};
 
-pub(crate) use differences::{Run, roughness};
+pub(crate) use differences::{ChannelRun, roughness};
 pub use resolution::resolution;
 
 /// Share of the variance above which noise is hum.
@@ -93,7 +93,7 @@ impl Noise {
 
     /// The noise of a channel, from its values in runs of rows on which the course is smooth: between two turning
     /// points. No difference is taken across their ends.
-    pub fn of<'a>(runs: impl Iterator<Item = Run<'a>>) -> Self {
+    pub fn of<'a>(runs: impl Iterator<Item = ChannelRun<'a>>) -> Self {
         differences::noise(runs)
     }
 
@@ -104,7 +104,7 @@ impl Noise {
         of_value.fold(0.0, |sum, part| sum + part.1).sqrt()
     }
 
-    /// Standard deviation of the walk from a row to one so many rows away.
+    /// Standard deviation of the walk over a number of rows.
     pub fn wander(&self, rows: f64) -> f64 {
         let steps = self.parts.iter().filter(|part| part.0 == Correlation::Walking);
         (steps.map(|part| part.1).sum::<f64>() * rows).sqrt()
@@ -145,13 +145,13 @@ impl Noise {
             .sqrt()
     }
 
-    /// Standard deviation of the mean of so many successive rows.
+    /// Standard deviation of the mean of a number of successive rows.
     pub fn of_mean(&self, rows: usize) -> f64 {
         let rows = rows.max(1);
         self.of_sum(&vec![(rows as f64).recip(); rows])
     }
 
-    /// The noise of the means of blocks of so many rows.
+    /// The noise of the means of blocks of rows.
     pub fn in_blocks(&self, rows: usize) -> Self {
         if rows <= 1 {
             return self.clone();

@@ -26,7 +26,7 @@ const PLACES: usize = 80;
 
 const EXPERIMENT: &str = "run a few equal loops over the whole range of the input, equally far to both sides";
 
-pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet, equal_speed: bool) -> Finding {
     let middle = 0.5 * (survey.input.0 + survey.input.1);
     let centre = if middle.abs() <= ABOUT_ZERO * survey.width() { 0.0 } else { middle };
     let half = (survey.input.1 - centre).min(centre - survey.input.0);

@@ -20,7 +20,7 @@ const WIDE: f64 = 0.3;
 
 const EXPERIMENT: &str = "run a few closed loops over the whole range of the input";
 
-pub(crate) fn test(survey: &BranchSet) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet) -> Finding {
     let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
     let counts = |opening: &&Opening| {
         let open = opening.fullness() > FULL && opening.area > 5.0 * opening.deviation;

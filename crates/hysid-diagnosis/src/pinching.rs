@@ -34,17 +34,18 @@ const EXPERIMENT: &str =
     "run cycles through zero load of growing amplitude, two of each, with 50 rows a cycle or more";
 
 /// The slope near zero load of a branch.
-struct Softness<'b> {
+struct UnloadedSlope<'b> {
     branch: &'b Branch,
     index: f64,
     deviation: f64,
 }
 
-pub(crate) fn test(survey: &BranchSet, cycles: &[CycleRow]) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet, cycles: &[CycleRow]) -> Finding {
     let not_testable = |why: &str| Finding::not_testable(Property::Pinching, why, EXPERIMENT);
     let longest = survey.branches.iter().map(|branch| branch.travel()).fold(0.0, f64::max);
     let large = survey.branches.iter().filter(|branch| branch.travel() > LARGE * longest);
-    let mut found: Vec<Softness> = large.filter_map(|branch| softness(branch, survey.height())).collect();
+    let mut found: Vec<UnloadedSlope> =
+        large.filter_map(|branch| softness(branch, survey.height())).collect();
     let mut shares = shares(cycles);
     if found.is_empty() || shares.is_empty() {
         return not_testable("no loop of a relevant size crosses zero load on both sides");
@@ -79,7 +80,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[CycleRow]) -> Finding {
 }
 
 /// Slope near zero load over the largest slope beyond it; `None` for a branch that does not pass zero load, or is low.
-fn softness(branch: &Branch, height: f64) -> Option<Softness<'_>> {
+fn softness(branch: &Branch, height: f64) -> Option<UnloadedSlope<'_>> {
     let (first, last) = (branch.curve.at(branch.from)?, branch.curve.at(branch.to)?);
     let sense = if branch.rises() { 1.0 } else { -1.0 };
     let loads = sense * first.y < 0.0 && sense * last.y > 0.0;
@@ -108,7 +109,11 @@ fn softness(branch: &Branch, height: f64) -> Option<Softness<'_>> {
     let softest = (0..near).min_by(|&a, &b| slopes[a].0.total_cmp(&slopes[b].0))?;
     let (slope, deviation) = slopes[softest];
     let largest = slopes[softest..].iter().map(|(slope, _)| *slope).fold(0.0, f64::max);
-    (largest > 0.0).then_some(Softness { branch, index: slope / largest, deviation: deviation / largest })
+    (largest > 0.0).then_some(UnloadedSlope {
+        branch,
+        index: slope / largest,
+        deviation: deviation / largest,
+    })
 }
 
 /// Energies of large cycles as shares of their parallelograms.

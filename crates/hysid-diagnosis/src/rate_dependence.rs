@@ -11,7 +11,7 @@ mod varying_speed;
 
 use std::collections::HashMap;
 
-use super::branch::{Branch, BranchSet, Reading};
+use super::branch::{Branch, BranchSet, CurveReading};
 use super::comparison::{BOUND, Comparison, SHAPE, judge};
 use super::{Finding, Property, Verdict};
 use delay::Delay;
@@ -36,13 +36,13 @@ const EXPLAINED: f64 = 0.4;
 /// A delay that leaves less than this share explains all of it; a rate-dependent law often looks like one.
 const ALL: f64 = 0.15;
 
-/// Branches of one speed whose mean square difference is so many times that of their noise change with time.
+/// Ratio of mean square difference to noise from which on branches of one speed change with time.
 const NOT_NOISE: f64 = 2.0;
 
-/// Wear between the sets may be so many times faster than within them.
+/// Factor by which wear between the sets may be faster than within them.
 const FASTER: f64 = 1.5;
 
-/// Wear is known where noise in it is so many times smaller than what it is to explain.
+/// Factor by which noise in the wear must be smaller than what it is to explain.
 const CLEARLY: f64 = 3.0;
 
 /// Number of branches in the first two cycles of a record, and the share of the output's range by which they may differ
@@ -75,7 +75,7 @@ const PLACES: usize = 40;
 const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten times slower than the fastest";
 
 /// Branches of one course: a slow and a fast set.
-pub(crate) struct Speeds<'b> {
+pub(crate) struct SpeedPair<'b> {
     pub slow: Vec<&'b Branch>,
     pub fast: Vec<&'b Branch>,
     /// For each set of one branch: this branch and the next of the same course.
@@ -85,7 +85,7 @@ pub(crate) struct Speeds<'b> {
     pub to: f64,
 }
 
-impl Speeds<'_> {
+impl SpeedPair<'_> {
     fn ratio(&self) -> f64 {
         let mean = |set: &[&Branch]| set.iter().filter_map(|b| b.speed).sum::<f64>() / set.len() as f64;
         mean(&self.fast) / mean(&self.slow)
@@ -178,7 +178,7 @@ impl Speeds<'_> {
 }
 
 /// Tests for rate dependence; with the delay that explains what looks like it, if one does.
-pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
+pub(crate) fn verdict(survey: &BranchSet) -> (Finding, Option<Delay>) {
     if !survey.data.has_time() {
         let statement = "the data have no time stamps";
         return (Finding::not_testable(Property::RateDependence, statement, EXPERIMENT), None);
@@ -188,7 +188,7 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
     let Some(mut judgement) = judge(&comparisons, EFFECT, BOUND) else {
         return (of_varying_speed(survey), None);
     };
-    let ratio = courses.iter().map(Speeds::ratio).fold(0.0, f64::max);
+    let ratio = courses.iter().map(SpeedPair::ratio).fold(0.0, f64::max);
     let percent = 100.0 * judgement.index;
     // The comparisons say whether the outputs agree.
     let agree = judgement.verdict;
@@ -247,7 +247,7 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
     (survey.finding(Property::RateDependence, &judgement, &comparisons, statement, EXPERIMENT), explained)
 }
 
-/// What laws with and without the rate say, where no path was run at two speeds.
+/// Compares laws with and without the rate, where no path was run at two speeds.
 fn of_varying_speed(survey: &BranchSet) -> Finding {
     let statement = "no input path was run at two speeds";
     let untold = Finding::not_testable(Property::RateDependence, statement, EXPERIMENT);
@@ -286,7 +286,7 @@ fn of_varying_speed(survey: &BranchSet) -> Finding {
 
 /// Branches of the same course that are gone at different speeds: same ends, same direction, same turning
 /// point before.
-pub(crate) fn courses<'s>(survey: &'s BranchSet) -> Vec<Speeds<'s>> {
+pub(crate) fn courses<'s>(survey: &'s BranchSet) -> Vec<SpeedPair<'s>> {
     let tolerance = survey.same_input();
     let cell = |x: f64| (x / (2.0 * tolerance)).round() as i64;
     let mut groups: HashMap<(i64, i64, Option<i64>), Vec<&Branch>> = HashMap::new();
@@ -309,7 +309,7 @@ pub(crate) fn courses<'s>(survey: &'s BranchSet) -> Vec<Speeds<'s>> {
 }
 
 /// The slowest and the fastest branches of a course, if their speeds differ.
-fn speeds<'b>(branches: &[&'b Branch]) -> Option<Speeds<'b>> {
+fn speeds<'b>(branches: &[&'b Branch]) -> Option<SpeedPair<'b>> {
     let speed = |branch: &&Branch| branch.speed.unwrap_or(0.0);
     let slowest = branches.iter().map(speed).fold(f64::INFINITY, f64::min);
     let fastest = branches.iter().map(speed).fold(0.0, f64::max);
@@ -334,21 +334,21 @@ fn speeds<'b>(branches: &[&'b Branch]) -> Option<Speeds<'b>> {
         Some((one, *next))
     };
     let next = alone.filter_map(after).collect();
-    Some(Speeds { slow, fast, next, from, to })
+    Some(SpeedPair { slow, fast, next, from, to })
 }
 
 /// Mean over a set of branches at an input.
-fn mean(set: &[&Branch], x: f64) -> Option<Reading> {
+fn mean(set: &[&Branch], x: f64) -> Option<CurveReading> {
     let readings: Vec<_> = set.iter().map(|branch| branch.curve.at(x)).collect::<Option<_>>()?;
     let n = readings.len() as f64;
-    Some(Reading {
+    Some(CurveReading {
         y: readings.iter().map(|reading| reading.y).sum::<f64>() / n,
         deviation: readings.iter().map(|reading| square(reading.deviation)).sum::<f64>().sqrt() / n,
         bend: readings.iter().map(|reading| reading.bend).sum::<f64>() / n,
     })
 }
 
-fn compare(survey: &BranchSet, speeds: &Speeds) -> Option<Comparison> {
+fn compare(survey: &BranchSet, speeds: &SpeedPair) -> Option<Comparison> {
     let (mut squares, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
     // How far branches of one speed lie apart, because of their past or their wear.
     let mut own = [0.0, 0.0];

@@ -1,4 +1,4 @@
-//! What a model leaves unexplained: tests of its residual, the measured minus the simulated output of a free run.
+//! Structure that a model leaves unexplained: tests of its residual, measured minus simulated output of a free run.
 //!
 //! A residual that contains structure can be predicted, so a better model exists. Three questions are asked, each with
 //! a p-value that respects the autocorrelation of the residual (theory.md section 13):
@@ -25,8 +25,8 @@
 //! # Ok::<(), hysid_core::Error>(())
 //! ```
 
+mod groups;
 mod input;
-mod place;
 mod rows;
 mod whiteness;
 mod words;
@@ -38,9 +38,9 @@ use hysid_core::model::Model;
 use serde::Serialize;
 
 use crate::serial::{SerialSum, correlation_lag};
+pub use groups::{GroupedResiduals, ResidualGroup};
 pub use input::InputCorrelation;
-pub use place::{Group, Place};
-use rows::Rows;
+use rows::ResidualRows;
 pub use whiteness::Whiteness;
 
 /// Probability of any false finding over all tests of a data set, for white noise.
@@ -52,7 +52,7 @@ pub const FEWEST_ROWS: usize = 50;
 /// Most rows that are tested; of more, evenly spaced stretches.
 pub const MOST_ROWS: usize = 200_000;
 
-/// What the words of findings depend on.
+/// Options that the words of findings depend on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResidualOptions {
     /// True if the model already uses the rate of the input.
@@ -113,7 +113,7 @@ impl ResidualTest {
     }
 }
 
-/// What a test of the residual says.
+/// Verdict of a test of the residual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 pub enum ResidualVerdict {
     /// There is structure.
@@ -122,7 +122,7 @@ pub enum ResidualVerdict {
     /// No structure was found.
     #[serde(rename = "not found")]
     NotFound,
-    /// The data do not tell.
+    /// The data do not decide.
     #[serde(rename = "not testable")]
     NotTestable,
 }
@@ -135,15 +135,15 @@ pub struct ResidualFinding {
     /// The input that it is about, for [`ResidualTest::Input`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub input: Option<String>,
-    /// What it says at [`LEVEL`], after the correction for the number of tests.
+    /// Verdict at [`LEVEL`], after the correction for the number of tests.
     pub verdict: ResidualVerdict,
     /// Probability of a statistic as large without structure; `None` if not testable.
     pub p_value: Option<f64>,
     /// The same, corrected for the number of tests.
     pub adjusted_p_value: Option<f64>,
-    /// What was found, in a sentence.
+    /// Result in a sentence.
     pub statement: String,
-    /// What helps, in a sentence; `None` if nothing was found.
+    /// Remedy in a sentence; `None` if nothing was found.
     pub advice: Option<String>,
 }
 
@@ -171,10 +171,10 @@ pub struct Residuals {
     /// Correlation with each input and with the rate of the first.
     pub inputs: Vec<InputCorrelation>,
     /// Size and bias by place.
-    pub places: Vec<Place>,
-    /// What limits all tests, in a sentence; `None` if nothing does.
+    pub places: Vec<GroupedResiduals>,
+    /// Limitation of all tests, in a sentence; `None` if there is none.
     pub caution: Option<String>,
-    /// What the tests say, in the order of [`ResidualTest`].
+    /// Results of the tests, in the order of [`ResidualTest`].
     pub findings: Vec<ResidualFinding>,
 }
 
@@ -195,7 +195,7 @@ impl Residuals {
     /// # Errors
     /// Fewer than [`FEWEST_ROWS`] scored rows.
     pub fn of(data: &Dataset, simulated: &[Vec<f64>], options: &ResidualOptions) -> Result<Self> {
-        let all = Rows::of(data, simulated, options.smallest_reversal);
+        let all = ResidualRows::of(data, simulated, options.smallest_reversal);
         let scored = all.len();
         if scored < FEWEST_ROWS {
             let problem = DataProblem::TooFewForTests { found: scored, needed: FEWEST_ROWS };
@@ -224,7 +224,7 @@ impl Residuals {
             correlation_lag: lag,
             whiteness: Whiteness::of(&residual),
             inputs: input::correlations(&rows, &about_mean, names),
-            places: place::places(&rows),
+            places: groups::places(&rows),
             caution: None,
             findings: Vec::new(),
         };

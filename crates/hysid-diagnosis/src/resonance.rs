@@ -7,7 +7,7 @@ mod normal_equations;
 mod search;
 mod static_law;
 
-pub use excerpt::Compared;
+pub use excerpt::ComparedSignal;
 use excerpt::Excerpts;
 pub(crate) use excerpt::{JITTER, even_step};
 use hysid_core::data::record::Dataset;
@@ -28,7 +28,7 @@ const MOST_DAMPING_OF_CHANGES: f64 = 0.8;
 /// A linear oscillator, compared with a law without inertia.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resonance {
-    /// The oscillator.
+    /// The linear oscillator that fits best.
     pub oscillator: LinearOscillator,
     /// The residual of the oscillator divided by that of the law without inertia.
     pub ratio: f64,
@@ -43,23 +43,23 @@ impl Resonance {
     /// 200 rows with an output in records of at least 200 rows, and where input or output are constant. Of long data some
     /// 6000 rows are compared.
     pub fn of(data: &Dataset) -> Option<Self> {
-        let of_output = Self::of_what(data, Compared::Output)?;
+        let of_output = Self::of_what(data, ComparedSignal::Output)?;
         if of_output.is_found() {
             return Some(of_output);
         }
-        Self::of_what(data, Compared::Changes).filter(Self::is_found).or(Some(of_output))
+        Self::of_what(data, ComparedSignal::Changes).filter(Self::is_found).or(Some(of_output))
     }
 
     /// True if the oscillator leaves clearly less, and swings.
     pub fn is_found(&self) -> bool {
         let (ratio, damping_ratio) = match self.oscillator.compared {
-            Compared::Output => (RATIO, MOST_DAMPING),
-            Compared::Changes => (RATIO_OF_CHANGES, MOST_DAMPING_OF_CHANGES),
+            ComparedSignal::Output => (RATIO, MOST_DAMPING),
+            ComparedSignal::Changes => (RATIO_OF_CHANGES, MOST_DAMPING_OF_CHANGES),
         };
         self.ratio < ratio && self.oscillator.damping_ratio <= damping_ratio
     }
 
-    fn of_what(data: &Dataset, compared: Compared) -> Option<Self> {
+    fn of_what(data: &Dataset, compared: ComparedSignal) -> Option<Self> {
         let excerpts = Excerpts::of(data, compared)?;
         let oscillator = search::best(&excerpts)?;
         let (frequency, damping_ratio) = (oscillator.natural_frequency, oscillator.damping_ratio);

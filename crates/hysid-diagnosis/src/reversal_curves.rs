@@ -24,11 +24,11 @@ use hysid_core::error::Result;
 use serde::Serialize;
 
 use self::density::{Smoothing, chosen};
-use self::recognition::{Candidate, recognised};
+use self::recognition::{CurveSet, recognised};
 use super::branch::BranchSet;
 use super::{DiagnosisOptions, FEWEST_ROWS};
 
-/// Smoothing factors that can be asked for.
+/// Valid smoothing factors.
 pub const SMOOTHING_FACTORS: std::ops::RangeInclusive<usize> = 1..=10;
 
 /// Grid lines of the table, at most; of more curves some are left out, in the table only.
@@ -88,13 +88,13 @@ pub struct ReversalCurves {
     pub curves: Vec<ReversalCurve>,
     /// Distance of the grid's lines along both axes, in the unit of the input.
     pub step: f64,
-    /// The smoothing factor.
+    /// Smoothing factor `SF` of the [module page](self).
     pub smoothing_factor: usize,
     /// True if it was chosen by the noise.
     pub smoothing_is_chosen: bool,
     /// The nodes, curve by curve.
     pub nodes: Vec<ReversalNode>,
-    /// What to know of them.
+    /// Notes on the curves for the reader.
     pub notes: Vec<String>,
 }
 
@@ -110,7 +110,7 @@ impl ReversalCurves {
         Ok(recognised(&survey).map(|found| Self::from_candidates(&survey, &found, options.smoothing_factor)))
     }
 
-    fn from_candidates(survey: &BranchSet, found: &Candidate, wanted: Option<usize>) -> Self {
+    fn from_candidates(survey: &BranchSet, found: &CurveSet, wanted: Option<usize>) -> Self {
         let sign = if found.rising { 1.0 } else { -1.0 };
         let step = median_step(&found.branches.iter().map(|&b| survey.branches[b].from).collect::<Vec<_>>());
         let lines = found.branches.len().div_ceil(MOST_LINES).max(1);
@@ -163,7 +163,7 @@ fn median_step(reversals: &[f64]) -> f64 {
 }
 
 /// The nodes: on every curve, or every so many, at equal steps of the input from the end back to its beginning.
-fn grid(survey: &BranchSet, found: &Candidate, step: f64, every: usize) -> Vec<(usize, ReversalNode)> {
+fn grid(survey: &BranchSet, found: &CurveSet, step: f64, every: usize) -> Vec<(usize, ReversalNode)> {
     let sign = if found.rising { 1.0 } else { -1.0 };
     let mut nodes = Vec::new();
     for (curve, &number) in found.branches.iter().enumerate().step_by(every) {
@@ -191,7 +191,7 @@ fn grid(survey: &BranchSet, found: &Candidate, step: f64, every: usize) -> Vec<(
     nodes
 }
 
-fn notes(nodes: &[ReversalNode], found: &Candidate, lines: usize) -> Vec<String> {
+fn notes(nodes: &[ReversalNode], found: &CurveSet, lines: usize) -> Vec<String> {
     let mut notes = Vec::new();
     let most = nodes.iter().filter_map(|node| node.density).fold(0.0, |most: f64, d| most.max(d.abs()));
     let squares = nodes.iter().filter_map(|node| node.density_deviation).map(|d| d * d);

@@ -33,7 +33,7 @@ const EXPERIMENT: &str = "drive the input over its whole range, up and down";
 
 /// Tests for saturation at either end: the upper end from rising, the lower end from falling branches
 /// (what follows a turning point is the stiffness of unloading).
-pub(crate) fn test(survey: &BranchSet) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet) -> Finding {
     let mut ends = [end(survey, true), end(survey, false)].into_iter().flatten();
     let Some(first) = ends.next() else {
         return Finding::not_testable(Property::Saturation, "no branch over most of the range", EXPERIMENT);

@@ -25,7 +25,7 @@ const LONGEST: f64 = 0.2;
 /// Shortest window that a parabola smooths.
 const SHORTEST: usize = 5;
 
-/// Values of two windows agree within so many deviations of the shorter one.
+/// Deviations of the shorter one within which values of two windows agree.
 const AGREE: f64 = 2.0;
 
 /// Branches that the window is chosen from.
@@ -33,7 +33,7 @@ const JUDGED: usize = 60;
 
 /// A row on the parabola through its neighbours.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Smoothed {
+pub(crate) struct SmoothedRow {
     pub y: f64,
     /// Deviation of `y` for white noise of deviation 1.
     pub deviation: f64,
@@ -44,7 +44,7 @@ pub(crate) struct Smoothed {
 
 /// A row of a branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct BranchRow {
     /// Where it stands on the way: its time, or its input.
     pub station: f64,
     pub x: f64,
@@ -54,18 +54,18 @@ pub(crate) struct Place {
 /// The rows of a branch, in the order of their stations, and their noise.
 #[derive(Debug, Clone)]
 pub(crate) struct Points {
-    pub places: Vec<Place>,
+    pub places: Vec<BranchRow>,
     pub input_noise: Noise,
     pub output_noise: Noise,
 }
 
 /// Each row on the parabola of least squares over the stations of the `window` nearest rows; a window at an
 /// end of the branch lies on one side of its row, and none is longer than a share of the branch.
-pub(crate) fn smooth(places: &[Place], window: usize) -> Vec<Smoothed> {
+pub(crate) fn smooth(places: &[BranchRow], window: usize) -> Vec<SmoothedRow> {
     // An odd number of rows.
     let window = window.min((places.len() as f64 * LONGEST) as usize / 2 * 2 + 1);
     if window < SHORTEST {
-        let alone = |(row, place): (usize, &Place)| Smoothed {
+        let alone = |(row, place): (usize, &BranchRow)| SmoothedRow {
             y: place.y,
             deviation: 1.0,
             bend: 0.0,
@@ -78,33 +78,33 @@ pub(crate) fn smooth(places: &[Place], window: usize) -> Vec<Smoothed> {
             let first = row.saturating_sub(window / 2).min(places.len() - window);
             let rows = first..first + window;
             let (y, deviation) = parabola_at(&places[rows.clone()], &places[row]);
-            Smoothed { y, deviation, bend: 0.0, rows }
+            SmoothedRow { y, deviation, bend: 0.0, rows }
         })
         .collect()
 }
 
 /// As [`smooth`], with shorter windows where a longer one bends the course: at each row the longest that agrees
 /// with those half and a quarter as long, as far as noise goes.
-pub(crate) fn smooth_where_straight(points: &Points, window: usize) -> Vec<Smoothed> {
+pub(crate) fn smooth_where_straight(points: &Points, window: usize) -> Vec<SmoothedRow> {
     let lengths = [window / 4, window / 2, window].map(|length| length / 2 * 2 + 1);
     let [mut chosen, half, whole] = lengths.map(|length| smooth(&points.places, length));
     // What is taken for white noise is smoothed out, no more: coloured noise stays, and is allowed for.
     let noise = points.output_noise.roughness();
-    let agree = |a: &Smoothed, b: &Smoothed| (a.y - b.y).abs() <= AGREE * noise * a.deviation;
+    let agree = |a: &SmoothedRow, b: &SmoothedRow| (a.y - b.y).abs() <= AGREE * noise * a.deviation;
     for (row, chosen) in chosen.iter_mut().enumerate() {
         for longer in [&half[row], &whole[row]] {
             if !agree(chosen, longer) {
                 break;
             }
             let apart = (longer.y - chosen.y).abs() - 0.5 * noise * chosen.deviation;
-            *chosen = Smoothed { bend: apart.max(0.0), ..longer.clone() };
+            *chosen = SmoothedRow { bend: apart.max(0.0), ..longer.clone() };
         }
     }
     chosen
 }
 
 /// Value of the parabola of least squares at a row, and its deviation for white noise of deviation 1.
-fn parabola_at(places: &[Place], at: &Place) -> (f64, f64) {
+fn parabola_at(places: &[BranchRow], at: &BranchRow) -> (f64, f64) {
     let parabola = Parabola::over(places, at.station);
     let above: f64 = places.iter().map(|place| parabola.weight(place) * (place.y - at.y)).sum();
     (at.y + above, parabola.deviation)
@@ -124,7 +124,7 @@ pub(crate) struct Parabola {
 }
 
 impl Parabola {
-    pub fn over(places: &[Place], station: f64) -> Self {
+    pub fn over(places: &[BranchRow], station: f64) -> Self {
         let n = places.len() as f64;
         let same = 1e-12 * station.abs();
         let extent = places[places.len() - 1].station - places[0].station;
@@ -152,7 +152,7 @@ impl Parabola {
     }
 
     /// The share of a row in the value.
-    pub fn weight(&self, place: &Place) -> f64 {
+    pub fn weight(&self, place: &BranchRow) -> f64 {
         let distance = place.station - self.station;
         match self.coefficients {
             Some([c0, c1, c2]) => {
@@ -210,13 +210,13 @@ pub(crate) fn choose_window(branches: &[Points]) -> usize {
 mod tests {
     use super::*;
 
-    fn place(station: f64, y: f64) -> Place {
-        Place { station, x: station, y }
+    fn place(station: f64, y: f64) -> BranchRow {
+        BranchRow { station, x: station, y }
     }
 
     #[test]
     fn a_parabola_stays_as_it_is() {
-        let places: Vec<Place> =
+        let places: Vec<BranchRow> =
             (0..50).map(|k| 0.1 * k as f64).map(|x| place(x, 3.0 - x + 0.5 * x * x)).collect();
         for (place, value) in places.iter().zip(smooth(&places, 9)) {
             assert!((place.y - value.y).abs() < 1e-11, "{place:?} {value:?}");
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn deviations_are_those_of_least_squares() {
         // Even spacing, 5 rows: (3/35)(…) weights of Savitzky and Golay, whose middle one is 17/35.
-        let places: Vec<Place> = (0..30).map(|k| place(k as f64, 0.0)).collect();
+        let places: Vec<BranchRow> = (0..30).map(|k| place(k as f64, 0.0)).collect();
         let smoothed = smooth(&places, 5);
         assert!((square(smoothed[10].deviation) - 17.0 / 35.0).abs() < 1e-12);
         assert!((square(smoothed[0].deviation) - 31.0 / 35.0).abs() < 1e-12);
@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn equal_places_are_averaged() {
-        let places: Vec<Place> = (0..30).map(|k| place(1.0, f64::from(k % 5))).collect();
+        let places: Vec<BranchRow> = (0..30).map(|k| place(1.0, f64::from(k % 5))).collect();
         assert_eq!(smooth(&places, 5)[12].y, 2.0);
     }
 }

@@ -14,7 +14,7 @@ use crate::branch::Opening;
 /// Hysteresis is present if a loop fills more than this share of its bounding box.
 pub(super) const FULL: f64 = 0.02;
 
-/// Speeds must differ by this factor for a loop of speed 0 to be told from that of the slowest.
+/// Factor by which speeds must differ to distinguish a loop of speed 0 from that of the slowest.
 const RANGE_OF_SPEEDS: f64 = 1.5;
 
 /// A loop this many times as wide as a lag makes it is not only the lag's.
@@ -23,7 +23,7 @@ const BEYOND_A_LAG: f64 = 3.0;
 /// Speeds within this factor are taken together.
 const TOGETHER: f64 = 1.15;
 
-/// Without time stamps, a loop as wide as a lag of so many rows makes it may be that of a lag.
+/// Rows of a lag that may explain a loop of the same width, without time stamps.
 const FEW_ROWS: f64 = 3.0;
 
 /// Openings over less than this share of the widest do not count.
@@ -44,10 +44,10 @@ const SHRINKS: f64 = 0.97;
 /// Loops that grow with a power of the speed below this one are not those of a relaxation.
 const SLOW_GROWTH: f64 = 0.5;
 
-/// A lag explains no loops whose widths ask for lags that differ by this factor.
+/// A lag explains no loops whose widths require lags that differ by this factor.
 const UNLIKE_A_LAG: f64 = 2.0;
 
-/// A lag that closes loops is at most so many times the largest that their widths ask for.
+/// Largest lag that closes loops, relative to the largest that their widths require.
 const FURTHER: f64 = 2.0;
 
 /// Loops over less than this share of the widest say nothing about a lag.
@@ -61,7 +61,11 @@ const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten tim
 /// Tests whether loops remain at speed 0. At a single speed, `longest_lag` is the time by which the output may be
 /// late at the turning points: a lag `τ` makes a loop of the width `2 τ |x'|`. `rate` says whether the output depends on
 /// the speed: if so, what loops do at speed 0 is known only where they grow with the speed, and not in proportion.
-pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce() -> Option<f64>) -> Finding {
+pub(crate) fn verdict(
+    survey: &BranchSet,
+    rate: Verdict,
+    longest_lag: impl FnOnce() -> Option<f64>,
+) -> Finding {
     let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
     let mut large: Vec<&Opening> =
         survey.openings.iter().filter(|opening| opening.swing > WIDE * widest).collect();
@@ -215,13 +219,13 @@ fn may_be_a_lag(survey: &BranchSet, loops: &[&Opening], small: f64) -> bool {
     most < UNLIKE_A_LAG * least || shifted::closes(survey, loops, FURTHER * most, small)
 }
 
-/// [`test`] for a measured record: withholds a "yes" if a law without loops at speed 0 also explains the record.
+/// [`verdict`] for a measured record: withholds a "yes" if a law without loops at speed 0 also explains the record.
 pub(crate) fn test_of_measured(
     survey: &BranchSet,
     rate: Verdict,
     longest_lag: impl FnOnce() -> Option<f64>,
 ) -> Finding {
-    let mut finding = test(survey, rate, longest_lag);
+    let mut finding = verdict(survey, rate, longest_lag);
     if finding.verdict == Verdict::Yes && survey.data.has_time() && viscous::may_be_viscous(survey) {
         finding.verdict = Verdict::NotTestable;
         finding.statement +=

@@ -23,14 +23,14 @@ const EXPERIMENT: &str =
     "run cycles of growing amplitude up to the largest deformation that matters, two of each";
 
 /// A cycle on the envelope.
-struct Tip<'r> {
+struct EnvelopeTip<'r> {
     row: &'r CycleRow,
     amplitude: f64,
     strength: f64,
 }
 
 /// Tests for strength loss; `rate` says whether the output depends on the speed.
-pub(crate) fn test(survey: &BranchSet, cycles: &[CycleRow], rate: Verdict) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet, cycles: &[CycleRow], rate: Verdict) -> Finding {
     let not_testable = |why: String| Finding::not_testable(Property::StrengthLoss, why, EXPERIMENT);
     if rate == Verdict::Yes {
         return not_testable(
@@ -39,7 +39,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[CycleRow], rate: Verdict) -> Fi
     }
     let mut records: Vec<&str> = cycles.iter().map(|row| row.record.as_str()).collect();
     records.dedup();
-    let tips: Vec<Vec<Tip>> = records
+    let tips: Vec<Vec<EnvelopeTip>> = records
         .into_iter()
         .filter_map(|name| survey.data.records().iter().find(|record| record.name() == name))
         .map(|record| {
@@ -51,7 +51,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[CycleRow], rate: Verdict) -> Fi
     if count < FEWEST {
         return not_testable(format!("{count} cycles reach the furthest inputs so far; {FEWEST} are needed"));
     }
-    let mut worst: Option<(f64, &Tip, &Tip)> = None;
+    let mut worst: Option<(f64, &EnvelopeTip, &EnvelopeTip)> = None;
     for tips in &tips {
         let mut strongest = &tips[0];
         for tip in tips {
@@ -88,8 +88,8 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[CycleRow], rate: Verdict) -> Fi
         let most = if limit > EFFECT { 100.0 * limit } else { percent.max(0.0) };
         (Verdict::No, format!("the force at the tips of the cycles never falls by more than {most:.1} %"))
     };
-    let piece = |tip: &Tip| Piece { record: tip.row.record.clone(), rows: tip.row.rows };
-    let curve = |tips: &Vec<Tip>| PictureCurve {
+    let piece = |tip: &EnvelopeTip| Piece { record: tip.row.record.clone(), rows: tip.row.rows };
+    let curve = |tips: &Vec<EnvelopeTip>| PictureCurve {
         label: tips.first().map_or_else(String::new, |tip| tip.row.record.clone()),
         points: tips.iter().map(|tip| (tip.amplitude, tip.strength)).collect(),
     };
@@ -112,12 +112,12 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[CycleRow], rate: Verdict) -> Fi
 }
 
 /// True for cycles that end at a much larger amplitude than they begin with.
-fn grows(tips: &Vec<Tip>) -> bool {
+fn grows(tips: &Vec<EnvelopeTip>) -> bool {
     tips.last().is_some_and(|last| last.amplitude >= GROWTH * tips[0].amplitude)
 }
 
 /// The cycles that reach both furthest inputs so far, in the order of time.
-fn envelope<'r>(record: &Record, cycles: impl Iterator<Item = &'r CycleRow>) -> Vec<Tip<'r>> {
+fn envelope<'r>(record: &Record, cycles: impl Iterator<Item = &'r CycleRow>) -> Vec<EnvelopeTip<'r>> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut tips = Vec::new();
     for row in cycles {
@@ -125,7 +125,7 @@ fn envelope<'r>(record: &Record, cycles: impl Iterator<Item = &'r CycleRow>) -> 
         let (below, above) = (-force_at_tip(record, row, -1.0), force_at_tip(record, row, 1.0));
         let reach = CLOSED * (peak - valley);
         if peak >= high - reach && valley <= low + reach && above > below {
-            tips.push(Tip { row, amplitude: 0.5 * (peak - valley), strength: 0.5 * (above - below) });
+            tips.push(EnvelopeTip { row, amplitude: 0.5 * (peak - valley), strength: 0.5 * (above - below) });
         }
         (low, high) = (low.min(valley), high.max(peak));
     }

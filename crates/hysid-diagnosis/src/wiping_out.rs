@@ -19,7 +19,7 @@ const EXPERIMENT: &str = "on the way up and on the way down, reverse the input b
                           return past the turning point and continue to the end; at least two such \
                           excursions";
 
-pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
+pub(crate) fn verdict(survey: &BranchSet, equal_speed: bool) -> Finding {
     let mut comparisons = Vec::new();
     for (index, branch) in survey.branches.iter().enumerate() {
         for closing in &branch.closes {
@@ -97,7 +97,7 @@ impl BranchSet<'_> {
     pub(super) fn finding(
         &self,
         property: Property,
-        judgement: &super::comparison::Judgement,
+        judgement: &super::comparison::PropertyResult,
         comparisons: &[Comparison],
         statement: String,
         experiment: &str,

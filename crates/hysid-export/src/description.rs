@@ -25,7 +25,7 @@ pub enum RateSource {
     Argument,
 }
 
-/// What a step is given.
+/// Argument of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Argument {
     /// The input with this index.
@@ -57,9 +57,9 @@ pub struct Description {
     pub arguments: Vec<Argument>,
 }
 
-/// What a part of a model sees of one row: transformed inputs and rate, in their units.
+/// Inputs of a part of a model in one row: transformed inputs and rate, in their units.
 #[derive(Debug, Clone)]
-struct Sample {
+struct PartInputs {
     inputs: Vec<Real>,
     rate: Real,
     step: Real,
@@ -81,7 +81,7 @@ impl Description {
         precision: Precision,
         band: Option<(f64, f64, f64)>,
     ) -> Self {
-        let parts = Parts::of(model);
+        let parts = ModelParts::of(model);
         let inputs = model.names().inputs.len();
         let mut arguments: Vec<Argument> = (0..inputs).map(Argument::Input).collect();
         let has_rate = parts.has_rate();
@@ -115,14 +115,14 @@ impl Description {
             }
             None => Real::Constant(0.0),
         };
-        let row = Row { inputs: &inputs, rate, step, is_first, band };
+        let row = InputRow { inputs: &inputs, rate, step, is_first, band };
         let output = parts.step(&mut builder, model, &row, started);
         builder.output(0, output);
         Self { program: builder.finish(), arguments }
     }
 }
 
-struct Row<'a> {
+struct InputRow<'a> {
     inputs: &'a [Real],
     rate: Real,
     step: Real,
@@ -133,10 +133,10 @@ struct Row<'a> {
 /// Name of the array of the state with half the width of the band.
 pub const HALF_WIDTH: &str = "half_width";
 
-/// What a model consists of: itself, or its members.
-struct Parts<'m>(Vec<&'m Model>);
+/// Models that a model consists of: itself, or its members.
+struct ModelParts<'m>(Vec<&'m Model>);
 
-impl<'m> Parts<'m> {
+impl<'m> ModelParts<'m> {
     fn of(model: &'m Model) -> Self {
         match model.predictor() {
             Predictor::Ensemble(ensemble) => Self(ensemble.members().iter().collect()),
@@ -157,7 +157,7 @@ impl<'m> Parts<'m> {
     }
 
     /// Writes a step of the whole, with the lead-in before the first.
-    fn step(&self, builder: &mut Builder, model: &Model, row: &Row<'_>, started: Array) -> Real {
+    fn step(&self, builder: &mut Builder, model: &Model, row: &InputRow<'_>, started: Array) -> Real {
         let lead_in = model.lead_in();
         let histories: Vec<Vec<Real>> =
             self.0.iter().map(|part| history(builder, part.input_transform(), row, lead_in)).collect();
@@ -180,7 +180,7 @@ impl<'m> Parts<'m> {
                 inputs.extend(history.iter().cloned());
                 let rate =
                     part.rate().map_or(Real::Constant(0.0), |_| transformed_rate(builder, transform, rate));
-                let sample = Sample { inputs, rate, step: step.clone(), is_first: is_first.clone() };
+                let sample = PartInputs { inputs, rate, step: step.clone(), is_first: is_first.clone() };
                 let name = if self.0.len() == 1 { "network".into() } else { format!("member_{}", index + 1) };
                 builder.remark(format!("{}: {}", name.replace('_', " "), part.name().name()));
                 let output = match part.predictor() {
@@ -264,8 +264,13 @@ fn transformed_rate(builder: &mut Builder, transform: &InputTransform, rate: &Re
     }
 }
 
-/// The inputs that tell of the past: the largest magnitude so far and the path so far (theory.md (11.2)).
-fn history(builder: &mut Builder, transform: &InputTransform, row: &Row<'_>, lead_in: &[f64]) -> Vec<Real> {
+/// The inputs that represent the past: the largest magnitude so far and the path so far (theory.md (11.2)).
+fn history(
+    builder: &mut Builder,
+    transform: &InputTransform,
+    row: &InputRow<'_>,
+    lead_in: &[f64],
+) -> Vec<Real> {
     let Some((largest_scale, longest)) = transform.history else { return Vec::new() };
     let largest = builder.state("largest", vec![0.0]);
     let path = builder.state("path", vec![0.0]);

@@ -8,15 +8,15 @@ use crate::options::Options;
 use crate::program::Precision;
 use crate::readme::readme;
 use crate::reserved;
-use crate::subject::{File, Subject};
-use crate::target::{Target, Written};
+use crate::subject::{ExportFile, ExportSubject};
+use crate::target::{Target, TargetFiles};
 
-/// An export.
+/// Files of an exported model, with a note for the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Export {
     /// The files that belong in one folder.
-    pub files: Vec<File>,
-    /// What the user must know.
+    pub files: Vec<ExportFile>,
+    /// Note for the user.
     pub note: Option<String>,
 }
 
@@ -41,18 +41,18 @@ pub fn export(model: &Model, to: Target, options: &Options) -> Result<Export, Er
         return Err(Error::NoInverse(back_end.name));
     }
     reserved::check(&options.name, back_end.reserved, back_end.name)?;
-    let subject = Subject::of(model, options)?;
+    let subject = ExportSubject::of(model, options)?;
     reserved::check_arrays(&options.name, subject.tangent(), back_end.name)?;
-    let Written { mut files, note } = (back_end.write)(&subject)?;
+    let TargetFiles { mut files, note } = (back_end.write)(&subject)?;
     // A unit of the inverse has no steps of the model itself.
     if subject.inverse().is_none() || to != Target::Fmu {
-        files.push(File::new("test_vectors.csv", subject.vectors_csv()));
+        files.push(ExportFile::new("test_vectors.csv", subject.vectors_csv()));
     }
     if let Some(inverse) = subject.inverse() {
-        files.push(File::new("inverse_vectors.csv", inverse.vectors_csv()));
+        files.push(ExportFile::new("inverse_vectors.csv", inverse.vectors_csv()));
     }
-    files.push(File::new("README.md", readme(&subject, to, &files)));
-    files.push(File::new(MANIFEST, manifest(&subject, back_end.name, &files)));
+    files.push(ExportFile::new("README.md", readme(&subject, to, &files)));
+    files.push(ExportFile::new(MANIFEST, manifest(&subject, back_end.name, &files)));
     let note = note
         .into_iter()
         .chain(model.stepping_note().map(String::from))

@@ -20,7 +20,7 @@ const _: () = assert!(MOST_TRIALS == 2 + 2 * (1 + 24 + 33 + 40 + 3 * 60) + 2);
 const SINGLE_UNITS: f64 = 8.0;
 
 /// The inverse of a model in an export.
-pub(crate) struct Inverse {
+pub(crate) struct ExportedInverse {
     pub limits: (f64, f64),
     /// Largest change of the input in a unit of time.
     pub slew: Option<f64>,
@@ -31,11 +31,11 @@ pub(crate) struct Inverse {
     /// Deviation that counts as reached where no number between two inputs is left, as a multiple of the tolerance.
     pub accepted: f64,
     pub arguments: Vec<Argument>,
-    /// What its steps must give.
+    /// Test vectors of its steps.
     pub vectors: Vec<InverseVector>,
 }
 
-impl Inverse {
+impl ExportedInverse {
     /// The inverse of a model with this description.
     ///
     /// # Errors

@@ -27,7 +27,7 @@ pub use export::{Export, export};
 pub use manifest::{MANIFEST, checksum, files_of};
 pub use options::{FmiVersion, InverseOptions, Options};
 pub use program::Precision;
-pub use subject::File;
+pub use subject::ExportFile;
 pub use target::Target;
 #[doc(hidden)]
 pub use target::c::elementary::all_elementary_functions;

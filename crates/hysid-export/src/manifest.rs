@@ -3,7 +3,7 @@
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::subject::{File, Subject};
+use crate::subject::{ExportFile, ExportSubject};
 
 /// Name of the file.
 pub const MANIFEST: &str = "manifest.json";
@@ -48,7 +48,7 @@ struct Manifest<'a> {
     target: &'static str,
     precision: &'static str,
     model: Vec<Fact<'a>>,
-    files: Vec<Entry<'a>>,
+    files: Vec<ManifestEntry<'a>>,
 }
 
 #[derive(Serialize)]
@@ -58,13 +58,13 @@ struct Fact<'a> {
 }
 
 #[derive(Serialize)]
-struct Entry<'a> {
+struct ManifestEntry<'a> {
     path: &'a str,
     bytes: usize,
     sha256: String,
 }
 
-pub(crate) fn manifest(subject: &Subject<'_>, to: &'static str, files: &[File]) -> String {
+pub(crate) fn manifest(subject: &ExportSubject<'_>, to: &'static str, files: &[ExportFile]) -> String {
     let facts = subject.facts();
     let manifest = Manifest {
         format: FORMAT,
@@ -74,15 +74,15 @@ pub(crate) fn manifest(subject: &Subject<'_>, to: &'static str, files: &[File]) 
         target: to,
         precision: subject.precision().name(),
         model: facts.iter().map(|(fact, value)| Fact { fact, value }).collect(),
-        files: files.iter().map(Entry::of).collect(),
+        files: files.iter().map(ManifestEntry::of).collect(),
     };
     let text = serde_json::to_string_pretty(&manifest).unwrap_or_default() + "\n";
     let sum = checksum(text.as_bytes());
     text.replacen(&field(NO_SUM), &field(&sum), 1)
 }
 
-impl<'a> Entry<'a> {
-    fn of(file: &'a File) -> Self {
+impl<'a> ManifestEntry<'a> {
+    fn of(file: &'a ExportFile) -> Self {
         Self { path: &file.path, bytes: file.content.len(), sha256: checksum(&file.content) }
     }
 }
@@ -92,7 +92,7 @@ pub fn checksum(content: &[u8]) -> String {
     format!("{:x}", Sha256::digest(content))
 }
 
-/// A number that tells a model from others, of the source code of its step.
+/// A number that distinguishes a model from others, of the source code of its step.
 pub(crate) fn token_of(source: &str) -> u32 {
     u32::from_str_radix(&checksum(source.as_bytes())[..8], 16).unwrap_or_default()
 }

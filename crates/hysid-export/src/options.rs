@@ -1,11 +1,11 @@
-//! What is asked for.
+//! Options of an export.
 
 use hysid_core::model::BandLevel;
 
 use crate::description::RateSource;
 use crate::program::Precision;
 
-/// What is asked for.
+/// Options of an export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// An identifier, with which all names of the export begin.

@@ -1,6 +1,6 @@
 //! The description of a model between its file and the source code of a target: one step as a program.
 //!
-//! A program has arrays of numbers and statements. Constants never change; the state is what a model remembers between
+//! A program has arrays of numbers and statements. Constants never change; the state is what a model stores between
 //! two steps; scratch is what one step needs. A step reads its arguments from an array, advances the state, and leaves
 //! the outputs in another.
 //!
@@ -30,13 +30,13 @@ impl Array {
 pub(crate) enum Storage {
     /// Numbers that never change.
     Constant(Vec<f64>),
-    /// What is remembered from one step to the next, with the values before the first.
+    /// Memory kept from one step to the next, with the values before the first.
     State(Vec<f64>),
-    /// What one step needs. Its content before the step means nothing.
+    /// Scratch space of one step. Its content before the step means nothing.
     Scratch(usize),
-    /// What a step is given.
+    /// Arguments of a step.
     Argument(usize),
-    /// What a step gives.
+    /// Results of a step.
     Output(usize),
 }
 
@@ -172,7 +172,7 @@ pub(crate) struct Builder {
 }
 
 impl Builder {
-    /// An empty program with so many arguments and outputs.
+    /// An empty program with these numbers of arguments and outputs.
     pub fn new(arguments: usize, outputs: usize, precision: Precision) -> Self {
         let mut builder = Self {
             program: Program {

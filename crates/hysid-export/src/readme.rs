@@ -1,12 +1,12 @@
 //! The page that goes with an export.
 
 use crate::program::interpreter::Machine;
-use crate::subject::{File, Subject};
+use crate::subject::{ExportFile, ExportSubject};
 use crate::target::Target;
 use crate::text::in_markdown;
 use crate::vectors::Action;
 
-pub(crate) fn readme(subject: &Subject<'_>, to: Target, files: &[File]) -> String {
+pub(crate) fn readme(subject: &ExportSubject<'_>, to: Target, files: &[ExportFile]) -> String {
     let facts: String = subject
         .facts()
         .iter()
@@ -64,7 +64,7 @@ A model of hysteresis, written by Hysid from a model file.
     )
 }
 
-fn operations(subject: &Subject<'_>) -> u64 {
+fn operations(subject: &ExportSubject<'_>) -> u64 {
     let mut machine = Machine::new(subject.program());
     let steps = subject.vectors().iter().filter(|vector| vector.action == Action::Step);
     let mut count = 0;

@@ -26,7 +26,7 @@ const DEVICES: &str = "con prn aux nul com1 com2 com3 com4 com5 com6 com7 com8 c
 /// Longest name: MATLAB takes 63 letters, of which the files add some.
 const MOST_LETTERS: usize = 50;
 
-/// What follows the name in functions and types of C.
+/// Endings of the name in functions and types of C.
 const ENDINGS: &str = "commit half_width inverse model reach real reset restore revert save state step";
 
 /// Refuses a name that is no identifier, or one of the target's lists, where capital and small letters are the same, as

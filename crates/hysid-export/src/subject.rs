@@ -6,7 +6,7 @@ use hysid_core::significant::Significant;
 
 use crate::description::{Argument, Description, HALF_WIDTH};
 use crate::error::Error;
-use crate::inverse::Inverse;
+use crate::inverse::ExportedInverse;
 use crate::options::{FmiVersion, Options};
 use crate::program::interpreter::Machine;
 use crate::program::tangent::with_tangent;
@@ -15,23 +15,23 @@ use crate::program::{Precision, Program};
 use crate::text::{harmless, harmless_names};
 use crate::vectors::{Action, Vector, vectors};
 
-/// A file of an export.
+/// Path and content of an exported file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct File {
+pub struct ExportFile {
     /// Its path in the folder of the export.
     pub path: String,
     /// Its content.
     pub content: Vec<u8>,
 }
 
-impl File {
+impl ExportFile {
     pub(crate) fn new(path: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
         Self { path: path.into(), content: content.into() }
     }
 }
 
 /// A model with all that targets write of it.
-pub(crate) struct Subject<'m> {
+pub(crate) struct ExportSubject<'m> {
     model: &'m Model,
     options: &'m Options,
     /// Names of the columns, as they may stand in every file.
@@ -39,10 +39,10 @@ pub(crate) struct Subject<'m> {
     description: Description,
     tangent: Program,
     vectors: Vec<Vector>,
-    inverse: Option<Inverse>,
+    inverse: Option<ExportedInverse>,
 }
 
-impl<'m> Subject<'m> {
+impl<'m> ExportSubject<'m> {
     pub fn of(model: &'m Model, options: &'m Options) -> Result<Self, Error> {
         let band = match options.band {
             None => None,
@@ -57,7 +57,8 @@ impl<'m> Subject<'m> {
         let ranges = model.trained_ranges();
         let rate = ranges.rate.map_or(0.0, |(low, high)| low.abs().max(high.abs()));
         let vectors = vectors(&description, &tangent, &ranges.inputs, rate);
-        let inverse = options.inverse.map(|asked| Inverse::of(model, asked, &description, options.precision));
+        let inverse =
+            options.inverse.map(|asked| ExportedInverse::of(model, asked, &description, options.precision));
         let inverse = inverse.transpose()?;
         let names = harmless_names(model.names());
         Ok(Self { model, options, names, description, tangent, vectors, inverse })
@@ -100,7 +101,7 @@ impl<'m> Subject<'m> {
         &self.vectors
     }
 
-    pub fn inverse(&self) -> Option<&Inverse> {
+    pub fn inverse(&self) -> Option<&ExportedInverse> {
         self.inverse.as_ref()
     }
 

@@ -10,7 +10,7 @@ mod python;
 mod template;
 
 use crate::error::Error;
-use crate::subject::{File, Subject};
+use crate::subject::{ExportFile, ExportSubject};
 
 /// Where an exported model is to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl Target {
         self.back_end().name
     }
 
-    /// What it is, in a few words.
+    /// Names the target, in a few words.
     pub fn what(self) -> &'static str {
         match self {
             Self::C => "C99 source code with a test",
@@ -76,19 +76,19 @@ pub(crate) struct BackEnd {
     /// Lists of names that a model cannot have there.
     pub reserved: &'static [&'static str],
     /// Writes the files, without those that every export has.
-    pub write: fn(&Subject<'_>) -> Result<Written, Error>,
+    pub write: fn(&ExportSubject<'_>) -> Result<TargetFiles, Error>,
     /// The section of the export's page that says how to use them.
-    pub usage: fn(&Subject<'_>) -> String,
+    pub usage: fn(&ExportSubject<'_>) -> String,
 }
 
-pub(crate) struct Written {
-    pub files: Vec<File>,
-    /// What the user must know.
+pub(crate) struct TargetFiles {
+    pub files: Vec<ExportFile>,
+    /// Note for the user.
     pub note: Option<String>,
 }
 
-impl From<Vec<File>> for Written {
-    fn from(files: Vec<File>) -> Self {
+impl From<Vec<ExportFile>> for TargetFiles {
+    fn from(files: Vec<ExportFile>) -> Self {
         Self { files, note: None }
     }
 }

@@ -14,14 +14,14 @@ const FEWEST_ROWS: usize = 30;
 /// [`FEWEST_ROWS`] it may be more.
 const MOST_OPERATIONS: u64 = 40_000_000;
 
-/// Rows whose steps tell the work of all.
+/// Rows whose steps show the work of all.
 const TRIED: usize = 5;
 
 /// The state is saved before this row, and restored after [`REPEATED`] further ones, which are then repeated.
 const SAVED: usize = 120;
 const REPEATED: usize = 25;
 
-/// What is done with a model.
+/// Call to a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
     /// To the initial state.
@@ -58,7 +58,7 @@ impl Action {
 /// One action with its arguments and what it gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vector {
-    /// The action.
+    /// Call that is made.
     pub action: Action,
     /// Arguments of a trial or a step, in their order; otherwise empty.
     pub arguments: Vec<f64>,
@@ -101,7 +101,7 @@ pub fn vectors(
         }
         all.push(Vector { action, arguments, output, tangent: slope });
     };
-    let path = Path { arguments: &description.arguments, inputs, rate };
+    let path = VectorPath { arguments: &description.arguments, inputs, rate };
     let rows = rows_of(tangent, &path);
     let (saved, repeated) = (SAVED * rows / ROWS, REPEATED * rows / ROWS);
     act(Action::Reset, Vec::new());
@@ -133,7 +133,7 @@ pub fn vectors(
 }
 
 /// Rows of the path: fewer where steps need much work.
-fn rows_of(tangent: &Program, path: &Path<'_>) -> usize {
+fn rows_of(tangent: &Program, path: &VectorPath<'_>) -> usize {
     let mut machine = Machine::new(tangent);
     for row in 0..TRIED {
         machine.step(&path.row(row, 0.0));
@@ -144,13 +144,13 @@ fn rows_of(tangent: &Program, path: &Path<'_>) -> usize {
 }
 
 /// A path through the trained ranges and a little beyond.
-struct Path<'a> {
+struct VectorPath<'a> {
     arguments: &'a [Argument],
     inputs: &'a [(f64, f64)],
     rate: f64,
 }
 
-impl Path<'_> {
+impl VectorPath<'_> {
     /// Arguments of a row; the first input is displaced by this share of half its range.
     fn row(&self, row: usize, displaced: f64) -> Vec<f64> {
         let t = row as f64;
@@ -189,7 +189,7 @@ mod tests {
         }
     }
 
-    /// A program with so many sums in a step.
+    /// A program with this number of sums in a step.
     fn of_sums(count: f64) -> Program {
         let mut builder = Builder::new(1, 2, Precision::Double);
         let sums = builder.variable(0.0);

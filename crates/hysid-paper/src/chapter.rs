@@ -1,4 +1,4 @@
-//! What an experiment comes to: a chapter of text, tables and charts, as data.
+//! Result of an experiment: a chapter of text, tables and charts, as data.
 
 use hysid_document::{Chart, Part, Table};
 
@@ -9,17 +9,17 @@ pub struct Chapter {
     pub name: String,
     /// Headline.
     pub title: String,
-    /// What a reader should take away, in a sentence.
+    /// Conclusion for the reader, in a sentence.
     pub verdict: String,
     /// Text, tables and charts in their order.
     pub parts: Vec<Part>,
-    /// What was to be reached, and what was.
-    pub targets: Vec<Target>,
+    /// Targets and the results beside them.
+    pub targets: Vec<ChapterTarget>,
     /// Further files, by name.
     pub files: Vec<(String, Content)>,
 }
 
-/// What is in a further file.
+/// Content of a further file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Content {
     /// A table as CSV.
@@ -39,7 +39,7 @@ pub struct FurtherFile {
 
 /// Whose target it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum TargetSource {
     /// The paper claims it, with this number.
     Paper,
     /// The paper claims it in words; the number is ours.
@@ -48,7 +48,7 @@ pub enum Source {
     Ours,
 }
 
-impl Source {
+impl TargetSource {
     /// In words.
     pub fn words(self) -> &'static str {
         match self {
@@ -61,18 +61,18 @@ impl Source {
 
 /// Was a target met?
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum TargetVerdict {
     /// By the median of the seeds.
     Met,
     /// Not by one network, but by the median of several.
     MetBySeveral,
-    /// Missed.
+    /// Neither by one network nor by several.
     Missed,
     /// The other model is worse than a constant, so that a ratio to its error has no meaning.
     OtherDiverged,
 }
 
-impl Verdict {
+impl TargetVerdict {
     /// In words.
     pub fn words(self) -> &'static str {
         match self {
@@ -86,21 +86,21 @@ impl Verdict {
 
 /// A figure that was to be reached.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Target {
+pub struct ChapterTarget {
     /// The specimen.
     pub specimen: String,
     /// Which of its figures.
     pub figure: String,
     /// Whose target it is.
-    pub source: Source,
-    /// What was asked for.
+    pub source: TargetSource,
+    /// Limit of the target, in words.
     pub wanted: String,
-    /// What one network reached: median and range of the seeds.
+    /// Result of one network: median and range of the seeds.
     pub one: String,
-    /// What the median of several networks reached, likewise.
+    /// Result of the median of several networks, likewise.
     pub several: Option<String>,
     /// Was it reached?
-    pub verdict: Verdict,
+    pub verdict: TargetVerdict,
 }
 
 /// Begins the heading of every table whose figures are of a specimen.
@@ -120,7 +120,9 @@ pub fn targets(chapters: &[Chapter], of_paper: bool) -> Option<Table> {
         "{heading}: median of the seeds, lowest to highest in brackets. Synthetic specimens replace the paper's measured data"
     ));
     for chapter in chapters {
-        for target in chapter.targets.iter().filter(|target| (target.source != Source::Ours) == of_paper) {
+        for target in
+            chapter.targets.iter().filter(|target| (target.source != TargetSource::Ours) == of_paper)
+        {
             table.push([
                 format!("{}, {}", chapter.name, target.specimen).into(),
                 target.figure.as_str().into(),

@@ -1,8 +1,8 @@
-//! What experiments are run with.
+//! Settings of experiments.
 
 use std::time::Duration;
 
-/// What decides about all figures but those in seconds.
+/// Settings that decide all figures but those in seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Settings {
     /// Seed of all randomness.

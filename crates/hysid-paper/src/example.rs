@@ -15,16 +15,16 @@ use hysid::options::{FitSpec, ModelName};
 use hysid::specimens::Specimen;
 use hysid_document::{Part, capitalised, convergence, number};
 
-use crate::chapter::{Chapter, Target, Verdict};
+use crate::chapter::{Chapter, ChapterTarget, TargetVerdict};
 use crate::conditions::{Observer, Settings};
-use crate::fitting::{self, Choice, Chosen, FoldKind, MEMBERS, medians};
+use crate::fitting::{self, ChoiceResult, FoldKind, MEMBERS, TrainingChoice, medians};
 use crate::spread::Spread;
-use catalogue::{Case, Example, Figure, Opponent, Wanted};
+use catalogue::{CaseFigure, Example, ExampleCase, FigureLimit, Opponent};
 
 /// A model with an error above this, in percent of the output's standard deviation, is worse than a constant.
 const DIVERGED: f64 = 100.0;
 
-struct Run {
+struct SeedRun {
     /// Outputs of each record.
     simulated: Vec<Vec<f64>>,
     errors: Errors,
@@ -34,26 +34,26 @@ struct Run {
 struct Contestant {
     name: String,
     parameters: usize,
-    train: Vec<Run>,
-    unseen: Vec<Run>,
+    train: Vec<SeedRun>,
+    unseen: Vec<SeedRun>,
     /// Training of the first seed's model.
     history: Vec<history::Run>,
 }
 
-struct Played<'a> {
-    case: &'a Case,
+struct PlayedCase<'a> {
+    case: &'a ExampleCase,
     specimen: &'static Specimen,
     train: Dataset,
     unseen: Dataset,
     /// Rows at the beginning of the training data whose outputs no model is fitted to.
     blanked: usize,
-    contestants: Vec<Trained>,
+    contestants: Vec<TrainedModels>,
     /// How the networks were trained, with their names.
-    chosen: Vec<(String, Chosen)>,
+    chosen: Vec<(String, ChoiceResult)>,
 }
 
 /// A kind of model as one model, and as the median of several if it begins at random.
-struct Trained {
+struct TrainedModels {
     one: Contestant,
     several: Option<Contestant>,
 }
@@ -61,7 +61,7 @@ struct Trained {
 /// Runs an example.
 pub fn chapter(example: &Example, settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
     let played = example.cases.iter().map(|case| play(example, case, settings, observer));
-    let played: Vec<Played> = played.collect::<Result<_>>()?;
+    let played: Vec<PlayedCase> = played.collect::<Result<_>>()?;
     let mut parts = vec![Part::paragraph(format!("The paper reports {}", example.paper))];
     parts.extend(played.iter().flat_map(|played| played.parts(example)));
     parts.extend(example.causes.iter().map(|&cause| Part::paragraph(cause)));
@@ -69,9 +69,9 @@ pub fn chapter(example: &Example, settings: Settings, observer: &dyn Observer) -
     Ok(Chapter {
         name: example.name.into(),
         title: format!("the paper's {}: {}", spaced(example.name), example.title),
-        verdict: played.iter().map(Played::verdict).collect::<Vec<String>>().join(" "),
+        verdict: played.iter().map(PlayedCase::verdict).collect::<Vec<String>>().join(" "),
         parts,
-        targets: played.iter().flat_map(Played::targets).collect(),
+        targets: played.iter().flat_map(PlayedCase::targets).collect(),
         files: Vec::new(),
     })
 }
@@ -81,7 +81,7 @@ fn spaced(name: &str) -> String {
     name.replace("example", "example ")
 }
 
-struct Bench<'a> {
+struct ExampleBench<'a> {
     what: String,
     train: &'a Dataset,
     unseen: &'a Dataset,
@@ -91,23 +91,23 @@ struct Bench<'a> {
 
 fn play<'a>(
     example: &Example,
-    case: &'a Case,
+    case: &'a ExampleCase,
     settings: Settings,
     observer: &dyn Observer,
-) -> Result<Played<'a>> {
+) -> Result<PlayedCase<'a>> {
     let specimen = Specimen::named(case.specimen).expect("the specimen is in the catalogue");
     let whole = specimen.train();
     let (train, blanked) = beginning::trained_on(whole.clone())?;
     let unseen = specimen.test();
     let what = format!("{}, {}", example.name, case.specimen);
-    let bench = Bench { what, train: &train, unseen: &unseen, settings, observer };
+    let bench = ExampleBench { what, train: &train, unseen: &unseen, settings, observer };
     let xpnn = bench.choose(Family::Xpnn, case.folds)?;
     let mut contestants = vec![bench.networks("XPNN", Family::Xpnn, xpnn.choice, &train)?];
     let mut chosen = vec![("XPNN".to_string(), xpnn)];
     for opponent in case.opponents {
         let contestant = match *opponent {
             Opponent::WithoutRate => {
-                let choice = Choice { has_rate: false, ..chosen[0].1.choice };
+                let choice = TrainingChoice { has_rate: false, ..chosen[0].1.choice };
                 bench.networks("XPNN without x'", Family::Xpnn, choice, &train)?
             }
             Opponent::WithUnseen => {
@@ -136,7 +136,7 @@ fn play<'a>(
         let choice = chosen[0].1.choice;
         contestants.push(bench.networks("XPNN, all rows", Family::Xpnn, choice, &whole)?);
     }
-    Ok(Played { case, specimen, contestants, chosen, train, unseen, blanked })
+    Ok(PlayedCase { case, specimen, contestants, chosen, train, unseen, blanked })
 }
 
 /// The training records with the outputs of the unseen ones, which are the same records with other rows blank.
@@ -150,14 +150,20 @@ fn with_unseen(train: &Dataset, unseen: &Dataset) -> Result<Dataset> {
     Dataset::new(train.names().clone(), records)
 }
 
-impl Bench<'_> {
-    fn choose(&self, family: Family, kind: FoldKind) -> Result<Chosen> {
+impl ExampleBench<'_> {
+    fn choose(&self, family: Family, kind: FoldKind) -> Result<ChoiceResult> {
         let what = format!("{}, {}", self.what, family.name());
         fitting::choose(&what, self.train, family, kind, self.settings, self.observer)
     }
 
     /// One network of each seed, and the median of several, fitted to these data.
-    fn networks(&self, name: &str, family: Family, choice: Choice, fitted_to: &Dataset) -> Result<Trained> {
+    fn networks(
+        &self,
+        name: &str,
+        family: Family,
+        choice: TrainingChoice,
+        fitted_to: &Dataset,
+    ) -> Result<TrainedModels> {
         let starts = fitting::effort(self.settings).starts;
         let members = MEMBERS.min(starts);
         let mut one = Contestant::new(name);
@@ -173,16 +179,16 @@ impl Bench<'_> {
                 one.history.clone_from(&best[0].provenance().runs);
             }
             for (data, is_train) in [(self.train, true), (self.unseen, false)] {
-                let runs: Vec<Run> = best.iter().map(|model| run(model, data)).collect::<Result<_>>()?;
+                let runs: Vec<SeedRun> = best.iter().map(|model| run(model, data)).collect::<Result<_>>()?;
                 let together = median_of(&runs, data);
                 several.add(is_train, together);
                 one.add(is_train, runs.into_iter().next().expect("there is at least one start"));
             }
         }
-        Ok(Trained { one, several: Some(several) })
+        Ok(TrainedModels { one, several: Some(several) })
     }
 
-    fn law(&self, name: &str, request: impl Fn(u64) -> FitSpec) -> Result<Trained> {
+    fn law(&self, name: &str, request: impl Fn(u64) -> FitSpec) -> Result<TrainedModels> {
         let mut one = Contestant::new(name);
         for seed in fitting::seeds(self.settings) {
             let request = fitting::rival(request(seed), self.settings);
@@ -192,7 +198,7 @@ impl Bench<'_> {
             one.add(true, run(&models[0], self.train)?);
             one.add(false, run(&models[0], self.unseen)?);
         }
-        Ok(Trained { one, several: None })
+        Ok(TrainedModels { one, several: None })
     }
 
     fn timed(&self, name: &str, seed: u64, fit: impl FnOnce() -> Result<Vec<Model>>) -> Result<Vec<Model>> {
@@ -214,27 +220,27 @@ impl Contestant {
         Self { name, parameters: 0, train: Vec::new(), unseen: Vec::new(), history: Vec::new() }
     }
 
-    fn add(&mut self, is_train: bool, run: Run) {
+    fn add(&mut self, is_train: bool, run: SeedRun) {
         if is_train { self.train.push(run) } else { self.unseen.push(run) }
     }
 }
 
-fn run(model: &Model, data: &Dataset) -> Result<Run> {
+fn run(model: &Model, data: &Dataset) -> Result<SeedRun> {
     let simulated: Vec<Vec<f64>> =
         data.records().iter().map(|record| model.simulate(record)).collect::<Result<_>>()?;
     let errors = errors(data, &simulated, |_| true).expect("specimens have outputs");
-    Ok(Run { simulated, errors })
+    Ok(SeedRun { simulated, errors })
 }
 
 /// The medians, row by row, of several runs.
-fn median_of(runs: &[Run], data: &Dataset) -> Run {
+fn median_of(runs: &[SeedRun], data: &Dataset) -> SeedRun {
     let of_record = |record: usize| {
         let outputs: Vec<Vec<f64>> = runs.iter().map(|run| run.simulated[record].clone()).collect();
         medians(&outputs)
     };
     let simulated: Vec<Vec<f64>> = (0..data.records().len()).map(of_record).collect();
     let errors = errors(data, &simulated, |_| true).expect("specimens have outputs");
-    Run { simulated, errors }
+    SeedRun { simulated, errors }
 }
 
 /// Errors over the records of these names.
@@ -259,27 +265,29 @@ fn ratio(other: &Errors, xpnn: &Errors) -> f64 {
     if has_diverged { f64::INFINITY } else { other.mse / xpnn.mse }
 }
 
-impl Played<'_> {
-    fn xpnn(&self) -> &Trained {
+impl PlayedCase<'_> {
+    fn xpnn(&self) -> &TrainedModels {
         &self.contestants[0]
     }
 
     /// A figure of a contestant over the seeds, and of the rival for a ratio; `None` if it does not exist.
-    fn figure(&self, figure: Figure, of: &Contestant, rival: Option<&Contestant>) -> Option<Spread> {
+    fn figure(&self, figure: CaseFigure, of: &Contestant, rival: Option<&Contestant>) -> Option<Spread> {
         let percent = |errors: Option<Errors>| errors.and_then(|errors| errors.nrmse_std_percent);
         let value = |seed: usize| -> Option<f64> {
             let (train, unseen) = (&of.train[seed], &of.unseen[seed]);
             match figure {
-                Figure::Training => train.errors.nrmse_std_percent,
-                Figure::Unseen => unseen.errors.nrmse_std_percent,
-                Figure::UnseenMse => Some(unseen.errors.mse),
-                Figure::UnseenRecords(names) => {
+                CaseFigure::Training => train.errors.nrmse_std_percent,
+                CaseFigure::Unseen => unseen.errors.nrmse_std_percent,
+                CaseFigure::UnseenMse => Some(unseen.errors.mse),
+                CaseFigure::UnseenRecords(names) => {
                     percent(errors(&self.unseen, &unseen.simulated, |name| names.contains(&name)))
                 }
-                Figure::LargestUnseen => Some(100.0 * unseen.errors.max_abs_error / largest(&self.unseen)),
-                Figure::LargestUnseenBetween => self.largest_between(unseen),
-                Figure::TimesBelowTraining => Some(ratio(&rival?.train[seed].errors, &train.errors)),
-                Figure::TimesBelowUnseen => Some(ratio(&rival?.unseen[seed].errors, &unseen.errors)),
+                CaseFigure::LargestUnseen => {
+                    Some(100.0 * unseen.errors.max_abs_error / largest(&self.unseen))
+                }
+                CaseFigure::LargestUnseenBetween => self.largest_between(unseen),
+                CaseFigure::TimesBelowTraining => Some(ratio(&rival?.train[seed].errors, &train.errors)),
+                CaseFigure::TimesBelowUnseen => Some(ratio(&rival?.unseen[seed].errors, &unseen.errors)),
             }
         };
         let values: Option<Vec<f64>> = (0..of.train.len()).map(value).collect();
@@ -287,7 +295,7 @@ impl Played<'_> {
     }
 
     /// Largest error in percent before the last training row; `None` unless both are rows of one record.
-    fn largest_between(&self, unseen: &Run) -> Option<f64> {
+    fn largest_between(&self, unseen: &SeedRun) -> Option<f64> {
         let ([trained], [measured]) = (self.train.records(), self.unseen.records()) else { return None };
         let end = trained.output().iter().rposition(|y| !y.is_nan())?;
         let mut sums = ErrorSums::default();
@@ -295,7 +303,7 @@ impl Played<'_> {
         Some(100.0 * sums.errors(&self.unseen.names().output)?.max_abs_error / largest(&self.unseen))
     }
 
-    fn target(&self, wanted: &Wanted) -> Target {
+    fn target(&self, wanted: &FigureLimit) -> ChapterTarget {
         let rival = self.contestants.get(1);
         let xpnn = self.xpnn();
         let one = self.figure(wanted.figure, &xpnn.one, rival.map(|rival| &rival.one));
@@ -305,7 +313,7 @@ impl Played<'_> {
         });
         let is_met = |spread: Option<Spread>| spread.is_some_and(|spread| wanted.is_met_by(spread.median));
         let has_diverged = wanted.figure.is_ratio() && one.is_some_and(|spread| spread.median.is_infinite());
-        Target {
+        ChapterTarget {
             specimen: self.specimen.name.into(),
             figure: wanted.figure.words(self.contestants.get(1).map(|rival| rival.one.name.as_str())),
             source: wanted.source,
@@ -313,42 +321,43 @@ impl Played<'_> {
             one: one.map_or_else(|| "–".into(), Spread::shown),
             several: several.map(Spread::shown),
             verdict: match (has_diverged, is_met(one), is_met(several)) {
-                (true, _, _) => Verdict::OtherDiverged,
-                (_, true, _) => Verdict::Met,
-                (_, false, true) => Verdict::MetBySeveral,
-                (_, false, false) => Verdict::Missed,
+                (true, _, _) => TargetVerdict::OtherDiverged,
+                (_, true, _) => TargetVerdict::Met,
+                (_, false, true) => TargetVerdict::MetBySeveral,
+                (_, false, false) => TargetVerdict::Missed,
             },
         }
     }
 
-    fn targets(&self) -> Vec<Target> {
+    fn targets(&self) -> Vec<ChapterTarget> {
         self.case.wanted.iter().map(|wanted| self.target(wanted)).collect()
     }
 
     fn verdict(&self) -> String {
-        let percent = |figure: Figure, of: &Contestant| {
+        let percent = |figure: CaseFigure, of: &Contestant| {
             self.figure(figure, of, None).map_or("–".to_string(), |spread| number(spread.median, 2))
         };
         let xpnn = &self.xpnn().one;
         let mut text = format!(
             "{}: the XPNN's error is {} % of std in training and {} % on unseen data",
             self.specimen.name,
-            percent(Figure::Training, xpnn),
-            percent(Figure::Unseen, xpnn)
+            percent(CaseFigure::Training, xpnn),
+            percent(CaseFigure::Unseen, xpnn)
         );
         let records: Vec<&str> = self.unseen.records().iter().map(Record::name).collect();
         if records.len() > 1 {
             text += &format!(" ({})", records.join(", "));
         }
         if let Some(several) = &self.xpnn().several {
-            text += &format!("; the median of several networks has {} %", percent(Figure::Unseen, several));
+            text +=
+                &format!("; the median of several networks has {} %", percent(CaseFigure::Unseen, several));
         }
-        for Trained { one: rival, .. } in &self.contestants[1..] {
+        for TrainedModels { one: rival, .. } in &self.contestants[1..] {
             text += &format!(
                 ", {} {} % and {} %",
                 rival.name,
-                percent(Figure::Training, rival),
-                percent(Figure::Unseen, rival)
+                percent(CaseFigure::Training, rival),
+                percent(CaseFigure::Unseen, rival)
             );
         }
         text + "."
@@ -392,8 +401,8 @@ impl Played<'_> {
     }
 
     /// Outputs of the XPNN and its rival from the first seed on a set, with their names.
-    fn lines<'p>(&'p self, set: impl Fn(&'p Contestant) -> &'p Vec<Run>) -> Vec<figures::Line<'p>> {
-        let line = |trained: &'p Trained| figures::Line {
+    fn lines<'p>(&'p self, set: impl Fn(&'p Contestant) -> &'p Vec<SeedRun>) -> Vec<figures::FigureLine<'p>> {
+        let line = |trained: &'p TrainedModels| figures::FigureLine {
             name: &trained.one.name,
             simulated: &set(&trained.one)[0].simulated,
         };
@@ -405,7 +414,7 @@ impl Played<'_> {
 mod tests {
     use super::*;
 
-    /// Errors of so many percent of the standard deviation.
+    /// Errors of this percentage of the standard deviation.
     fn errors_of(percent: f64) -> Errors {
         let mut sums = ErrorSums::default();
         let error = percent / 100.0;

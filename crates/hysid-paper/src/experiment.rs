@@ -12,7 +12,7 @@ pub enum Experiment {
     Nds,
     /// An example of the paper.
     Example(&'static Example),
-    /// Which network can learn which property.
+    /// Which network can represent which property.
     Table2,
     /// The trainers compared.
     Training,

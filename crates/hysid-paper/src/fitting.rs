@@ -17,7 +17,7 @@ use hysid_document::{Piece, Text};
 use rayon::prelude::*;
 
 use crate::conditions::{Observer, Settings};
-pub use choice::{Choice, Chosen, FoldKind, choose, medians};
+pub use choice::{ChoiceResult, FoldKind, TrainingChoice, choose, medians};
 
 /// The one architecture for everything, as the paper claims there is. Chosen by looking at all specimens
 /// together: among 10 and 20 stops with 10, 15 and 20 tanh neurons, 10 tanh neurons leave 1.4 to 1.9 times the
@@ -32,7 +32,7 @@ pub const MEMBERS: usize = 8;
 
 /// Random networks that are trained from each seed, and by how many iterations where these are not chosen.
 #[derive(Debug, Clone, Copy)]
-pub struct Effort {
+pub struct TrainingEffort {
     /// Random networks of each seed.
     pub starts: usize,
     /// Seeds of which a network is trained on each fold.
@@ -43,7 +43,7 @@ pub struct Effort {
     pub penalties: &'static [Regularisation],
 }
 
-const FULL: Effort = Effort {
+const FULL: TrainingEffort = TrainingEffort {
     starts: 24,
     seeds_on_folds: 3,
     iterations: &[60, 200],
@@ -55,7 +55,7 @@ const FULL: Effort = Effort {
 };
 
 /// A quick run, in which only the inputs and the capacities are chosen.
-const QUICK: Effort = Effort {
+const QUICK: TrainingEffort = TrainingEffort {
     starts: 2,
     seeds_on_folds: 1,
     iterations: &[25],
@@ -66,7 +66,7 @@ const QUICK: Effort = Effort {
 const QUICK_RIVAL: (usize, usize) = (8, 20);
 
 /// The effort of these settings.
-pub fn effort(settings: Settings) -> Effort {
+pub fn effort(settings: Settings) -> TrainingEffort {
     if settings.quick { QUICK } else { FULL }
 }
 
@@ -76,7 +76,7 @@ pub fn seeds(settings: Settings) -> impl Iterator<Item = u64> + Clone {
 }
 
 /// A network from one random start.
-pub fn network(family: Family, choice: Choice, seed: u64, start: u64) -> FitOptions {
+pub fn network(family: Family, choice: TrainingChoice, seed: u64, start: u64) -> FitOptions {
     FitOptions {
         model: family,
         sizes: ARCHITECTURE,
@@ -92,7 +92,7 @@ pub fn network(family: Family, choice: Choice, seed: u64, start: u64) -> FitOpti
     }
 }
 
-/// Networks from so many random starts, the one with the lowest training error first.
+/// Networks from this number of random starts, the one with the lowest training error first.
 pub fn networks(
     data: &Dataset,
     options: impl Fn(u64) -> FitOptions + Sync,
@@ -112,7 +112,7 @@ pub fn training_error(model: &Model) -> f64 {
 
 /// The way of training in words.
 pub fn words(settings: Settings) -> Text {
-    let Effort { starts, .. } = effort(settings);
+    let TrainingEffort { starts, .. } = effort(settings);
     let how = format!(
         "XPNN: {} stops and {} tanh neurons for all specimens, trained by Levenberg-Marquardt from {starts} random \
          starts of each of {SEEDS} seeds. One network is that with the lowest training error of a seed; the median \

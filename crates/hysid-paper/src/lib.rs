@@ -34,6 +34,6 @@ mod spread;
 mod table2;
 mod training;
 
-pub use chapter::{Chapter, Content, FurtherFile, Source, Target, Verdict, targets};
+pub use chapter::{Chapter, ChapterTarget, Content, FurtherFile, TargetSource, TargetVerdict, targets};
 pub use conditions::{Observer, Settings};
 pub use experiment::Experiment;

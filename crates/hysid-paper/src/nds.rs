@@ -6,7 +6,7 @@ use hysid::elementary::{cos, sin};
 use hysid::operator::{DeterioratingStop, Operator};
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, number};
 
-use crate::chapter::{Chapter, Source, Target, Verdict};
+use crate::chapter::{Chapter, ChapterTarget, TargetSource, TargetVerdict};
 
 /// A neuron: the stop of `weight x + rate_weight x'` with threshold 1, which deteriorates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +39,7 @@ const DEMONSTRATIONS: [(Neuron, &str); 6] = [
 /// The third with the capacity that the paper's text has in the place of that in its list.
 const VARIANT: (Neuron, &str) = (neuron(1.42, 0.0, 50.0), "the third with β of 50, twice the life");
 
-/// Rates of the input in Hz: a sine of amplitude 1. Designed; the paper's figure does not tell.
+/// Rates of the input in Hz: a sine of amplitude 1. Designed; the paper's figure does not give them.
 const RATES: [f64; 3] = [0.1, 0.2, 0.5];
 
 /// Cycles at each rate.
@@ -59,12 +59,12 @@ impl Neuron {
         DeterioratingStop::new(1.0, self.capacity).expect("capacities are above 0")
     }
 
-    /// What the stop sees of a sine of amplitude 1 at a phase in rad; at rate 0 it sees no rate.
+    /// Input of the stop for a sine of amplitude 1 at a phase in rad; at rate 0 the rate is 0.
     fn drive(self, rate: f64, phase: f64) -> f64 {
         self.weight * sin(phase) + self.rate_weight * TAU * rate * cos(phase)
     }
 
-    /// Input and output from the virgin state, for so many cycles of a sine.
+    /// Input and output from the virgin state, over a number of cycles of a sine.
     fn run(self, rate: f64, cycles: usize) -> Vec<(f64, f64)> {
         let mut stop = self.stop();
         let row = |row: usize| {
@@ -153,7 +153,7 @@ const CLAIMED: [(bool, bool, bool); 6] = [
 ];
 
 /// The demonstrations that have the K, the P and the end that the paper claims.
-fn target() -> Target {
+fn target() -> ChapterTarget {
     let holds = |((neuron, _), claimed): &((Neuron, &str), (bool, bool, bool))| {
         let (zero, slow) = (neuron.width(0.0), neuron.width(RATES[0]));
         let is_wide = zero.is_some_and(|zero| zero.abs() > 1e-9);
@@ -162,14 +162,14 @@ fn target() -> Target {
     };
     let holding = DEMONSTRATIONS.into_iter().zip(CLAIMED).filter(holds).count();
     let all = DEMONSTRATIONS.len();
-    Target {
+    ChapterTarget {
         specimen: "one neuron".into(),
         figure: "demonstrations with the K, P and end of life claimed".into(),
-        source: Source::Paper,
+        source: TargetSource::Paper,
         wanted: format!("{all} of {all}"),
         one: format!("{holding} of {all}"),
         several: None,
-        verdict: if holding == all { Verdict::Met } else { Verdict::Missed },
+        verdict: if holding == all { TargetVerdict::Met } else { TargetVerdict::Missed },
     }
 }
 
@@ -191,7 +191,7 @@ fn table() -> Table {
         .with_rows(numbered.chain([("3, β 50".to_string(), VARIANT)]).map(row))
 }
 
-/// A width of rounding errors is none.
+/// Replaces a width that is a rounding error by 0.
 fn tidy(width: f64) -> f64 {
     if width.abs() < 1e-9 { 0.0 } else { width }
 }
@@ -285,7 +285,7 @@ mod tests {
 
     #[test]
     fn all_demonstrations_are_as_the_paper_claims() {
-        assert_eq!((target().one.as_str(), target().verdict), ("6 of 6", Verdict::Met));
+        assert_eq!((target().one.as_str(), target().verdict), ("6 of 6", TargetVerdict::Met));
     }
 
     #[test]

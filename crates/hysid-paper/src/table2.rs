@@ -1,4 +1,4 @@
-//! The paper's table of which network can learn which property, measured: for each property a specimen that
+//! The paper's table of which network can represent which property, measured: for each property a specimen that
 //! has just that, every network trained on it, and its error on unseen data.
 
 mod specimens;
@@ -10,13 +10,13 @@ use hysid::network::Family;
 use hysid::options::network::Regularisation;
 use hysid_document::{Cell, Part, Table, number};
 
-use crate::chapter::{Chapter, Source, Target, Verdict};
+use crate::chapter::{Chapter, ChapterTarget, TargetSource, TargetVerdict};
 use crate::conditions::{Observer, Settings};
-use crate::fitting::{self, Choice, SEEDS};
+use crate::fitting::{self, SEEDS, TrainingChoice};
 use crate::spread::Spread;
-use specimens::{Property, SPECIMENS};
+use specimens::{SPECIMENS, SpecimenProperty};
 
-/// Largest error on unseen data, in percent, of a network that has learnt a property. Designed.
+/// Largest error on unseen data, in percent, of a network that represents a property. Designed.
 const LEARNT: f64 = 3.0;
 
 /// Random starts of each seed: these specimens are small.
@@ -29,8 +29,8 @@ const ITERATIONS: (usize, usize) = (100, 25);
 const PENALTIES: Regularisation = Regularisation { ridge: 1e-8, decay: 1e-9 };
 
 /// A specimen, and the networks trained on it in the order of [`Family::ALL`].
-struct Row {
-    property: &'static Property,
+struct SpecimenRow {
+    property: &'static SpecimenProperty,
     /// Those of the first seed.
     models: Vec<Model>,
     /// Errors on unseen data in percent of the output's standard deviation.
@@ -40,10 +40,10 @@ struct Row {
 /// Runs the experiment.
 pub fn chapter(settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
     let rows = SPECIMENS.iter().map(|property| row(property, settings, observer));
-    let rows: Vec<Row> = rows.collect::<Result<_>>()?;
+    let rows: Vec<SpecimenRow> = rows.collect::<Result<_>>()?;
     let mixing = rows.iter().find(|row| row.property.is_mixing).expect("one of the specimens mixes");
     let incongruency = incongruency_table(mixing)?;
-    let differences: Vec<String> = rows.iter().flat_map(Row::differences).collect();
+    let differences: Vec<String> = rows.iter().flat_map(SpecimenRow::differences).collect();
     Ok(Chapter {
         name: "table2".into(),
         title: "which network can learn which property".into(),
@@ -69,18 +69,18 @@ pub fn chapter(settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
     })
 }
 
-fn targets(rows: &[Row]) -> Vec<Target> {
-    let target = |figure: &str, wanted: String, one: String| Target {
+fn targets(rows: &[SpecimenRow]) -> Vec<ChapterTarget> {
+    let target = |figure: &str, wanted: String, one: String| ChapterTarget {
         specimen: "all specimens".into(),
         figure: figure.into(),
-        source: Source::Paper,
-        verdict: if one == wanted { Verdict::Met } else { Verdict::Missed },
+        source: TargetSource::Paper,
+        verdict: if one == wanted { TargetVerdict::Met } else { TargetVerdict::Missed },
         wanted,
         one,
         several: None,
     };
     let all = rows.iter().map(|row| row.property.paper.len()).sum::<usize>();
-    let differing = rows.iter().flat_map(Row::differences).count();
+    let differing = rows.iter().flat_map(SpecimenRow::differences).count();
     let xpnn = place_of_xpnn();
     let learnt = rows.iter().filter(|row| row.has_learnt(xpnn)).count();
     let sizes = fitting::ARCHITECTURE;
@@ -110,17 +110,21 @@ fn place_of_xpnn() -> usize {
     Family::ALL.iter().position(|&family| family == Family::Xpnn).unwrap_or_default()
 }
 
-/// What the paper's count of parameters leaves out.
+/// Explains which parameters the paper's count leaves out.
 const COUNT: &str = "The paper's count of free parameters is that of the weights between the layers, without the output weights, which follow by least squares. It leaves out the capacity β of each stop, which is trained as well.";
 
 const WHY: &str = "On a minor loop the stops that slide run the same cycle whatever came before; those that do not slide differ by a constant that history has set. A linear readout adds that constant to the output, which shifts the loop and leaves its shape: such models are congruent. A tanh neuron over several stops moves with that constant along its own curve, so the loop changes its shape: the Preisach neural network wipes out, but it is not congruent, and no deterioration is needed for that. Deterioration is needed where loops do not close.";
 
-fn row(property: &'static Property, settings: Settings, observer: &dyn Observer) -> Result<Row> {
+fn row(
+    property: &'static SpecimenProperty,
+    settings: Settings,
+    observer: &dyn Observer,
+) -> Result<SpecimenRow> {
     let (train, unseen) = (specimens::training(property)?, specimens::unseen(property)?);
-    let mut row = Row { property, models: Vec::new(), unseen: Vec::new() };
+    let mut row = SpecimenRow { property, models: Vec::new(), unseen: Vec::new() };
     for family in Family::ALL {
         let iterations = if settings.quick { ITERATIONS.1 } else { ITERATIONS.0 };
-        let choice = Choice {
+        let choice = TrainingChoice {
             has_rate: family.uses_rate(),
             deteriorates: family.deteriorates(),
             penalties: PENALTIES,
@@ -149,7 +153,7 @@ fn row(property: &'static Property, settings: Settings, observer: &dyn Observer)
     Ok(row)
 }
 
-impl Row {
+impl SpecimenRow {
     fn has_learnt(&self, network: usize) -> bool {
         self.unseen[network].median <= LEARNT
     }
@@ -178,7 +182,7 @@ fn learnt(has_learnt: bool) -> &'static str {
     if has_learnt { "learns it" } else { "does not" }
 }
 
-fn verdict(rows: &[Row], differences: &[String]) -> String {
+fn verdict(rows: &[SpecimenRow], differences: &[String]) -> String {
     let all = rows.iter().map(|row| row.property.paper.len()).sum::<usize>();
     let learnt = rows.iter().filter(|row| row.has_learnt(place_of_xpnn())).count();
     format!(
@@ -196,8 +200,8 @@ fn columns() -> Vec<String> {
     std::iter::once("property".to_string()).chain(names).collect()
 }
 
-fn verdicts(rows: &[Row]) -> Table {
-    let cells = |row: &Row| {
+fn verdicts(rows: &[SpecimenRow]) -> Table {
+    let cells = |row: &SpecimenRow| {
         let cell = |network: usize| -> Cell {
             let here = if row.has_learnt(network) { "yes" } else { "no" };
             match row.property.paper.get(network) {
@@ -213,8 +217,8 @@ fn verdicts(rows: &[Row]) -> Table {
         .with_rows(rows.iter().map(cells))
 }
 
-fn errors(rows: &[Row]) -> Table {
-    let cells = |row: &Row| {
+fn errors(rows: &[SpecimenRow]) -> Table {
+    let cells = |row: &SpecimenRow| {
         let errors = row.unseen.iter().map(|&error| Cell::from(error.shown()));
         std::iter::once(row.property.name.into()).chain(errors).collect()
     };
@@ -226,7 +230,7 @@ fn errors(rows: &[Row]) -> Table {
 }
 
 /// Incongruency of minor loops, of the specimen that mixes and of the networks trained on it.
-fn incongruency_table(row: &Row) -> Result<Table> {
+fn incongruency_table(row: &SpecimenRow) -> Result<Table> {
     let record = specimens::two_histories()?;
     let mut table = Table::new(["model", "difference, %"]).headed(format!(
         "{HEADING}: shape of a minor loop after two histories, largest difference in % of its height, {}",
@@ -241,7 +245,7 @@ fn incongruency_table(row: &Row) -> Result<Table> {
 }
 
 fn specimens_table() -> Table {
-    let row = |property: &Property| vec![property.name.into(), property.law.into()];
+    let row = |property: &SpecimenProperty| vec![property.name.into(), property.law.into()];
     Table::new(["property", "law"])
         .headed(format!(
             "{HEADING}: their laws, all designed; ε_r is the stop of threshold r, DS with capacity β"
@@ -249,7 +253,7 @@ fn specimens_table() -> Table {
         .with_rows(SPECIMENS.iter().map(row))
 }
 
-impl Property {
+impl SpecimenProperty {
     fn outputs(&self, record: &Record) -> Vec<f64> {
         specimens::outputs(self, record.time().unwrap_or_default(), &record.inputs()[0])
     }

@@ -33,7 +33,7 @@ const SHARE_OF_EPOCHS: usize = 10;
 const TRAINERS: [Trainer; 4] =
     [Trainer::Genetic, Trainer::Subgradient, Trainer::Hybrid, Trainer::LevenbergMarquardt];
 
-struct Protocol {
+struct TrainingProtocol {
     specimen: &'static Specimen,
     train: Dataset,
     test: Dataset,
@@ -50,7 +50,7 @@ struct Moment {
     nrmse_percent: f64,
 }
 
-struct Training {
+struct TrainerRun {
     trainer: Trainer,
     seed: u64,
     train: Errors,
@@ -61,18 +61,18 @@ struct Training {
 }
 
 struct Repetition {
-    trainings: Vec<Training>,
+    trainings: Vec<TrainerRun>,
     /// Seconds until the sub-gradient method reaches the hybrid's error; `None` if not within the hybrid's time.
     seconds_to_match: Option<f64>,
 }
 
 impl Repetition {
-    fn of(&self, trainer: Trainer) -> Option<&Training> {
+    fn of(&self, trainer: Trainer) -> Option<&TrainerRun> {
         self.trainings.iter().find(|training| training.trainer == trainer)
     }
 }
 
-impl Training {
+impl TrainerRun {
     /// Lowest error up to an epoch, in percent of the output's standard deviation.
     fn percent_at(&self, epoch: usize) -> Option<f64> {
         let moment = self.moments.iter().rfind(|moment| moment.epoch <= epoch)?;
@@ -80,7 +80,7 @@ impl Training {
     }
 }
 
-impl Protocol {
+impl TrainingProtocol {
     /// The whole protocol, or a tenth of its epochs.
     fn new(first_seed: u64, quick: bool) -> Self {
         let specimen = Specimen::named(SPECIMEN).expect("the specimen is in the catalogue");
@@ -106,17 +106,17 @@ impl Protocol {
 
 /// Runs the comparison.
 pub fn chapter(settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
-    compared(&Protocol::new(settings.seed, settings.quick), observer)
+    compared(&TrainingProtocol::new(settings.seed, settings.quick), observer)
 }
 
-fn compared(protocol: &Protocol, observer: &dyn Observer) -> Result<Chapter> {
+fn compared(protocol: &TrainingProtocol, observer: &dyn Observer) -> Result<Chapter> {
     let seeds = protocol.first_seed..protocol.first_seed + SEEDS;
     let repetitions: Vec<Repetition> =
         seeds.map(|seed| repetition(protocol, seed, observer)).collect::<Result<_>>()?;
     Ok(page::chapter(protocol, &repetitions))
 }
 
-fn repetition(protocol: &Protocol, seed: u64, observer: &dyn Observer) -> Result<Repetition> {
+fn repetition(protocol: &TrainingProtocol, seed: u64, observer: &dyn Observer) -> Result<Repetition> {
     let mut trainings = Vec::new();
     for trainer in TRAINERS {
         let training = training(protocol, trainer, seed, observer)?;
@@ -135,7 +135,12 @@ fn repetition(protocol: &Protocol, seed: u64, observer: &dyn Observer) -> Result
     if observer.is_stopped() { Err(Error::Stopped) } else { Ok(Repetition { trainings, seconds_to_match }) }
 }
 
-fn training(protocol: &Protocol, trainer: Trainer, seed: u64, observer: &dyn Observer) -> Result<Training> {
+fn training(
+    protocol: &TrainingProtocol,
+    trainer: Trainer,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Result<TrainerRun> {
     let mut moments: Vec<Moment> = Vec::new();
     let began = observer.clock();
     let fitted = fit(&protocol.train, &protocol.options(trainer, seed), &mut |progress| {
@@ -151,7 +156,7 @@ fn training(protocol: &Protocol, trainer: Trainer, seed: u64, observer: &dyn Obs
     if observer.is_stopped() {
         return Err(Error::Stopped);
     }
-    Ok(Training {
+    Ok(TrainerRun {
         trainer,
         seed,
         train: fitted.model.provenance().train.clone(),
@@ -164,9 +169,9 @@ fn training(protocol: &Protocol, trainer: Trainer, seed: u64, observer: &dyn Obs
 
 /// The sub-gradient method from start after start, until it is as low as the hybrid at its end.
 fn seconds_to_match(
-    protocol: &Protocol,
+    protocol: &TrainingProtocol,
     seed: u64,
-    hybrid: &Training,
+    hybrid: &TrainerRun,
     observer: &dyn Observer,
 ) -> Result<Option<f64>> {
     let target = hybrid.train.nrmse_std_percent.expect("the specimen's output varies");

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use hysid::plan::{Plan, PlanOptions, Protocol, ProtocolOptions, Wanted, Wave};
+use hysid::plan::{LimitOptions, Plan, PlanOptions, Protocol, ProtocolOptions, Wave};
 use pyo3::prelude::*;
 
 use crate::data::Dataset;
@@ -24,7 +24,7 @@ pub fn plan(
     wave: Option<&str>,
     seed: u64,
 ) -> PyResult<String> {
-    let limits = Wanted { range, step, max_rate, length };
+    let limits = LimitOptions { range, step, max_rate, length };
     let wave: Option<Wave> =
         wave.map(str::parse).transpose().map_err(|error: hysid::Error| refused(error))?;
     let set = data.map(|data| Arc::clone(&data.set));

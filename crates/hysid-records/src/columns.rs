@@ -15,7 +15,7 @@ use hysid_core::options::chosen::{NamedOptions, RateChoice};
 use hysid_core::options::{FitSpec, ModelName};
 
 use self::guess::Guess;
-use self::values::{Running, Seen, numbers};
+use self::values::{TimeCheck, ValueStatistics, numbers};
 use crate::usage::Usage;
 use hysid_core::data::unit::{self, Conversion};
 use hysid_document::shell::option;
@@ -25,7 +25,7 @@ use hysid_tables::{Head, Table, is_record};
 /// Name by which a choice of the time column says that there is none.
 pub const NO_TIME: &str = "none";
 
-/// What is said of the columns; what is not said is guessed.
+/// Roles of columns that the user chose; all others are guessed.
 #[derive(Debug, Clone, Default)]
 pub struct ColumnChoice {
     /// Tells the records apart.
@@ -44,7 +44,7 @@ impl ColumnChoice {
         self.time.as_deref() == Some(NO_TIME) && table.column(NO_TIME).is_none()
     }
 
-    /// The options by which a command is told the same columns, for a shell.
+    /// The options that give a command the same columns, for a shell.
     pub fn options(&self) -> Vec<String> {
         let rate = match &self.rate {
             RateOption::Column(name) => Some(name),
@@ -87,7 +87,7 @@ impl RateOption {
         })
     }
 
-    /// What options of a fit ask for, with these data.
+    /// Fit specification from the options, for these data.
     pub fn request(&self, chosen: &NamedOptions, data: &Dataset) -> Result<FitSpec> {
         let is_decided = !matches!(self, Self::Choice(RateChoice::Auto | RateChoice::None));
         Ok(chosen.request(self.method(data, chosen.model())?, is_decided))
@@ -104,13 +104,13 @@ pub struct Roles {
     /// Given rate of the first input.
     pub rate: Option<String>,
     pub output: String,
-    /// What no option decided, in words; `None` if nothing.
+    /// Roles that no option decided, in words; `None` if there are none.
     pub guessed: Option<&'static str>,
     /// Columns that have no role although no option says so, each with the reason.
     pub set_aside: Vec<(String, String)>,
     /// A condition of the test with few values, which divide the rows of each table into records.
     pub condition: Option<String>,
-    /// What was taken against the names of the columns, in a sentence.
+    /// Roles that contradict the names of the columns, in a sentence.
     pub note: Option<String>,
 }
 
@@ -197,7 +197,7 @@ impl Roles {
     }
 
     /// Finds the columns that a model needs, by the names it was trained on or those of options.
-    /// `scored` tells if the output is needed too.
+    /// `scored` is true if the output is needed too.
     pub fn of_model(model: &Model, table: &Head, options: &ColumnChoice, scored: bool) -> Result<Self> {
         Self::of_inputs(model, &model.names().inputs, model.needs_time(), table, options, scored)
     }
@@ -341,15 +341,15 @@ impl Roles {
 /// The column that is named like time. Of one that falls as a field or a temperature does, only the user can say it.
 fn time_by_name(table: &Table, free: &[&String], records: &[Range<usize>]) -> Result<Option<String>> {
     for name in free.iter().filter(|name| unit::is_time(name)) {
-        let running = numbers(table, name).map(|values| Seen::of(&values, records).running);
+        let running = numbers(table, name).map(|values| ValueStatistics::of(&values, records).running);
         // A single T is a temperature as often.
         let is_temperature =
-            name.trim() == "T" && !matches!(running, Some(Running::Strictly | Running::WithEqualStamps));
+            name.trim() == "T" && !matches!(running, Some(TimeCheck::Strictly | TimeCheck::WithEqualStamps));
         if is_temperature {
             continue;
         }
         ensure!(
-            running != Some(Running::Falls),
+            running != Some(TimeCheck::Falls),
             "{}: column \"{}\" falls, as no time does: name another with --time, or use --time none",
             table.file,
             clipped(name)

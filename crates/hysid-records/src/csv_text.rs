@@ -7,7 +7,7 @@ use hysid_core::data::unit;
 
 use hysid_tables::{Delimiter, shortest};
 
-/// The data with a header line. Column `record` tells several records apart, a blank output is an empty
+/// The data with a header line. Column `record` distinguishes several records, a blank output is an empty
 /// cell, and every number reads back as the same number.
 pub fn csv_text(data: &Dataset) -> Result<String> {
     let names = data.names();

@@ -10,12 +10,12 @@ use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::error::{Channel, DataError, DataProblem};
 use hysid_core::model::Model;
 
-use hysid_tables::{CellReader, ColumnReader, Head, Origin, Reading, Table, spread_equal, starts_again};
+use hysid_tables::{CellReader, ColumnReader, Head, Reading, Table, TableOrigin, spread_equal, starts_again};
 
 use crate::columns::values::{changes, numbers};
 use crate::columns::{ColumnChoice, Roles};
 use crate::record_names::RecordNames;
-use crate::units::Factors;
+use crate::units::UnitFactors;
 use crate::usage::Usage;
 use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
@@ -26,20 +26,20 @@ pub struct Data {
     pub set: Dataset,
     pub roles: Roles,
     /// Where each record stands.
-    pub source: Source,
-    /// What was changed on the way, in words.
+    pub source: DataSource,
+    /// Changes made to the data while reading, in words.
     pub warnings: Vec<String>,
 }
 
 /// The tables, and which record is where.
-pub struct Source {
+pub struct DataSource {
     /// The tables, in the order of the command line.
-    pub tables: Vec<Origin>,
-    places: Vec<Place>,
+    pub tables: Vec<TableOrigin>,
+    places: Vec<RecordPlace>,
 }
 
 /// Where a record stands.
-pub struct Place {
+pub struct RecordPlace {
     pub record: String,
     /// Place of its table among all.
     pub table: usize,
@@ -47,7 +47,7 @@ pub struct Place {
 }
 
 impl Data {
-    /// The data in tables whose roles a choice and the names tell. `zero` is as in [`Data::new`].
+    /// The data in tables whose roles a choice and the names give. `zero` is as in [`Data::new`].
     pub fn of_tables(tables: Vec<Table>, columns: &ColumnChoice, zero: Option<usize>) -> Result<Self> {
         let roles = Roles::detect(&tables[0], columns)?;
         Self::new(tables, roles, zero)
@@ -64,18 +64,18 @@ impl Data {
         tables: Vec<Table>,
         roles: Roles,
         names: ColumnNames,
-        factors: Option<&Factors>,
+        factors: Option<&UnitFactors>,
         zero: Option<usize>,
     ) -> Result<Self> {
         for table in &tables[1..] {
             roles.check_against(table, &tables[0].file)?;
         }
         let stems = stems(&tables);
-        let mut source = Source { places: Vec::new(), tables: Vec::new() };
+        let mut source = DataSource { places: Vec::new(), tables: Vec::new() };
         let mut of_tables = Vec::new();
         for (index, (table, stem)) in tables.into_iter().zip(&stems).enumerate() {
             let first = source.places.len();
-            let mut columns = Columns::read(&table, &roles)?;
+            let mut columns = NumberColumns::read(&table, &roles)?;
             factors.iter().for_each(|factors| columns.convert(factors));
             let naming = Naming { table: index, stem, has_others: stems.len() > 1 };
             source.places.extend(places(&table, &roles, &naming, columns.time.as_deref())?);
@@ -103,7 +103,7 @@ impl Data {
         zero: Option<usize>,
     ) -> Result<Self> {
         let roles = Roles::of_model(model, &tables[0], columns, true)?;
-        let factors = Factors::of(model, &roles, &tables[0].file, true, false)?;
+        let factors = UnitFactors::of(model, &roles, &tables[0].file, true, false)?;
         let names = factors.names(model, &roles);
         let data = Self::converted(tables, roles, names, Some(&factors), zero)?;
         let warnings = data.warnings.into_iter().chain(factors.conversions).collect();
@@ -150,9 +150,9 @@ impl Data {
     }
 }
 
-impl Source {
+impl DataSource {
     /// Where each record stands.
-    pub fn places(&self) -> &[Place] {
+    pub fn places(&self) -> &[RecordPlace] {
         &self.places
     }
 
@@ -216,7 +216,7 @@ fn of_options(error: hysid_core::Error) -> anyhow::Error {
     }
 }
 
-/// What helps on the command line.
+/// Advice for the command line.
 fn advice(problem: &DataProblem) -> &'static str {
     match problem {
         DataProblem::NoTime => " (name one with --time, or use --rate none)",
@@ -239,7 +239,7 @@ fn column(channel: Channel, roles: &Roles) -> Option<&str> {
     }
 }
 
-/// The data in a table of this text, its columns told by their names: the way of every file that is read.
+/// The data in a table of this text, with columns by their names: the way of every file that is read.
 pub fn data_of_text(text: &[u8]) -> Result<Dataset> {
     let table = Table::from_bytes(Path::new("text"), text.to_vec(), &Reading::default())?;
     Ok(Data::of_tables(vec![table], &ColumnChoice::default(), None)?.set)
@@ -268,12 +268,12 @@ fn stems(tables: &[Table]) -> Vec<String> {
 }
 
 /// The records of one table, by its time stamps if it has any.
-pub fn places_of(table: &Table, roles: &Roles, time: Option<&[f64]>) -> Result<Vec<Place>> {
+pub fn places_of(table: &Table, roles: &Roles, time: Option<&[f64]>) -> Result<Vec<RecordPlace>> {
     let stems = stems(std::slice::from_ref(table));
     places(table, roles, &Naming { table: 0, stem: &stems[0], has_others: false }, time)
 }
 
-/// What the records of a table are named after.
+/// Source of the names of a table's records.
 struct Naming<'n> {
     /// Place of the table among all.
     table: usize,
@@ -283,7 +283,12 @@ struct Naming<'n> {
 
 /// The records of a table: runs of rows with the same name in the record column; without such a column, a record begins
 /// where time starts again or a condition of the test changes.
-fn places(table: &Table, roles: &Roles, naming: &Naming<'_>, time: Option<&[f64]>) -> Result<Vec<Place>> {
+fn places(
+    table: &Table,
+    roles: &Roles,
+    naming: &Naming<'_>,
+    time: Option<&[f64]>,
+) -> Result<Vec<RecordPlace>> {
     let Some(column) = &roles.record else {
         let mut ends = ends_by_time(time.unwrap_or_default(), table.rows());
         ends.extend(ends_by_condition(table, roles));
@@ -295,11 +300,11 @@ fn places(table: &Table, roles: &Roles, naming: &Naming<'_>, time: Option<&[f64]
         };
         let starts = std::iter::once(0).chain(ends.iter().copied());
         let rows = starts.zip(&ends).map(|(start, &end)| start..end);
-        let place = |(number, rows)| Place { record: name(number), table: naming.table, rows };
+        let place = |(number, rows)| RecordPlace { record: name(number), table: naming.table, rows };
         return Ok(rows.enumerate().map(place).collect());
     };
     let cell = place_of(table, column)?;
-    let mut places: Vec<Place> = Vec::new();
+    let mut places: Vec<RecordPlace> = Vec::new();
     let mut names = RecordNames::default();
     for row in 0..table.rows() {
         let at = || format!("{}, line {}, column \"{}\"", table.file, table.lines[row], clipped(column));
@@ -310,7 +315,7 @@ fn places(table: &Table, roles: &Roles, naming: &Naming<'_>, time: Option<&[f64]
         }
         let name = name.trim();
         let record = if naming.has_others { format!("{}/{name}", naming.stem) } else { name.to_string() };
-        places.push(Place { record, table: naming.table, rows: row..row + 1 });
+        places.push(RecordPlace { record, table: naming.table, rows: row..row + 1 });
     }
     Ok(places)
 }
@@ -340,26 +345,26 @@ pub fn place_of(table: &Head, name: &str) -> Result<usize> {
 }
 
 /// The numbers of a table, column by column.
-struct Columns {
+struct NumberColumns {
     time: Option<Vec<f64>>,
     inputs: Vec<Vec<f64>>,
     rate: Option<Vec<f64>>,
     output: Vec<f64>,
 }
 
-impl Columns {
+impl NumberColumns {
     fn read(table: &Table, roles: &Roles) -> Result<Self> {
         let mut cells = CellReader::new(table.numbers());
-        let mut read = |name: &String, kind: Kind| column_of(table, name, kind, &mut cells);
-        let time = roles.time.as_ref().map(|name| read(name, Kind::INPUT)).transpose()?;
-        let inputs = roles.inputs.iter().map(|name| read(name, Kind::INPUT)).collect::<Result<_>>()?;
-        let rate = roles.rate.as_ref().map(|name| read(name, Kind::INPUT)).transpose()?;
-        let output = read(&roles.output, Kind::OUTPUT)?;
+        let mut read = |name: &String, kind: CellNeed| column_of(table, name, kind, &mut cells);
+        let time = roles.time.as_ref().map(|name| read(name, CellNeed::INPUT)).transpose()?;
+        let inputs = roles.inputs.iter().map(|name| read(name, CellNeed::INPUT)).collect::<Result<_>>()?;
+        let rate = roles.rate.as_ref().map(|name| read(name, CellNeed::INPUT)).transpose()?;
+        let output = read(&roles.output, CellNeed::OUTPUT)?;
         Ok(Self { time, inputs, rate, output })
     }
 
     /// Multiplies each column by its factor.
-    fn convert(&mut self, factors: &Factors) {
+    fn convert(&mut self, factors: &UnitFactors) {
         let convert = |column: &mut Vec<f64>, factor: Option<f64>| {
             let Some(factor) = factor else { return };
             column.iter_mut().for_each(|value| *value *= factor);
@@ -370,8 +375,8 @@ impl Columns {
         convert(&mut self.output, factors.output);
     }
 
-    /// Spreads equal time stamps; tells if there were any.
-    fn spread_equal_stamps(&mut self, places: &[Place], source: &Source) -> Option<String> {
+    /// Spreads equal time stamps; returns whether there were any.
+    fn spread_equal_stamps(&mut self, places: &[RecordPlace], source: &DataSource) -> Option<String> {
         let time = self.time.as_mut()?;
         let spread: usize =
             places.iter().map(|place| spread_equal(&mut time[place.rows.clone()], None, &mut None)).sum();
@@ -379,7 +384,7 @@ impl Columns {
     }
 
     /// Subtracts from the first input and from the output their means over the first rows of each record.
-    fn remove_offsets(&mut self, places: &[Place], rows: usize) {
+    fn remove_offsets(&mut self, places: &[RecordPlace], rows: usize) {
         for place in places {
             for column in [&mut self.inputs[0], &mut self.output] {
                 remove_offset(&mut column[place.rows.clone()], rows);
@@ -387,7 +392,7 @@ impl Columns {
         }
     }
 
-    fn record(&self, place: &Place) -> hysid_core::Result<Record> {
+    fn record(&self, place: &RecordPlace) -> hysid_core::Result<Record> {
         let cut = |column: &Vec<f64>| column[place.rows.clone()].to_vec();
         let inputs = self.inputs.iter().map(cut).collect();
         let mut record = Record::new(place.record.clone(), inputs, cut(&self.output))?;
@@ -401,21 +406,21 @@ impl Columns {
     }
 }
 
-/// What a command needs of the cells of a column, and what helps where one is wrong, in the words of that command.
+/// Cells that a command needs in a column, with its advice where one is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum CellNeed {
     /// A cell may be blank where nothing was measured.
     Optional,
     /// Every row needs a number.
     Required {
-        /// What helps where a cell is blank.
+        /// Advice where a cell is blank.
         if_blank: &'static str,
-        /// What helps where the first cell is no number, so that the column may be the wrong one.
+        /// Advice where the first cell is no number, so that the column may be the wrong one.
         if_no_number: Option<&'static str>,
     },
 }
 
-impl Kind {
+impl CellNeed {
     /// Time, an input or its rate.
     pub const INPUT: Self = Self::Required {
         if_blank: "only the output may be blank; choose rows with --rows",
@@ -427,7 +432,7 @@ impl Kind {
 }
 
 /// The numbers of a column; a cell that is blank and may be is NaN.
-pub fn column_of(table: &Table, name: &str, kind: Kind, cells: &mut CellReader) -> Result<Vec<f64>> {
+pub fn column_of(table: &Table, name: &str, kind: CellNeed, cells: &mut CellReader) -> Result<Vec<f64>> {
     let place = place_of(table, name)?;
     let at = |line: u64, problem: &str| {
         anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
@@ -444,20 +449,27 @@ pub fn column_of(table: &Table, name: &str, kind: Kind, cells: &mut CellReader) 
 }
 
 /// The number of a cell, NaN for one that is blank and may be; or what is wrong with it and what helps.
-pub fn checked(number: Result<f64, String>, cell: &str, kind: Kind, is_first: bool) -> Result<f64, String> {
+pub fn checked(
+    number: Result<f64, String>,
+    cell: &str,
+    kind: CellNeed,
+    is_first: bool,
+) -> Result<f64, String> {
     match number {
         Ok(number) if number.is_nan() => match kind {
-            Kind::Optional => Ok(f64::NAN),
-            Kind::Required { if_blank, .. } => Err(format!("{} ({if_blank})", missing(cell))),
+            CellNeed::Optional => Ok(f64::NAN),
+            CellNeed::Required { if_blank, .. } => Err(format!("{} ({if_blank})", missing(cell))),
         },
         Ok(number) => Ok(number),
         Err(problem) => {
             let hint = match (kind, problem.ends_with("number")) {
-                (Kind::Optional, true) if cell.trim().len() <= LONGEST_WORD => {
+                (CellNeed::Optional, true) if cell.trim().len() <= LONGEST_WORD => {
                     let cell = cell.trim();
                     format!(" (if it stands for a missing value: {})", option("missing", cell))
                 }
-                (Kind::Required { if_no_number: Some(hint), .. }, true) if is_first => format!(" ({hint})"),
+                (CellNeed::Required { if_no_number: Some(hint), .. }, true) if is_first => {
+                    format!(" ({hint})")
+                }
                 _ => String::new(),
             };
             Err(problem + &hint)

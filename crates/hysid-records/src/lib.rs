@@ -7,9 +7,9 @@
 mod columns;
 mod csv_text;
 mod data;
-mod looked;
 mod reading;
 mod record_names;
+mod table_overview;
 pub mod understanding;
 mod units;
 mod usage;
@@ -18,12 +18,12 @@ mod warnings;
 pub use columns::{ColumnChoice, NO_TIME, RateOption, Roles};
 pub use csv_text::{csv_text, header_line, named_after};
 pub use data::{
-    Data, Kind, Place, Source, checked, column_of, data_of_text, equal_stamps, explained, offset_of,
-    place_of, places_of,
+    CellNeed, Data, DataSource, RecordPlace, checked, column_of, data_of_text, equal_stamps, explained,
+    offset_of, place_of, places_of,
 };
-pub use looked::{Column, Looked};
 pub use reading::{MOST_ROWS_OF_ZERO, READING_OPTIONS, ReadingChoice, ReadingOption, ReadingValues};
 pub use record_names::RecordNames;
-pub use units::Factors;
+pub use table_overview::{ColumnSummary, TableOverview};
+pub use units::UnitFactors;
 pub use usage::Usage;
 pub use warnings::summarised;

@@ -14,7 +14,7 @@ pub struct ReadingOption {
     pub values: ReadingValues,
 }
 
-/// The valid values of an option that tells how tables are read.
+/// The valid values of an option of reading tables.
 #[derive(Debug, Clone, Copy, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind", content = "names")]
 pub enum ReadingValues {
@@ -33,7 +33,7 @@ const fn option(name: &'static str, meaning: &'static str, values: ReadingValues
     ReadingOption { name, meaning, values }
 }
 
-/// Every option that tells how tables are read. A test of the program compares them with its help.
+/// Every option of reading tables. A test of the program compares them with its help.
 pub const READING_OPTIONS: [ReadingOption; 11] = [
     option(
         "delimiter",
@@ -60,10 +60,10 @@ pub const READING_OPTIONS: [ReadingOption; 11] = [
     ),
 ];
 
-/// Most rows over which an offset is averaged: so many are held in memory.
+/// Most rows over which an offset is averaged: that many are held in memory.
 pub const MOST_ROWS_OF_ZERO: usize = 4096;
 
-/// How tables are read, as it is said by name; `None` and empty for what the file tells.
+/// Options of reading tables by name; `None` and empty for what is detected.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[allow(missing_docs, reason = "each field is the option of its name")]

@@ -1,7 +1,7 @@
-//! What the program understood of the data, said before the work begins.
+//! How the program read the data, reported before the work begins.
 
 use hysid_core::data::rate::RateMethod;
-use hysid_core::data::record::{Difference, Protocol, Speeds, protocols};
+use hysid_core::data::record::{ProtocolDifference, RepeatedProtocol, SpeedEvidence, protocols};
 use hysid_core::data::summary::Summary;
 use hysid_core::options::FitSpec;
 use hysid_core::options::fit_spec::AutoOptions;
@@ -11,7 +11,7 @@ use crate::data::Data;
 use hysid_core::data::unit;
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_document::visible::{clipped, listed, listed_paths};
-use hysid_tables::Origin;
+use hysid_tables::TableOrigin;
 
 /// Room for a label and the blank behind it.
 const LABEL: usize = 9;
@@ -21,7 +21,7 @@ const MOST_REPEATS: usize = 5;
 
 const MOST_INPUTS: usize = 20;
 
-/// What was understood of data and request, label and text, line by line.
+/// Describes data and request as labels and texts, line by line.
 pub fn understanding(
     data: &Data,
     summary: &Summary,
@@ -30,7 +30,7 @@ pub fn understanding(
 ) -> Vec<(String, String)> {
     let used = request.rate().filter(|_| request.model().uses_rate());
     let rate = match used {
-        None if request.model().uses_rate() && data.set.has_time() && data.set.speeds() == Speeds::One => {
+        None if request.model().uses_rate() && data.set.has_time() && data.set.speeds() == SpeedEvidence::One => {
             "none: each input value was passed at one speed only, so the data cannot show a rate dependence (to use the \
              rate anyway: --rate backward)"
                 .into()
@@ -111,7 +111,7 @@ pub fn labelled(label: &str, text: &str) -> String {
     lines
 }
 
-/// What an automatic model chooses among, in words.
+/// Candidates of an automatic model, in words.
 pub fn choice(options: &AutoOptions) -> String {
     match &options.only {
         Some(request) => format!(": at most {} fits of {}", options.members, request.model().name()),
@@ -123,7 +123,7 @@ pub fn choice(options: &AutoOptions) -> String {
 }
 
 /// In which ways tables were read, and how many in each way.
-fn as_read(tables: &[Origin]) -> Vec<(String, usize)> {
+fn as_read(tables: &[TableOrigin]) -> Vec<(String, usize)> {
     let mut ways: Vec<(String, usize)> = Vec::new();
     for table in tables {
         let way = table.described();
@@ -150,22 +150,22 @@ fn samples(summary: &Summary) -> String {
     format!("{}, {scored}, in {records}", summary.rows)
 }
 
-/// What repeats what, and the noise that this shows; of many protocols the first few.
+/// Repeated protocols, and the noise that they show; the first few if there are many.
 fn repeats(data: &Data) -> Vec<String> {
     let records = data.set.records();
     let (low, high) = data.set.output_range();
     let repeated = protocols(records).into_iter().filter(|protocol| protocol.runs.len() > 1);
-    let words = |protocol: Protocol| {
+    let words = |protocol: RepeatedProtocol| {
         let names: Vec<&str> = protocol.runs.iter().map(|&run| records[run].name()).collect();
         let percent =
             |deviation: f64| format!("{:.3} % of the range", Significant(100.0 * deviation / (high - low)));
         let differ = match protocol.difference(records) {
-            Some(Difference { deviation: 0.0, .. }) => String::new(),
-            Some(Difference { deviation, is_noise: true }) => format!(
+            Some(ProtocolDifference { deviation: 0.0, .. }) => String::new(),
+            Some(ProtocolDifference { deviation, is_noise: true }) => format!(
                 "; their outputs differ by noise of {} (standard deviation), the least error of any model",
                 percent(deviation)
             ),
-            Some(Difference { deviation, is_noise: false }) => format!(
+            Some(ProtocolDifference { deviation, is_noise: false }) => format!(
                 "; their outputs differ by {} (standard deviation), and not by noise alone: the conditions, the specimen \
                  or the input differed; a model that does not know this has at least this error",
                 percent(deviation)

@@ -9,19 +9,19 @@ use hysid_core::significant::Significant;
 use crate::columns::Roles;
 use hysid_document::visible::clipped;
 
-/// What the numbers of each column are multiplied by to be in the model's units; `None` for as they are.
+/// Factors that convert each column to the model's units; `None` leaves it as it is.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Factors {
+pub struct UnitFactors {
     pub time: Option<f64>,
     pub inputs: Vec<Option<f64>>,
     pub rate: Option<f64>,
     pub output: Option<f64>,
-    /// What is converted, in words, column by column.
+    /// Conversions in words, column by column.
     pub conversions: Vec<String>,
 }
 
-impl Factors {
-    /// From the units that the names of the table's columns tell to those of the columns that the model was trained
+impl UnitFactors {
+    /// From the units in the names of the table's columns to those of the columns that the model was trained
     /// on. `is_scored` if the output is read.
     ///
     /// # Errors
@@ -76,7 +76,7 @@ impl Factors {
     }
 }
 
-/// What to multiply by; `None` for units that are the same.
+/// Conversion factor; `None` for equal units.
 fn factor(file: &str, found: &str, trained: &str) -> Result<Option<f64>> {
     match Conversion::between(found, trained) {
         Conversion::Same => Ok(None),
@@ -107,7 +107,7 @@ fn conversion(found: &str, trained: &str, factor: f64) -> String {
     )
 }
 
-/// What is said of a column without a known unit, if that of the model has one.
+/// Message on a column without a known unit, if that of the model has one.
 fn no_conversion(found: &str, trained: &str) -> Option<String> {
     let unit = unit::of_column(trained).filter(|_| unit::of_column(found).is_none())?;
     Some(format!(

@@ -1,8 +1,8 @@
-//! What cannot be done as it was asked.
+//! Invalid requests.
 
 use std::fmt;
 
-/// Something that cannot be done as it was asked, whatever the data; the program then exits with status 2.
+/// A request that is invalid whatever the data; the program then exits with status 2.
 #[derive(Debug)]
 pub struct Usage(pub String);
 

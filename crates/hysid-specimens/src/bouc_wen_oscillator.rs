@@ -26,12 +26,12 @@ use super::decimation::decimate;
 use super::draw::Draw;
 use super::multisine::Multisine;
 use super::path;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 
 /// Newton's method ends where it changes the displacement by less than this share.
 const TOLERANCE: f64 = 1e-12;
 
-/// Newton's method ends after so many iterations: where a branch changes, it may alternate at the last digits.
+/// Iterations after which Newton's method ends: where a branch changes, it may alternate at the last digits.
 const MOST_ITERATIONS: usize = 30;
 
 /// A Bouc-Wen oscillator.
@@ -66,7 +66,7 @@ pub struct BoucWenOscillator {
 
 /// Motion of a [`BoucWenOscillator`] at one time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Motion {
+pub struct BoucWenMotion {
     /// `y` in m.
     pub displacement: f64,
     /// `y'` in m/s.
@@ -97,11 +97,11 @@ impl BoucWenOscillator {
         self,
         force: impl IntoIterator<Item = f64>,
         time_step: f64,
-    ) -> impl Iterator<Item = Motion> {
-        let mut last: Option<Motion> = None;
+    ) -> impl Iterator<Item = BoucWenMotion> {
+        let mut last: Option<BoucWenMotion> = None;
         force.into_iter().map(move |force| {
             let next = match last {
-                None => Motion { acceleration: force / self.mass, ..Motion::default() },
+                None => BoucWenMotion { acceleration: force / self.mass, ..BoucWenMotion::default() },
                 Some(motion) => self.step(motion, force, time_step),
             };
             last = Some(next);
@@ -126,7 +126,7 @@ impl BoucWenOscillator {
     /// With the displacement `y`, constant average acceleration gives `y' = 2(y - y_0)/h - y'_0` and
     /// `y'' = 2(y' - y'_0)/h - y''_0`. The displacement and `r` follow from equilibrium and from the trapezoidal rule
     /// `r = r_0 + h (r'_0 + r')/2`.
-    fn step(&self, from: Motion, force: f64, h: f64) -> Motion {
+    fn step(&self, from: BoucWenMotion, force: f64, h: f64) -> BoucWenMotion {
         let (first_rate, ..) = self.hysteretic_rate(from.velocity, from.hysteretic_force);
         let mut by = h * from.velocity; // y - y_0
         let mut r = from.hysteretic_force + h * first_rate;
@@ -154,7 +154,7 @@ impl BoucWenOscillator {
     }
 }
 
-impl Motion {
+impl BoucWenMotion {
     /// The motion one time step later, displaced by `by` and with this hysteretic force.
     fn after(&self, by: f64, hysteretic_force: f64, time_step: f64) -> Self {
         let velocity = 2.0 * by / time_step - self.velocity;
@@ -178,7 +178,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                noise of 8e-6 m rms on the displacement, as in the benchmark",
     testing: "without noise: another multisine in its steady state, two periods, the first with blank outputs; and a \
               sine of 40 N swept from 20 to 50 Hz in 180 s, from rest",
-    columns: Columns { time: Some("t_s"), input: "excitation_force_N", output: "displacement_m" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "excitation_force_N", output: "displacement_m" },
     train: training,
     test: tests,
 };
@@ -292,9 +292,9 @@ mod laws {
     fn work_becomes_energy_or_is_dissipated() {
         let oscillator = BoucWenOscillator { n: 1.5, beta: 30.0, ..BoucWenOscillator::benchmark() };
         for oscillator in [oscillator, BoucWenOscillator::benchmark()] {
-            let motion: Vec<Motion> = oscillator.motion(shaken(4000), STEP).collect();
+            let motion: Vec<BoucWenMotion> = oscillator.motion(shaken(4000), STEP).collect();
             let force: Vec<f64> = shaken(4000).collect();
-            let energy = |at: &Motion| {
+            let energy = |at: &BoucWenMotion| {
                 0.5 * (oscillator.mass * square(at.velocity) + oscillator.stiffness * square(at.displacement))
             };
             let (mut work, mut dissipated) = (0.0, 0.0);
@@ -318,7 +318,7 @@ mod laws {
         let damped = (omega * omega - decay * decay).sqrt();
         let largest_error = |step: f64| {
             let motion = oscillator.motion((0..).map(|_| 100.0), step);
-            let error = |(k, motion): (u32, Motion)| {
+            let error = |(k, motion): (u32, BoucWenMotion)| {
                 let t = f64::from(k) * step;
                 let swing = cos(damped * t) + decay / damped * sin(damped * t);
                 (motion.displacement / (100.0 / oscillator.stiffness) - 1.0 + exp(-decay * t) * swing).abs()

@@ -24,7 +24,7 @@ use hysid_core::elementary::powf;
 use hysid_core::error::Result;
 
 use super::path;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 
 /// Share of the unloaded stress that is back when reloading reaches the strain of unloading.
 const RECOVERED: f64 = 0.92;
@@ -69,19 +69,19 @@ impl ConcreteParameters {
 
 /// A point of the stress-strain plane, in mm/m and MPa.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Point {
+struct StressPoint {
     strain: f64,
     stress: f64,
 }
 
 /// The branch that the present point is on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Branch {
+enum ConcreteBranch {
     Envelope,
     /// From this point down to the permanent strain, and open beyond it.
-    Unloading(Point),
+    Unloading(StressPoint),
     /// From this point up to the envelope.
-    Reloading(Point),
+    Reloading(StressPoint),
 }
 
 /// Concrete with its memory, initially undamaged.
@@ -98,18 +98,18 @@ enum Branch {
 pub struct Concrete {
     /// Parameters of the concrete.
     pub parameters: ConcreteParameters,
-    branch: Branch,
-    now: Point,
+    branch: ConcreteBranch,
+    now: StressPoint,
     /// Where unloading began at the largest strain so far.
-    unloaded: Point,
+    unloaded: StressPoint,
     permanent: f64,
 }
 
 impl Concrete {
     /// Undamaged concrete.
     pub fn new(parameters: ConcreteParameters) -> Self {
-        let origin = Point::default();
-        Self { parameters, branch: Branch::Envelope, now: origin, unloaded: origin, permanent: 0.0 }
+        let origin = StressPoint::default();
+        Self { parameters, branch: ConcreteBranch::Envelope, now: origin, unloaded: origin, permanent: 0.0 }
     }
 
     /// Returns to the undamaged concrete.
@@ -145,32 +145,32 @@ impl Concrete {
     }
 
     fn load(&mut self, strain: f64) {
-        if let Branch::Unloading(_) = self.branch {
+        if let ConcreteBranch::Unloading(_) = self.branch {
             // An open crack closes before it bears.
-            let closed = Point { strain: self.now.strain.max(self.permanent), ..self.now };
+            let closed = StressPoint { strain: self.now.strain.max(self.permanent), ..self.now };
             let bears = closed.strain < self.unloaded.strain;
-            self.branch = if bears { Branch::Reloading(closed) } else { Branch::Envelope };
+            self.branch = if bears { ConcreteBranch::Reloading(closed) } else { ConcreteBranch::Envelope };
         }
         let envelope = self.parameters.envelope(strain);
         let stress = match self.branch {
-            Branch::Reloading(from) => {
-                let Point { strain: end, stress: top } = self.unloaded;
+            ConcreteBranch::Reloading(from) => {
+                let StressPoint { strain: end, stress: top } = self.unloaded;
                 let slope = RECOVERED * (top - from.stress) / (end - from.strain);
                 from.stress + slope * (strain - from.strain).max(0.0)
             }
-            Branch::Envelope | Branch::Unloading(_) => envelope,
+            ConcreteBranch::Envelope | ConcreteBranch::Unloading(_) => envelope,
         };
         if stress >= envelope {
-            self.branch = Branch::Envelope;
+            self.branch = ConcreteBranch::Envelope;
         }
-        self.now = Point { strain, stress: stress.min(envelope) };
+        self.now = StressPoint { strain, stress: stress.min(envelope) };
     }
 
     fn unload(&mut self, strain: f64) {
         let from = match self.branch {
-            Branch::Unloading(from) => from,
-            Branch::Envelope | Branch::Reloading(_) => {
-                let on_envelope = self.branch == Branch::Envelope;
+            ConcreteBranch::Unloading(from) => from,
+            ConcreteBranch::Envelope | ConcreteBranch::Reloading(_) => {
+                let on_envelope = self.branch == ConcreteBranch::Envelope;
                 if on_envelope || self.now.strain > self.unloaded.strain {
                     self.unloaded = self.now;
                     // No steeper than the untouched concrete.
@@ -178,16 +178,16 @@ impl Concrete {
                     let permanent = self.parameters.permanent_strain(self.now.strain).min(elastic);
                     self.permanent = self.permanent.max(permanent);
                 }
-                self.branch = Branch::Unloading(self.now);
+                self.branch = ConcreteBranch::Unloading(self.now);
                 self.now
             }
         };
-        self.now = Point { strain, stress: self.unloading(from, strain) };
+        self.now = StressPoint { strain, stress: self.unloading(from, strain) };
     }
 
     /// Stress on unloading from a point to the permanent strain, `σ_a [1 - x q/(q - 1 + x^q)]` (theory.md
     /// (6.26)).
-    fn unloading(&self, from: Point, strain: f64) -> f64 {
+    fn unloading(&self, from: StressPoint, strain: f64) -> f64 {
         if strain <= self.permanent || from.stress <= 0.0 {
             return 0.0;
         }
@@ -216,7 +216,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                between 2 and 4.4 mm/m; a row a second",
     testing: "the strain goes on to 20 other turning points between 2 and 4.4 mm/m; the training part comes first, with \
               blank outputs, so that damage is carried over",
-    columns: Columns { time: Some("t_s"), input: "strain_mm_per_m", output: "stress_MPa" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "strain_mm_per_m", output: "stress_MPa" },
     train: |_| Ok(vec![parts()?.0]),
     test: |_| Ok(vec![parts()?.1]),
 };

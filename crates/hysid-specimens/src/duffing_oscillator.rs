@@ -16,7 +16,7 @@ use hysid_core::error::Result;
 
 use super::draw::Draw;
 use super::multisine::Multisine;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 use super::{path, runge_kutta};
 
 /// A Duffing oscillator.
@@ -43,7 +43,7 @@ pub struct DuffingOscillator {
 
 /// State of a [`DuffingOscillator`] at one time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Motion {
+pub struct DuffingMotion {
     /// `y` in m.
     pub displacement: f64,
     /// `y'` in m/s.
@@ -59,13 +59,13 @@ impl DuffingOscillator {
     /// The motion at every second of the forces in N, from rest at the first. Each step, `time_step` in s, takes the
     /// force at its beginning, in its middle and at its end. A force that is not finite makes the motion NaN from there
     /// on.
-    pub fn motion(self, force: &[f64], time_step: f64) -> impl Iterator<Item = Motion> {
+    pub fn motion(self, force: &[f64], time_step: f64) -> impl Iterator<Item = DuffingMotion> {
         let steps = force.windows(3).step_by(2).scan([0.0; 2], move |state, force| {
             let slope = |share: f64, state| self.slope(state, force[(2.0 * share) as usize]);
             *state = runge_kutta::step(*state, time_step, slope);
-            Some(Motion { displacement: state[0], velocity: state[1] })
+            Some(DuffingMotion { displacement: state[0], velocity: state[1] })
         });
-        force.first().map(|_| Motion::default()).into_iter().chain(steps)
+        force.first().map(|_| DuffingMotion::default()).into_iter().chain(steps)
     }
 
     fn slope(&self, [y, v]: [f64; 2], force: f64) -> [f64; 2] {
@@ -83,7 +83,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                phases of the multisines",
     training: "two random-phase multisines of 8192 rows, 1 to 200 Hz, 40 N rms, each from rest; 610 Hz",
     testing: "another such multisine; and one of 16384 rows that grows from 0 to 60 N rms, beyond the forces of training",
-    columns: Columns { time: Some("t_s"), input: "excitation_force_N", output: "displacement_m" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "excitation_force_N", output: "displacement_m" },
     train: |seed| (0..2).map(|index| multisine(seed, index)).collect(),
     test: |seed| Ok(vec![multisine(seed, 2)?, growing_multisine(seed, 3)?]),
 };
@@ -142,7 +142,7 @@ mod tests {
     fn without_damping_the_energy_is_the_work_of_the_force() {
         let oscillator = DuffingOscillator { damping: 0.0, ..DuffingOscillator::designed() };
         let mut fastest = 0.0f64;
-        for Motion { displacement: y, velocity: v } in oscillator.motion(&[200.0; 2001], STEP) {
+        for DuffingMotion { displacement: y, velocity: v } in oscillator.motion(&[200.0; 2001], STEP) {
             let stored = 0.5 * (oscillator.mass * v * v + oscillator.stiffness * y * y)
                 + 0.25 * oscillator.cubic_stiffness * powi(y, 4);
             assert!((stored - 200.0 * y).abs() < 1e-5, "{y} {v}");

@@ -24,7 +24,7 @@ use hysid_core::elementary::{atan, exp};
 use hysid_core::error::Result;
 
 use super::path;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 
 /// Permeability of vacuum in T m/A.
 const MU_0: f64 = 4e-7 * std::f64::consts::PI;
@@ -189,7 +189,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     training: "growing amplitudes up to 400 A/m, minor loops on both branches, demagnetisation, then 25 pairs of turning points \
                all over the range",
     testing: "a demagnetised sheet on another path: other amplitudes and other minor loops within the same range",
-    columns: Columns { time: None, input: "H_A_per_m", output: "B_T" },
+    columns: SpecimenColumns { time: None, input: "H_A_per_m", output: "B_T" },
     train: |_| Ok(vec![magnetised("growing and minor loops", &trained(), TRAINED_ROWS)?]),
     test: |_| Ok(vec![magnetised("other loops", &TEST, ROWS)?]),
 };

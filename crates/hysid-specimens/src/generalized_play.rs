@@ -21,7 +21,7 @@ use hysid_core::law::{Law, Sample};
 
 /// Initial state of the plays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Start {
+pub enum PlayStart {
     /// As close to 0 as the envelopes allow: the virgin state of a play.
     Virgin,
     /// On `γ_r + r`, as after a large input.
@@ -31,11 +31,11 @@ pub enum Start {
 /// A weighted sum of generalized plays, with its memory.
 ///
 /// ```
-/// use hysid_specimens::generalized_play::{Envelope, GeneralizedPlays, PlayWeights, Start};
+/// use hysid_specimens::generalized_play::{Envelope, GeneralizedPlays, PlayWeights, PlayStart};
 /// // One play on straight ground (nearly: tanh bends far away) is an ordinary play.
 /// let line = Envelope::new([1e6, 1e-6, 0.0, 0.0]);
 /// let weights = PlayWeights::Free(vec![0.0, 1.0]);
-/// let mut plays = GeneralizedPlays::new([line, line], 1.0, weights, 0.0, Start::Virgin);
+/// let mut plays = GeneralizedPlays::new([line, line], 1.0, weights, 0.0, PlayStart::Virgin);
 /// let y = plays.run(&[0.0, 3.0, 2.0, 0.0, -3.0]);
 /// for (y, expected) in y.iter().zip([0.0, 2.0, 2.0, 1.0, -2.0]) {
 ///     assert!((y - expected).abs() < 1e-9);
@@ -56,12 +56,12 @@ impl GeneralizedPlays {
         spacing: f64,
         weights: PlayWeights,
         offset: f64,
-        start: Start,
+        start: PlayStart,
     ) -> Self {
         let initial = match start {
-            Start::Virgin => 0.0,
+            PlayStart::Virgin => 0.0,
             // Above any envelope.
-            Start::Lowered => 1e100,
+            PlayStart::Lowered => 1e100,
         };
         let law = GeneralizedPrandtlIshlinskii { offset, left, right, initial, spacing, weights };
         Self { state: law.virgin(), law }

@@ -23,7 +23,7 @@ use hysid_core::elementary::{exp, sin, sin_cos};
 use hysid_core::error::Result;
 
 use super::generalized_play::GeneralizedPlays;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 use super::terfenol_actuator;
 
 /// An actuator with its memory, initially at rest.
@@ -132,7 +132,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     training: "sines at 10, 25, 100, 150, 250 and 300 Hz, a record each: a period with blank outputs, then one that \
                counts",
     testing: "sines at 50 and 200 Hz, likewise",
-    columns: Columns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
     train: |_| [10.0, 25.0, 100.0, 150.0, 250.0, 300.0].into_iter().map(sine).collect(),
     test: |_| [50.0, 200.0].into_iter().map(sine).collect(),
 };

@@ -17,7 +17,7 @@ use hysid_core::data::record::Record;
 use hysid_core::elementary::{sin, sin_cos};
 use hysid_core::error::Result;
 
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 
 /// Mean and amplitude of the voltage in V.
 const VOLTAGE: f64 = 40.0;
@@ -105,7 +105,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     training: "sines of 0.5, 1, 5, 10, 25, 75, 100, 150, 250 and 300 Hz, a record each: a period with blank outputs, \
                then one that counts",
     testing: "sines of 50 and 200 Hz, likewise",
-    columns: Columns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
     train: |_| [0.5, 1.0, 5.0, 10.0, 25.0, 75.0, 100.0, 150.0, 250.0, 300.0].into_iter().map(sine).collect(),
     test: |_| [50.0, 200.0].into_iter().map(sine).collect(),
 };

@@ -19,7 +19,7 @@ use hysid_core::error::Result;
 
 use super::draw::Draw;
 use super::multisine::Multisine;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 use super::{path, runge_kutta};
 
 /// A piezo stage.
@@ -49,7 +49,7 @@ pub struct PiezoStage {
 
 /// State of a [`PiezoStage`] at one time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Motion {
+pub struct StageMotion {
     /// `y` in µm.
     pub displacement: f64,
     /// `y'` in µm/s.
@@ -72,7 +72,7 @@ impl PiezoStage {
         voltage: impl IntoIterator<Item = f64>,
         time_step: f64,
         parts: usize,
-    ) -> impl Iterator<Item = Motion> {
+    ) -> impl Iterator<Item = StageMotion> {
         let mut last = None;
         voltage.into_iter().map(move |voltage| {
             let (from, mut state) = last.unwrap_or((voltage, [self.stroke * voltage, 0.0, 0.0]));
@@ -83,7 +83,7 @@ impl PiezoStage {
                 state = runge_kutta::step(state, time_step / parts as f64, slope);
             }
             last = Some((voltage, state));
-            Motion { displacement: state[0], velocity: state[1], hysteretic_stroke: state[2] }
+            StageMotion { displacement: state[0], velocity: state[1], hysteretic_stroke: state[2] }
         })
     }
 
@@ -105,7 +105,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     training: "two records of 8192 rows at 5 kHz, each the sum of random-phase multisines of 12 V rms from 1 to 20 Hz and of \
                1.5 V rms from 20 to 350 Hz, about 50 V, raised smoothly from 0 V in 0.1 s",
     testing: "another such record; and a sine of 2 V swept from 10 to 350 Hz in 2 s about 50 V, raised likewise",
-    columns: Columns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
     train: |seed| (0..2).map(|index| multisines(seed, index)).collect(),
     test: |seed| Ok(vec![multisines(seed, 2)?, swept_sine()?]),
 };

@@ -20,7 +20,7 @@ use hysid_core::law::rate_dependent_prandtl_ishlinskii::{
 };
 use hysid_core::law::{Law, Sample};
 
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 use super::tones::{self, Tone};
 
 /// A rate-dependent actuator with its memory, initially virgin: voltage in V to displacement in µm.
@@ -80,7 +80,7 @@ const ACTUATOR: Specimen = Specimen {
     training: "sines of 10 V at 1, 5, 10, 20, 30, 40, 50, 60, 80 and 100 Hz, a record each: a period with \
                blank outputs, from the virgin state, then two that count",
     testing: "sines of 10 V at 25 and at 75 Hz, likewise, and, unlike all in training, a sum of tones at 5, 30 and 60 Hz",
-    columns: Columns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
     train: |_| FREQUENCIES.into_iter().map(|frequency| sine(frequency, PERIODS)).collect(),
     test: |_| Ok(vec![sine(25.0, PERIODS)?, sine(75.0, PERIODS)?, three_tones()?]),
 };

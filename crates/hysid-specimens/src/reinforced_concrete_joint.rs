@@ -24,7 +24,7 @@ use hysid_core::elementary::{exp, powf};
 use hysid_core::error::Result;
 
 use super::path;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 
 /// Largest error of `z` or `e` in one step of the integration.
 const TOLERANCE: f64 = 1e-10;
@@ -133,7 +133,7 @@ impl BoucWenBaberNoori {
 
     /// Derivatives of `z` and `e` by `ξ` in this direction: `h/η [A - ν |z|^n (β sgn(z dξ) + γ)]` and `(1 -
     /// α) κ z` (theory.md (6.5), (6.6)).
-    fn slope(&self, Inner { z, e }: Inner, direction: f64) -> Inner {
+    fn slope(&self, JointMemory { z, e }: JointMemory, direction: f64) -> JointMemory {
         let a = (self.a_0 - self.delta_a * e).max(0.0);
         let nu = self.nu_0 + self.delta_nu * e;
         let eta = self.eta_0 + self.delta_eta * e;
@@ -143,20 +143,20 @@ impl BoucWenBaberNoori {
         let distance = (z * direction - self.q * z_u) / zeta_2;
         let h = 1.0 - zeta_1 * exp(-distance * distance);
         let softening = nu * powf(z.abs(), self.n) * (self.beta * z.signum() * direction + self.gamma);
-        Inner { z: h / eta * (a - softening), e: (1.0 - self.alpha) * self.energy_scale * z }
+        JointMemory { z: h / eta * (a - softening), e: (1.0 - self.alpha) * self.energy_scale * z }
     }
 
-    fn step(&self, start: Inner, by: f64, direction: f64) -> Inner {
+    fn step(&self, start: JointMemory, by: f64, direction: f64) -> JointMemory {
         let k1 = self.slope(start, direction);
         let k2 = self.slope(start.along(0.5 * by, k1), direction);
         let k3 = self.slope(start.along(0.5 * by, k2), direction);
         let k4 = self.slope(start.along(by, k3), direction);
         let mean = |k1: f64, k2: f64, k3: f64, k4: f64| (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0;
-        start.along(by, Inner { z: mean(k1.z, k2.z, k3.z, k4.z), e: mean(k1.e, k2.e, k3.e, k4.e) })
+        start.along(by, JointMemory { z: mean(k1.z, k2.z, k3.z, k4.z), e: mean(k1.e, k2.e, k3.e, k4.e) })
     }
 
     /// Moves `ξ` by `by`, in steps so small that two halves agree with the whole.
-    fn integrate(&self, mut inner: Inner, by: f64) -> Inner {
+    fn integrate(&self, mut inner: JointMemory, by: f64) -> JointMemory {
         let direction = by.signum();
         let (mut left, mut step) = (by.abs(), FIRST_STEP);
         while left > 0.0 {
@@ -179,16 +179,16 @@ impl BoucWenBaberNoori {
     }
 }
 
-/// What the element remembers beside its displacement.
+/// Memory of the element beside its displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Inner {
+struct JointMemory {
     z: f64,
     e: f64,
 }
 
-impl Inner {
-    fn along(self, by: f64, slope: Inner) -> Inner {
-        Inner { z: self.z + by * slope.z, e: self.e + by * slope.e }
+impl JointMemory {
+    fn along(self, by: f64, slope: JointMemory) -> JointMemory {
+        JointMemory { z: self.z + by * slope.z, e: self.e + by * slope.e }
     }
 }
 
@@ -206,13 +206,13 @@ pub struct ReinforcedConcreteJoint {
     /// Parameters of the element.
     pub parameters: BoucWenBaberNoori,
     xi: f64,
-    inner: Inner,
+    inner: JointMemory,
 }
 
 impl ReinforcedConcreteJoint {
     /// An undamaged joint at displacement 0.
     pub fn new(parameters: BoucWenBaberNoori) -> Self {
-        Self { parameters, xi: 0.0, inner: Inner::default() }
+        Self { parameters, xi: 0.0, inner: JointMemory::default() }
     }
 
     /// Returns to the undamaged joint, at displacement 0.
@@ -264,7 +264,7 @@ const JOINT: Specimen = Specimen {
                70 % of the time",
     testing: "the whole history with blank outputs in the first 70 %, so that damage and memory are carried over; \
               the rest is scored, and goes to larger drift than any in training",
-    columns: Columns { time: Some("t_s"), input: "displacement_mm", output: "force_kN" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "displacement_mm", output: "force_kN" },
     train: |_| Ok(vec![halves()?.0]),
     test: |_| Ok(vec![halves()?.1]),
 };

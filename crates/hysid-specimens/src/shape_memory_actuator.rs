@@ -18,9 +18,9 @@
 //! licence is not stated. *Designed*: our path of the voltage
 //! and its speed.
 
-use super::generalized_play::{Envelope, GeneralizedPlays, Start};
+use super::generalized_play::{Envelope, GeneralizedPlays, PlayStart};
 use super::path::Continued;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 
 /// The actuator before its first sample: voltage in V to the published output, whose unit is not
 /// stated. All values are published.
@@ -30,7 +30,7 @@ pub fn law() -> GeneralizedPlays {
         Envelope::new([15.7940, 2.7649, -5.6356, 15.5400]),
     ];
     let weights = GeneralizedPlays::exponential(21, 0.0395, 10.9590, 2.5785);
-    GeneralizedPlays::new(envelopes, 0.0395, weights, 17.72, Start::Lowered)
+    GeneralizedPlays::new(envelopes, 0.0395, weights, 17.72, PlayStart::Lowered)
 }
 
 pub(super) static SPECIMEN: Specimen = Specimen {
@@ -44,7 +44,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                inside, then 40 pairs of turning points all over the range",
     testing: "the voltage goes on to other peaks and other minor loops in the same range; the training part comes \
               first, with blank outputs, so that the memory is carried over",
-    columns: Columns { time: Some("t_s"), input: "voltage_V", output: "output" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "voltage_V", output: "output" },
     train: |_| Ok(vec![PATH.records(|voltage| law().run(voltage))?.0]),
     test: |_| Ok(vec![PATH.records(|voltage| law().run(voltage))?.1]),
 };

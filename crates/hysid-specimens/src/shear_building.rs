@@ -23,7 +23,7 @@ use hysid_core::error::Result;
 
 use super::draw::Draw;
 use super::earthquake::{TIME_STEP, ground_acceleration};
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 use super::{path, runge_kutta};
 
 /// A storey, with the floor above it.
@@ -67,7 +67,7 @@ pub struct ShearBuilding {
 
 /// State of a [`ShearBuilding`] at one time, the lower storey first.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Motion {
+pub struct BuildingMotion {
     /// `d` in m: drift of the storeys.
     pub drift: [f64; 2],
     /// `d'` in m/s.
@@ -78,7 +78,7 @@ pub struct Motion {
     pub work: [f64; 2],
 }
 
-impl Motion {
+impl BuildingMotion {
     /// Displacement of the roof relative to the ground, in m.
     pub fn roof_displacement(&self) -> f64 {
         self.drift[0] + self.drift[1]
@@ -88,7 +88,7 @@ impl Motion {
 /// Drifts, their rates, hysteretic displacements and works.
 type State = [f64; 8];
 
-impl From<State> for Motion {
+impl From<State> for BuildingMotion {
     fn from([d1, d2, v1, v2, z1, z2, e1, e2]: State) -> Self {
         Self { drift: [d1, d2], drift_rate: [v1, v2], hysteretic_displacement: [z1, z2], work: [e1, e2] }
     }
@@ -117,7 +117,7 @@ impl ShearBuilding {
         ground: impl IntoIterator<Item = f64>,
         time_step: f64,
         parts: usize,
-    ) -> impl Iterator<Item = Motion> {
+    ) -> impl Iterator<Item = BuildingMotion> {
         let (mut state, mut last) = (State::default(), None);
         ground.into_iter().map(move |acceleration| {
             if let Some(from) = last {
@@ -129,12 +129,12 @@ impl ShearBuilding {
                 }
             }
             last = Some(acceleration);
-            Motion::from(state)
+            BuildingMotion::from(state)
         })
     }
 
     /// Force of a storey in N.
-    fn force(&self, storey: usize, motion: &Motion) -> f64 {
+    fn force(&self, storey: usize, motion: &BuildingMotion) -> f64 {
         let Storey { damping, stiffness, .. } = self.storeys[storey];
         let (elastic, hysteretic) = (motion.drift[storey], motion.hysteretic_displacement[storey]);
         let share = self.elastic_share;
@@ -142,7 +142,7 @@ impl ShearBuilding {
     }
 
     /// Rates of the hysteretic displacement and of the work of a storey.
-    fn hysteresis(&self, storey: usize, motion: &Motion) -> (f64, f64) {
+    fn hysteresis(&self, storey: usize, motion: &BuildingMotion) -> (f64, f64) {
         let (v, z, e) =
             (motion.drift_rate[storey], motion.hysteretic_displacement[storey], motion.work[storey]);
         let scale = self.storeys[storey].yield_displacement;
@@ -153,7 +153,7 @@ impl ShearBuilding {
     }
 
     fn slope(&self, state: State, ground: f64) -> State {
-        let motion = Motion::from(state);
+        let motion = BuildingMotion::from(state);
         let [first, second] = [0, 1].map(|storey| self.force(storey, &motion));
         let lower = (second - first) / self.storeys[0].mass - ground;
         let upper = -second / self.storeys[1].mass - ground;
@@ -171,7 +171,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     designed: "all values of the building, and duration and peaks of the earthquakes; the seed draws the earthquakes",
     training: "three earthquakes of 30 s with peaks of 1.5, 3 and 5 m/s², each from the undamaged building at rest; 100 Hz",
     testing: "two other earthquakes, with peaks of 2.5 and 4 m/s², likewise",
-    columns: Columns {
+    columns: SpecimenColumns {
         time: Some("t_s"),
         input: "ground_acceleration_m_per_s2",
         output: "roof_displacement_m",
@@ -214,16 +214,16 @@ mod tests {
                     + (ground.get(k / 10 + 1).unwrap_or(&0.0) - ground[k / 10]) * (k % 10) as f64 / 10.0
             })
             .collect();
-        let motion: Vec<Motion> = building.motion(fine.iter().copied(), 0.1 * TIME_STEP, 1).collect();
-        let floors = |at: &Motion| [at.drift_rate[0], at.drift_rate[0] + at.drift_rate[1]];
-        let power = |(at, ground): (&Motion, &f64)| {
+        let motion: Vec<BuildingMotion> = building.motion(fine.iter().copied(), 0.1 * TIME_STEP, 1).collect();
+        let floors = |at: &BuildingMotion| [at.drift_rate[0], at.drift_rate[0] + at.drift_rate[1]];
+        let power = |(at, ground): (&BuildingMotion, &f64)| {
             let [lower, upper] = floors(at);
             -ground * (first.mass * lower + second.mass * upper)
         };
-        let loss = |(at, _): (&Motion, &f64)| -> f64 {
+        let loss = |(at, _): (&BuildingMotion, &f64)| -> f64 {
             building.storeys.iter().zip(at.drift_rate).map(|(storey, v)| storey.damping * v * v).sum()
         };
-        let mean = |value: &dyn Fn((&Motion, &f64)) -> f64| -> f64 {
+        let mean = |value: &dyn Fn((&BuildingMotion, &f64)) -> f64| -> f64 {
             let values: Vec<f64> = motion.iter().zip(&fine).map(value).collect();
             values.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) * 0.1 * TIME_STEP).sum()
         };

@@ -31,7 +31,7 @@ pub struct Specimen {
     pub training: &'static str,
     /// Generation of the test data.
     pub testing: &'static str,
-    pub(super) columns: Columns,
+    pub(super) columns: SpecimenColumns,
     /// The training records of a seed. The seed draws what is random in the protocol.
     pub(super) train: fn(u64) -> Result<Vec<Record>>,
     /// The test records of a seed.
@@ -40,7 +40,7 @@ pub struct Specimen {
 
 /// Names of a specimen's columns, with their units.
 #[derive(Debug)]
-pub(super) struct Columns {
+pub(super) struct SpecimenColumns {
     pub time: Option<&'static str>,
     pub input: &'static str,
     pub output: &'static str,

@@ -12,15 +12,15 @@
 //! *Published*: the law, and that triangular currents between -0.7 and 1.2 A drove the actuator.
 //! *Designed*: all values, and the turning points of the current.
 
-use super::generalized_play::{Envelope, GeneralizedPlays, Start};
+use super::generalized_play::{Envelope, GeneralizedPlays, PlayStart};
 use super::path::Continued;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 
 /// The actuator, virgin: current in A to displacement in µm. All values are designed.
 pub fn law() -> GeneralizedPlays {
     let envelopes = [Envelope::new([4.0, 1.35, -0.35, 0.0]), Envelope::new([4.0, 1.25, 0.05, 0.15])];
     let weights = GeneralizedPlays::exponential(11, 0.25, 2.4, 0.55);
-    GeneralizedPlays::new(envelopes, 0.25, weights, 24.0, Start::Virgin)
+    GeneralizedPlays::new(envelopes, 0.25, weights, 24.0, PlayStart::Virgin)
 }
 
 pub(super) static SPECIMEN: Specimen = Specimen {
@@ -34,7 +34,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                the virgin state, at 1.6 A/s",
     testing: "the current goes on to other turning points in the same range; the training part comes first, with \
               blank outputs, so that the memory is carried over",
-    columns: Columns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
     train: |_| Ok(vec![PATH.records(|current| law().run(current))?.0]),
     test: |_| Ok(vec![PATH.records(|current| law().run(current))?.1]),
 };

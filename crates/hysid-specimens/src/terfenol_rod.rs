@@ -13,7 +13,7 @@
 //! [`Ferromagnet::vacoflux17`]. *Designed*: its use for Terfenol-D, the bias, both factors.
 
 use super::ferromagnet::Ferromagnet;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 use super::terfenol_actuator;
 
 /// Field without current, in A/m.
@@ -45,7 +45,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     designed: "that Everett function for Terfenol-D, the bias and both factors, the turning points",
     training: "as for terfenol-actuator",
     testing: "as for terfenol-actuator",
-    columns: Columns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
     train: |_| Ok(vec![terfenol_actuator::PATH.records(run)?.0]),
     test: |_| Ok(vec![terfenol_actuator::PATH.records(run)?.1]),
 };

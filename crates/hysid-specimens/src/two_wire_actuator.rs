@@ -20,7 +20,7 @@
 
 use super::ferromagnet::Ferromagnet;
 use super::path::Continued;
-use super::specimen::{Columns, Specimen};
+use super::specimen::{Specimen, SpecimenColumns};
 
 /// Angles of the two wires, fully contracted, in degrees.
 const PULL: [f64; 2] = [40.0, 28.0];
@@ -59,7 +59,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     training: "from -1 to 1 A, shrinking swings, then 40 pairs of turning points all over the range; 5 mA/s",
     testing: "the current goes on to other turning points in the same range; the training part comes first, with \
               blank outputs, so that the memory is carried over",
-    columns: Columns { time: Some("t_s"), input: "current_A", output: "angle_deg" },
+    columns: SpecimenColumns { time: Some("t_s"), input: "current_A", output: "angle_deg" },
     train: |_| Ok(vec![PATH.records(run)?.0]),
     test: |_| Ok(vec![PATH.records(run)?.1]),
 };

@@ -2,7 +2,7 @@
 
 use hysid::options::ModelName;
 use hysid::options::network::Trainer;
-use hysid::options::table::{FitOption, OPTIONS, Values};
+use hysid::options::table::{FitOption, OPTIONS, OptionValues};
 use hysid::specimens::Specimen;
 use hysid_app::BAND;
 use hysid_app::models::Listed;
@@ -44,15 +44,15 @@ fn model(model: ModelName) -> Listed {
 
 fn option(option: &FitOption) -> Value {
     let values = match option.values {
-        Values::Count(from, to) => json!({"kind": "count", "from": from, "to": to}),
-        Values::Whole => json!({"kind": "whole"}),
-        Values::Fraction => json!({"kind": "fraction"}),
-        Values::ZeroOr(from, to) => json!({"kind": "zero-or", "from": from, "to": to}),
-        Values::Number(from, to) => json!({"kind": "number", "from": from, "to": to}),
-        Values::Positive => json!({"kind": "positive"}),
-        Values::Flag => json!({"kind": "flag"}),
-        Values::Truth => json!({"kind": "truth"}),
-        Values::Names(names) => json!({"kind": "names", "names": names()}),
+        OptionValues::Count(from, to) => json!({"kind": "count", "from": from, "to": to}),
+        OptionValues::Whole => json!({"kind": "whole"}),
+        OptionValues::Fraction => json!({"kind": "fraction"}),
+        OptionValues::ZeroOr(from, to) => json!({"kind": "zero-or", "from": from, "to": to}),
+        OptionValues::Number(from, to) => json!({"kind": "number", "from": from, "to": to}),
+        OptionValues::Positive => json!({"kind": "positive"}),
+        OptionValues::Flag => json!({"kind": "flag"}),
+        OptionValues::Truth => json!({"kind": "truth"}),
+        OptionValues::Names(names) => json!({"kind": "names", "names": names()}),
     };
     json!({
         "name": option.name,

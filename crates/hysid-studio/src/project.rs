@@ -2,7 +2,7 @@
 
 use anyhow::{Result, anyhow, bail};
 use hysid::options::chosen::RateChoice;
-use hysid::options::table::{OPTIONS, Values};
+use hysid::options::table::{OPTIONS, OptionValues};
 use hysid_records::{ColumnChoice, RateOption, ReadingChoice, Roles, Usage};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -247,7 +247,7 @@ impl FitRequest {
         for (name, value) in &mut self.options {
             let Some(option) = OPTIONS.iter().find(|option| option.name == name) else { continue };
             if let Value::String(text) = value
-                && !matches!(option.values, Values::Names(_))
+                && !matches!(option.values, OptionValues::Names(_))
             {
                 let needed = |needed| Usage(format!("--{}: {needed}", name.replace('_', "-")));
                 *value = option.read(text).map_err(needed)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
 use hysid::model::Model;
-use hysid::options::table::{OPTIONS, Values};
+use hysid::options::table::{OPTIONS, OptionValues};
 use hysid::termination::Termination;
 use hysid_document::shell::{flag, option, shown};
 use hysid_export::{Options, Target};
@@ -97,7 +97,8 @@ fn of_reading(reading: &ReadingChoice) -> Vec<String> {
 
 /// An option on the command line; `None` for one that is not said.
 fn word(name: &str, value: &Value) -> Option<String> {
-    let is_truth = OPTIONS.iter().any(|option| option.name == name && matches!(option.values, Values::Truth));
+    let is_truth =
+        OPTIONS.iter().any(|option| option.name == name && matches!(option.values, OptionValues::Truth));
     let value = match value {
         Value::Null => return None,
         Value::Bool(value) if !is_truth => return value.then(|| flag(name)),

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow, bail};
-use hysid_records::{Data, Looked, Roles};
+use hysid_records::{Data, Roles, TableOverview};
 use hysid_tables::{Reading, Table};
 
 use crate::folder::Folder;
@@ -54,7 +54,7 @@ pub struct TableView {
     /// How its file is stored and laid out, in words.
     pub read_as: String,
     pub rows: usize,
-    pub looked: Looked,
+    pub looked: TableOverview,
 }
 
 impl View {
@@ -204,7 +204,7 @@ impl FileView {
                 return view;
             }
         };
-        let looked = Looked::of(&table, roles);
+        let looked = TableOverview::of(&table, roles);
         view.table = Some(TableView { read_as: table.described(), rows: table.rows(), looked });
         let Some(roles) = roles else { return view };
         let data = roles

@@ -3,10 +3,10 @@
 use std::io::{self, Read};
 
 /// Gives the text of a reader with one tab in place of blanks and tabs one after another, and none at the ends of lines.
-/// What stands in quotation marks stays as it is.
+/// Text in quotation marks stays as it is.
 pub struct TabsForBlanks<R> {
     reader: R,
-    /// What was read and not given yet.
+    /// Bytes that were read and not given yet.
     pending: Vec<u8>,
     given: usize,
     is_quoted: bool,

@@ -51,7 +51,7 @@ impl ColumnReader {
         cells.number(digits, line)
     }
 
-    /// What is wrong with the column as a whole, and the line that shows it first.
+    /// Problem of the column as a whole, with the first line that shows it.
     pub fn problem(&self, cells: &CellReader) -> Option<(u64, String)> {
         self.thousands.problem(cells)
     }

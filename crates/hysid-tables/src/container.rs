@@ -16,12 +16,12 @@ use hysid_files::unreadable;
 
 use crate::reading::Reading;
 pub use budget::THREAD;
-use budget::Unpacking;
+use budget::UnpackingReader;
 
-/// Bytes that tell what a file is.
+/// Bytes that identify the format of a file.
 const FIRST: usize = 1 << 16;
 
-pub struct Text {
+pub struct DecodedText {
     /// The file, as the user named it.
     pub file: String,
     /// UTF-8, without a byte order mark.
@@ -31,7 +31,7 @@ pub struct Text {
     pub other_sheets: Vec<String>,
 }
 
-impl Text {
+impl DecodedText {
     /// Opens a file; standard input for `-`.
     pub fn open(path: &Path, reading: &Reading) -> Result<Self> {
         if path == Path::new("-") {
@@ -48,7 +48,7 @@ impl Text {
         let mut packed = "";
         if first.starts_with(b"\x1f\x8b") {
             packed = ", gzip";
-            (reader, first) = peeked(&file, Box::new(Unpacking::of(reader, MultiGzDecoder::new)))?;
+            (reader, first) = peeked(&file, Box::new(UnpackingReader::of(reader, MultiGzDecoder::new)))?;
         }
         let failed =
             |what: &str, problem: String| anyhow!("{file}: is {what} that cannot be read: {problem}");
@@ -91,7 +91,7 @@ pub fn is_json(bytes: &[u8]) -> bool {
     bytes.trim_ascii_start().starts_with(b"{")
 }
 
-/// What is said of a file with a byte that no text has.
+/// Message on a file with a byte that no text has.
 pub const BINARY: &str = "is a binary file, not a table of numbers";
 
 /// Refuses what is clearly no table.
@@ -127,7 +127,7 @@ mod tests {
 
     fn text(bytes: &[u8]) -> Result<(String, String)> {
         let bytes = bytes.to_vec();
-        let mut text = Text::new("f".into(), Box::new(Cursor::new(bytes)), &Reading::default())?;
+        let mut text = DecodedText::new("f".into(), Box::new(Cursor::new(bytes)), &Reading::default())?;
         let mut content = String::new();
         text.reader.read_to_string(&mut content)?;
         Ok((content, text.stored))

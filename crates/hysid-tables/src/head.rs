@@ -1,4 +1,4 @@
-//! What is known of a table before its rows are read.
+//! File, layout and column names of a table, found before its rows are read.
 
 use std::collections::HashMap;
 
@@ -20,9 +20,9 @@ pub struct Head {
     pub other_sheets: Vec<String>,
     /// Names of the columns, without surrounding blanks.
     pub header: Vec<String>,
-    /// What the table looks like.
+    /// Layout of the table.
     pub layout: Layout,
-    /// How the user wants it to be read.
+    /// The user's options of reading it.
     pub reading: Reading,
     places: HashMap<String, usize>,
 }
@@ -75,7 +75,7 @@ impl Head {
         if others.is_empty() { first.clone() } else { format!("{first}; {}", others.join(", ")) }
     }
 
-    /// What is said of a table without rows.
+    /// Message on a table without rows.
     pub fn no_rows(&self) -> String {
         let file = &self.file;
         match self.other_sheets.as_slice() {

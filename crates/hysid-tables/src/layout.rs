@@ -1,4 +1,4 @@
-//! What a table in a text looks like: where it begins, what separates its cells, what its columns are called, and how its
+//! Layout of a table in a text: where it begins, what separates its cells, what its columns are called, and how its
 //! numbers are written. The table begins where columns of numbers begin; what stands above them with as many cells are
 //! their names and units, and everything before is a preamble.
 
@@ -13,8 +13,8 @@ use anyhow::{Result, bail, ensure};
 use crate::number::NumberFormat;
 use crate::reading::{Delimiter, Reading};
 use header::Header;
-use lines::Line;
-use run::Run;
+use lines::TextLine;
+use run::LineRun;
 
 pub use cells::{bare, split};
 pub use lines::is_comment;
@@ -23,7 +23,7 @@ pub use run::is_row;
 /// Lines that a layout is found from.
 const MOST_LINES: usize = 300;
 
-/// True for the name of a column that tells records apart. A `segment` may be a part of one record.
+/// True for the name of a column that distinguishes records. A `segment` may be a part of one record.
 pub fn is_record(name: &str) -> bool {
     name.eq_ignore_ascii_case("record")
 }
@@ -31,7 +31,7 @@ pub fn is_record(name: &str) -> bool {
 /// Rows with names that are a table, and no part of a preamble.
 const FEWEST_ROWS: usize = 3;
 
-/// What a table looks like.
+/// Layout of a table in a text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
     pub delimiter: Delimiter,
@@ -63,12 +63,13 @@ impl Layout {
     /// The layout of a text of which the beginning is known; `is_all` if that is all.
     pub fn find(file: &str, text: &str, is_all: bool, reading: &Reading) -> Result<Self> {
         let lines = lines::lines(text, is_all, reading.skip);
-        if lines.iter().all(Line::is_blank) {
+        if lines.iter().all(TextLine::is_blank) {
             ensure!(is_all, "{file}: begins with more than {} blank lines (remove them)", lines.len());
             bail!("{file}: {IS_EMPTY}");
         }
         let delimiters = reading.delimiter.as_ref().map_or(&Delimiter::ALL[..], std::slice::from_ref);
-        let runs: Vec<Vec<Run>> = delimiters.iter().map(|&delimiter| Run::all(&lines, delimiter)).collect();
+        let runs: Vec<Vec<LineRun>> =
+            delimiters.iter().map(|&delimiter| LineRun::all(&lines, delimiter)).collect();
         let all = runs.iter().flat_map(|runs| runs.iter().map(move |run| (run, runs)));
         let best = all.reduce(|best, other| if other.0.score() > best.0.score() { other } else { best });
         let Some((best, runs)) = best else {
@@ -102,8 +103,8 @@ impl Layout {
         Ok(layout)
     }
 
-    /// Of a text without a row of numbers: its first line is the header, and what follows is told where it is read.
-    fn without_rows(file: &str, lines: &[Line<'_>], reading: &Reading) -> Result<Self> {
+    /// Of a text without a row of numbers: its first line is the header, and what follows is reported where it is read.
+    fn without_rows(file: &str, lines: &[TextLine<'_>], reading: &Reading) -> Result<Self> {
         let Some(place) = lines.iter().position(|line| !line.is_blank() && !line.is_comment) else {
             bail!("{file}: {IS_EMPTY}");
         };
@@ -150,9 +151,14 @@ impl Layout {
 }
 
 /// A run with its first rows and its header. The last cell of every row may be empty: it is a column if it has a name.
-fn settled(file: &str, lines: &[Line<'_>], run: &Run, reading: &Reading) -> Result<(Run, Header)> {
+fn settled(
+    file: &str,
+    lines: &[TextLine<'_>],
+    run: &LineRun,
+    reading: &Reading,
+) -> Result<(LineRun, Header)> {
     let run = run.clone().with_rows_above(lines);
-    let header = |run: &Run| match reading.no_header {
+    let header = |run: &LineRun| match reading.no_header {
         true => Ok(Header::none(run.width)),
         false => Header::above(file, lines, run, reading.units_row),
     };
@@ -166,10 +172,14 @@ fn settled(file: &str, lines: &[Line<'_>], run: &Run, reading: &Reading) -> Resu
     }
 }
 
-/// The table: the best run, or one before it that is a table with names too. What follows it is told where it is read,
-/// and nothing is passed over in silence.
-fn table(runs: &[Run], best: &Run, settled: impl Fn(&Run) -> Result<(Run, Header)>) -> Result<(Run, Header)> {
-    let has_names = |(_, header): &(Run, Header)| !header.lines.is_empty();
+/// The table: the best run, or one before it that is a table with names too. What follows it is reported where it is
+/// read, and nothing is passed over in silence.
+fn table(
+    runs: &[LineRun],
+    best: &LineRun,
+    settled: impl Fn(&LineRun) -> Result<(LineRun, Header)>,
+) -> Result<(LineRun, Header)> {
+    let has_names = |(_, header): &(LineRun, Header)| !header.lines.is_empty();
     let settled_best = settled(best);
     let fewest_rows = if settled_best.as_ref().is_ok_and(has_names) { FEWEST_ROWS } else { 0 };
     let before = runs.iter().take_while(|run| run.lines.start < best.lines.start);
@@ -178,7 +188,7 @@ fn table(runs: &[Run], best: &Run, settled: impl Fn(&Run) -> Result<(Run, Header
     tables.find(has_names).map_or(settled_best, Ok)
 }
 
-/// What is said of a row with more or fewer cells than the table has columns.
+/// Message on a row with more or fewer cells than the table has columns.
 pub fn width_problem(found: usize, expected: usize, row: &[&str], delimiter: Delimiter) -> String {
     let hint = match delimiter {
         _ if row.iter().any(|cell| cell.contains(['\n', '\r'])) => " (is a quotation mark not closed?)",

@@ -5,9 +5,9 @@
 //!                         gzip, encoding, spreadsheet, MATLAB
 //! ```
 //!
-//! A container gives text in UTF-8, whatever a file is. The layout of its first lines tells the delimiter, the names and
+//! A container gives text in UTF-8, whatever a file is. The layout of its first lines gives the delimiter, the names and
 //! units of the columns, and how numbers are written. Rows are read one after another, so that memory does not grow
-//! with the file. [`Reading`] says what a user knows better.
+//! with the file. [`Reading`] overrides what is detected.
 
 // Only the crates of Hysid use this one: what a name says needs no comment.
 #![allow(missing_docs)]
@@ -30,7 +30,7 @@ pub use container::{THREAD as CONTAINER_THREAD, is_json};
 pub use head::Head;
 pub use layout::{Layout, is_record};
 pub use number::{CellReader, DecimalSign, NumberFormat, is_missing, push_shortest, shortest};
-pub use reading::{Delimiter, Encoding, Reading, RowSelection};
+pub use reading::{Delimiter, Reading, RowSelection, TextEncoding};
 pub use rows::{LeftOut, Row, Rows};
-pub use table::{Origin, Table};
+pub use table::{Table, TableOrigin};
 pub use time::{spread_equal, starts_again};

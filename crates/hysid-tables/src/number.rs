@@ -7,7 +7,7 @@ use std::fmt::Write;
 use hysid_document::visible::clipped;
 pub use thousands::ThousandsWatch;
 
-/// What stands before the decimals of a number.
+/// Sign before the decimals of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DecimalSign {
     Point,
@@ -123,7 +123,7 @@ fn plain(text: &str, decimal: Option<DecimalSign>) -> Option<f64> {
     number.ok().filter(|number| number.is_finite())
 }
 
-/// What is wrong with the number in a cell.
+/// Why a cell is not a valid number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberProblem {
     /// It has this decimal sign, the file another.
@@ -261,7 +261,7 @@ pub fn shortest(value: f64) -> String {
     text
 }
 
-/// A plain number is preferred to one with an exponent up to so many letters.
+/// Most letters of a plain number that is preferred to one with an exponent.
 const PLAIN_LETTERS: usize = 12;
 
 /// Adds the shortest text that reads back as the same number, with this decimal sign.

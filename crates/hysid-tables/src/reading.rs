@@ -1,4 +1,4 @@
-//! What a user may say about a file that does not tell it itself.
+//! Options of reading a file that override detection.
 
 use std::str::FromStr;
 
@@ -17,7 +17,7 @@ pub struct Reading {
     pub units_row: bool,
     /// Cells that stand for a missing value.
     pub missing: Vec<String>,
-    pub encoding: Option<Encoding>,
+    pub encoding: Option<TextEncoding>,
     /// Sheet of a spreadsheet or variable of a MATLAB file: its name, or its number from 1.
     pub sheet: Option<String>,
     pub rows: RowSelection,
@@ -28,7 +28,7 @@ pub struct Reading {
 pub struct RowSelection {
     pub first: u64,
     pub last: Option<u64>,
-    /// One row of so many is used.
+    /// Distance of the rows that are used: one of every `every`.
     pub every: u64,
 }
 
@@ -75,7 +75,7 @@ impl FromStr for RowSelection {
     }
 }
 
-/// What separates the cells of a line.
+/// Separator of the cells of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Delimiter {
     /// An ASCII character other than a blank.
@@ -154,15 +154,15 @@ impl FromStr for DecimalSign {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Encoding(pub(crate) &'static encoding_rs::Encoding);
+pub struct TextEncoding(pub(crate) &'static encoding_rs::Encoding);
 
-impl Encoding {
+impl TextEncoding {
     pub fn name(self) -> &'static str {
         self.0.name()
     }
 }
 
-impl FromStr for Encoding {
+impl FromStr for TextEncoding {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -207,8 +207,8 @@ mod tests {
         for text in ["", "5", "\"", ";;", "ä"] {
             assert!(text.parse::<Delimiter>().is_err(), "{text}");
         }
-        assert_eq!("cp1252".parse::<Encoding>().unwrap().name(), "windows-1252");
-        assert_eq!("latin1".parse::<Encoding>().unwrap().name(), "windows-1252");
-        assert!("klingon".parse::<Encoding>().is_err());
+        assert_eq!("cp1252".parse::<TextEncoding>().unwrap().name(), "windows-1252");
+        assert_eq!("latin1".parse::<TextEncoding>().unwrap().name(), "windows-1252");
+        assert!("klingon".parse::<TextEncoding>().is_err());
     }
 }

@@ -7,7 +7,7 @@ use anyhow::{Error, Result, bail, ensure};
 use csv_core::ReadRecordResult;
 
 use crate::blanks::TabsForBlanks;
-use crate::container::{BINARY, Text};
+use crate::container::{BINARY, DecodedText};
 use hysid_files::unreadable;
 
 use crate::head::{Head, counted};
@@ -62,7 +62,7 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// What was left out, in words; `None` if nothing was.
+    /// Number and kind of the lines left out, in words; `None` if there were none.
     pub fn described(&self) -> Option<String> {
         let comments = (self.comments > 0).then(|| counted(self.comments, "comment line", "among the rows"));
         let end = self
@@ -109,17 +109,17 @@ impl<'r> Row<'r> {
 impl Rows {
     /// Opens a file and finds the layout of its table.
     pub fn open(path: &Path, reading: &Reading) -> Result<Self> {
-        Self::of(Text::open(path, reading)?, reading)
+        Self::of(DecodedText::open(path, reading)?, reading)
     }
 
     /// Finds the layout of the table that a file with this content has.
     pub fn from_bytes(path: &Path, bytes: Vec<u8>, reading: &Reading) -> Result<Self> {
         let reader = Box::new(Cursor::new(bytes));
-        Self::of(Text::new(path.display().to_string(), reader, reading)?, reading)
+        Self::of(DecodedText::new(path.display().to_string(), reader, reading)?, reading)
     }
 
-    fn of(text: Text, reading: &Reading) -> Result<Self> {
-        let Text { file, mut reader, stored, other_sheets } = text;
+    fn of(text: DecodedText, reading: &Reading) -> Result<Self> {
+        let DecodedText { file, mut reader, stored, other_sheets } = text;
         let (first, is_all) = beginning(&file, &mut reader)?;
         let valid = match std::str::from_utf8(&first) {
             Ok(text) => text,
@@ -393,7 +393,7 @@ mod tests {
     }
 
     fn rows(text: &[u8], piece: usize, reading: &Reading) -> Result<Rows> {
-        Rows::of(Text::new("f".into(), Box::new(Dripping(text.to_vec(), piece)), reading)?, reading)
+        Rows::of(DecodedText::new("f".into(), Box::new(Dripping(text.to_vec(), piece)), reading)?, reading)
     }
 
     fn read(text: &[u8], piece: usize) -> Result<Vec<(u64, Vec<String>)>> {

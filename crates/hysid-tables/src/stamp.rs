@@ -173,7 +173,7 @@ pub struct StampReader {
     day: i64,
     date: Option<Date>,
     seconds: f64,
-    /// Day and month stand in this order, once two dates have told it.
+    /// Order of day and month, once two dates have shown it.
     order: Option<DateOrder>,
 }
 

@@ -12,7 +12,7 @@ use crate::rows::{LeftOut, Rows};
 /// A table as it stands in its file.
 #[derive(Debug)]
 pub struct Table {
-    origin: Origin,
+    origin: TableOrigin,
     /// The cells of all rows one after the other, verbatim.
     text: String,
     /// Where each cell ends in `text`.
@@ -21,7 +21,7 @@ pub struct Table {
 
 /// Where the rows of a table stand: what is left of it when its cells have been read.
 #[derive(Debug)]
-pub struct Origin {
+pub struct TableOrigin {
     head: Head,
     /// Line of each row in the file, counted from 1.
     pub lines: Vec<u64>,
@@ -30,14 +30,14 @@ pub struct Origin {
 }
 
 impl Deref for Table {
-    type Target = Origin;
+    type Target = TableOrigin;
 
-    fn deref(&self) -> &Origin {
+    fn deref(&self) -> &TableOrigin {
         &self.origin
     }
 }
 
-impl Deref for Origin {
+impl Deref for TableOrigin {
     type Target = Head;
 
     fn deref(&self) -> &Head {
@@ -63,14 +63,14 @@ impl Table {
             all_ends.extend(ends.iter().map(|end| all.len() + end));
             all.push_str(text);
         }
-        let origin = Origin { left_out: rows.left_out, head: rows.head, lines };
+        let origin = TableOrigin { left_out: rows.left_out, head: rows.head, lines };
         let table = Self { origin, text: all, ends: all_ends };
         ensure!(!table.lines.is_empty(), "{}", table.no_rows());
         Ok(table)
     }
 
     /// The table without its cells, which need several times the memory of their numbers.
-    pub fn into_origin(self) -> Origin {
+    pub fn into_origin(self) -> TableOrigin {
         self.origin
     }
 

@@ -30,20 +30,20 @@ use serde::Serialize;
 
 use crate::data::record::{ColumnNames, Dataset};
 use crate::error::{Error, Result};
-use drive::Drive;
+use drive::DriveRows;
 use survey::Survey;
 
-pub use limits::{FEWEST_ROWS, Limits, MOST_ROWS, Wanted};
-pub use path::{Leg, Path, Wave};
+pub use limits::{FEWEST_ROWS, LimitOptions, Limits, MOST_ROWS};
+pub use path::{DrivePath, Leg, Wave};
 pub use protocol::{Protocol, ProtocolOptions};
-pub use segment::{Kind, Segment};
+pub use segment::{Segment, SegmentKind};
 pub use survey::Gap;
 
-/// What a plan is to be.
+/// Options of a plan from data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanOptions {
     /// Limits other than those of the data.
-    pub limits: Wanted,
+    pub limits: LimitOptions,
     /// Shape of swings; smooth with time stamps and triangles without if `None`.
     pub wave: Option<Wave>,
     /// Seed of all random numbers.
@@ -52,7 +52,7 @@ pub struct PlanOptions {
 
 impl Default for PlanOptions {
     fn default() -> Self {
-        Self { limits: Wanted::default(), wave: None, seed: 1 }
+        Self { limits: LimitOptions::default(), wave: None, seed: 1 }
     }
 }
 
@@ -71,7 +71,7 @@ pub struct Plan {
     pub input: Vec<f64>,
     /// The segments; the first row belongs to none.
     pub segments: Vec<Segment>,
-    /// What the data do not cover.
+    /// Gaps in the data.
     pub gaps: Vec<Gap>,
     /// Sources of a protocol; empty for a plan from data.
     pub sources: Vec<&'static str>,
@@ -92,7 +92,7 @@ impl Plan {
         let limits = Limits::of(data, &options.limits)?;
         let survey = Survey::of(data, limits)?;
         let wave = options.wave.unwrap_or(if data.has_time() { Wave::Smooth } else { Wave::Triangle });
-        let drive = Drive::for_data(Path { limits, wave }, &survey, options.seed);
+        let drive = DriveRows::for_data(DrivePath { limits, wave }, &survey, options.seed);
         Ok(Self {
             names: data.names().clone(),
             limits,

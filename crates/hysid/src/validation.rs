@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::metrics::Errors;
-use crate::data::record::{Dataset, Protocol, Record, protocols};
+use crate::data::record::{Dataset, Record, RepeatedProtocol, protocols};
 use crate::error::{Error, Result};
 use crate::model::Model;
 pub(crate) use pooled::PooledErrors;
@@ -255,8 +255,8 @@ fn held_out(record: &Record, rows: RowsOf) -> Record {
 fn cuts(data: &Dataset, most: usize) -> Vec<Cut> {
     let enough =
         |cuts: Vec<Cut>| -> Vec<Cut> { cuts.into_iter().filter(|cut| has_enough(&cut.fold(data))).collect() };
-    let is_scored = |protocol: &Protocol| data.records()[protocol.runs[0]].scored() > 0;
-    let protocols: Vec<Protocol> = protocols(data.records()).into_iter().filter(is_scored).collect();
+    let is_scored = |protocol: &RepeatedProtocol| data.records()[protocol.runs[0]].scored() > 0;
+    let protocols: Vec<RepeatedProtocol> = protocols(data.records()).into_iter().filter(is_scored).collect();
     let several = if protocols.len() > 1 { enough(of_protocols(&protocols, most)) } else { Vec::new() };
     if several.len() > 1 {
         return several;
@@ -268,12 +268,12 @@ fn has_enough(fold: &Fold) -> bool {
     fold.train.check_identifiable(FEWEST_ROWS).is_ok() && fold.held_out.scored() > 0
 }
 
-fn of_protocols(protocols: &[Protocol], most: usize) -> Vec<Cut> {
+fn of_protocols(protocols: &[RepeatedProtocol], most: usize) -> Vec<Cut> {
     deal(protocols, most).into_iter().map(Cut::Records).collect()
 }
 
 /// The records of each of at most `most` folds: protocols are dealt out in their order; copies and repeats stay together.
-fn deal(protocols: &[Protocol], most: usize) -> Vec<Vec<usize>> {
+fn deal(protocols: &[RepeatedProtocol], most: usize) -> Vec<Vec<usize>> {
     let count = protocols.len().min(most);
     let fold = |fold: usize| {
         let records =

@@ -9,7 +9,7 @@ use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
 use hysid::fit::identify;
 use hysid::law::Classical;
-use hysid::law::duhem_nn::{DuhemNn, Layout, Run};
+use hysid::law::duhem_nn::{CellLayout, CellRun, DuhemNn};
 use hysid::law::series::Series;
 use hysid::model::{Model, Predictor};
 use hysid::options::FitSpec;
@@ -58,7 +58,7 @@ impl Network {
     /// Its parts, in a few words.
     pub fn parts(&self) -> Result<String> {
         let shape = self.law()?.cell.shape();
-        let parameters = Layout::new(shape).count();
+        let parameters = CellLayout::new(shape).count();
         Ok(format!(
             "duhem-nn, {} states, {} stops, {} hidden, rate and time, {parameters} searched parameters",
             shape.states, shape.stops, shape.neurons
@@ -77,7 +77,7 @@ impl Network {
         let targets = |y: f64| -> Vec<Vec<f64>> { drives.iter().map(|drive| vec![y; drive.len()]).collect() };
         let (none, all) = (targets(f64::NAN), targets(0.5));
         let pass = |targets: &[Vec<f64>]| {
-            let run = Run {
+            let run = CellRun {
                 cell: &law.cell,
                 drives: &drives,
                 targets,

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::elastomer::{Elastomer, ElastomerParameters};
 use super::magnetorheological_damper::{MagnetorheologicalDamper, MagnetorheologicalDamperParameters};
 use super::phase_transformation::{PhaseTransformation, PhaseTransformationParameters};
-use hysid::specimens::generalized_play::{Envelope, GeneralizedPlays, Start};
+use hysid::specimens::generalized_play::{Envelope, GeneralizedPlays, PlayStart};
 use hysid::specimens::{MagnetostrictiveActuator, RateDependentActuator};
 use hysid_core::elementary::exp;
 use hysid_core::error::Result;
@@ -29,7 +29,7 @@ pub(super) fn shape_memory_actuator(draw: &mut Draw) -> Result<Subject> {
         [envelope([0.8380, 6.4364, -9.9631, 0.5618]), envelope([15.7940, 2.7649, -5.6356, 15.5400])];
     let spacing = draw.around(0.0395);
     let weights = GeneralizedPlays::exponential(21, spacing, draw.around(10.959), draw.around(2.5785));
-    let plays = GeneralizedPlays::new(envelopes, spacing, weights, draw.around(17.72), Start::Lowered);
+    let plays = GeneralizedPlays::new(envelopes, spacing, weights, draw.around(17.72), PlayStart::Lowered);
     Ok(Subject::of_law((0.0, 2.4), plays.law))
 }
 
@@ -56,7 +56,7 @@ fn terfenol_plays(draw: &mut Draw) -> GeneralizedPlays {
     ];
     let spacing = draw.around(0.25);
     let weights = GeneralizedPlays::exponential(11, spacing, draw.around(2.4), draw.around(0.55));
-    GeneralizedPlays::new(envelopes, spacing, weights, draw.around(24.0), Start::Virgin)
+    GeneralizedPlays::new(envelopes, spacing, weights, draw.around(24.0), PlayStart::Virgin)
 }
 
 /// A Terfenol-D actuator at low speed.

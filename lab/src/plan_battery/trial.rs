@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use hysid::data::record::Dataset;
-use hysid::plan::{Limits, Path, Plan, PlanOptions};
+use hysid::plan::{DrivePath, Limits, Plan, PlanOptions};
 use hysid::{Fit, Model};
 
 use crate::rig::{Rig, drives, error_of};
@@ -29,7 +29,7 @@ impl FirstTest {
         }
     }
 
-    fn drive(self, path: &Path) -> Vec<f64> {
+    fn drive(self, path: &DrivePath) -> Vec<f64> {
         let Limits { range: (low, high), start, .. } = path.limits;
         let level = move |cycle: usize| match self {
             Self::Constant => 1.0,

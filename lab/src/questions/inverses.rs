@@ -1,7 +1,7 @@
 //! How to invert: the deviation of driven specimens from a wanted output, by the data that the model was fitted to.
 
 use anyhow::Result;
-use hysid::plan::Path;
+use hysid::plan::DrivePath;
 use hysid::{Model, Record, Reference};
 use hysid_core::elementary::square;
 
@@ -50,7 +50,7 @@ fn deviations(name: &str, seed: u64) -> Result<[f64; 3]> {
 }
 
 /// The input of the least-squares line of the output by the input, within the range.
-fn drive_of_line(record: &Record, path: &Path, wanted: &[f64]) -> Vec<f64> {
+fn drive_of_line(record: &Record, path: &DrivePath, wanted: &[f64]) -> Vec<f64> {
     let (x, y) = (&record.inputs()[0], record.output());
     let rows = x.len() as f64;
     let (mean_x, mean_y) = (x.iter().sum::<f64>() / rows, y.iter().sum::<f64>() / rows);

@@ -1,6 +1,6 @@
 //! Drives of tests: cycles, and random reversals.
 
-use hysid::plan::{Leg, Limits, Path};
+use hysid::plan::{DrivePath, Leg, Limits};
 use hysid_core::elementary::powf;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -12,13 +12,13 @@ const SLOWEST: f64 = 0.2;
 const SMALLEST_SWING: f64 = 0.06;
 
 /// A drive through turning points at the largest rate, cut to so many rows.
-pub fn through(path: &Path, turns: impl Iterator<Item = f64>, rows: usize) -> Vec<f64> {
+pub fn through(path: &DrivePath, turns: impl Iterator<Item = f64>, rows: usize) -> Vec<f64> {
     drive(path, turns.map(|to| Leg::Swing { to, speed: 1.0 }), rows)
 }
 
 /// Random turning points all over the range, alternately above and below the one before, each swing at a speed of its
 /// own.
-pub fn random(path: &Path, rows: usize, seed: u64) -> Vec<f64> {
+pub fn random(path: &DrivePath, rows: usize, seed: u64) -> Vec<f64> {
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
     let Limits { range: (low, high), start, step, .. } = path.limits;
     let least = SMALLEST_SWING * (high - low);
@@ -35,20 +35,20 @@ pub fn random(path: &Path, rows: usize, seed: u64) -> Vec<f64> {
 }
 
 /// Cycles about the start at the largest rate, as many as `levels`; a level is the share of the range on each side.
-pub fn cycles(path: &Path, levels: impl IntoIterator<Item = f64>) -> Vec<f64> {
+pub fn cycles(path: &DrivePath, levels: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let Limits { range: (low, high), start, .. } = path.limits;
     let turns = levels.into_iter().flat_map(|level| [high, low].map(|end| start + level * (end - start)));
     through(path, turns.chain([start]), usize::MAX)
 }
 
 /// The same path within a share of its range on each side of the start.
-pub fn within(path: &Path, share: f64) -> Path {
+pub fn within(path: &DrivePath, share: f64) -> DrivePath {
     let Limits { range: (low, high), start, .. } = path.limits;
     let range = (start + share * (low - start), start + share * (high - start));
-    Path { limits: Limits { range, ..path.limits }, ..*path }
+    DrivePath { limits: Limits { range, ..path.limits }, ..*path }
 }
 
-fn drive(path: &Path, legs: impl Iterator<Item = Leg>, rows: usize) -> Vec<f64> {
+fn drive(path: &DrivePath, legs: impl Iterator<Item = Leg>, rows: usize) -> Vec<f64> {
     let mut x = vec![path.limits.start];
     for leg in legs {
         if x.len() >= rows {
@@ -66,9 +66,9 @@ mod tests {
     use super::*;
     use hysid::plan::Wave;
 
-    fn path() -> Path {
+    fn path() -> DrivePath {
         let limits = Limits { range: (-2.0, 2.0), start: 0.0, step: None, max_rate: 0.1, rows: 100 };
-        Path { limits, wave: Wave::Triangle }
+        DrivePath { limits, wave: Wave::Triangle }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Figures of cycles as charts, over amplitude or frequency: of one set of cycles, or of several to compare.
 
-use hysid::diagnosis::cycles::{CycleRow, Direction, Field, Figure, LossAtFrequency, Quantity};
+use hysid::diagnosis::cycles::{CycleRow, Direction, Field, Figure, FigureQuantity, LossAtFrequency};
 use hysid_document::chart::thin::Point;
 use hysid_document::{Axis, Chart, Colour, Curve, number, unit};
 
@@ -48,7 +48,7 @@ pub fn width_over_frequency(sets: &[Shown]) -> Option<Chart> {
     let figure = *present(first, &["width_percent"]).first()?;
     let frequencies: Vec<f64> = first.table.complete().filter_map(|row| row.frequency).collect();
     let range = frequencies.iter().fold((f64::INFINITY, 0.0f64), |(low, high), &f| (low.min(f), high.max(f)));
-    let frequency = ("frequency", first.quantities.as_figure("frequency", Quantity::Frequency));
+    let frequency = ("frequency", first.quantities.as_figure("frequency", FigureQuantity::Frequency));
     (range.1 > SEVERAL * range.0).then(|| over(sets, &frequency, |row| row.frequency, figure)).flatten()
 }
 
@@ -120,7 +120,7 @@ pub fn losses(sets: &[Shown]) -> Option<Chart> {
     let all = || amplitudes.iter().flatten().copied().flatten();
     all().next()?;
     let q = &last.cycles.quantities;
-    let x = unit::label(&q.as_figure("frequency", Quantity::Frequency));
+    let x = unit::label(&q.as_figure("frequency", FigureQuantity::Frequency));
     let y = unit::label(&q.as_energy("loss per cycle"));
     let axes = (
         Axis::logarithmic(&x, all().map(|loss| loss.frequency)),

@@ -75,7 +75,7 @@ fn backbone_section(cycles: &Cycles) -> Option<Part> {
 }
 
 fn losses_section(cycles: &Cycles) -> Option<Part> {
-    use hysid::diagnosis::cycles::Quantity;
+    use hysid::diagnosis::cycles::FigureQuantity;
     let losses = over_amplitude::at_several_frequencies(cycles);
     if losses.is_empty() {
         return None;
@@ -83,7 +83,7 @@ fn losses_section(cycles: &Cycles) -> Option<Part> {
     let q = &cycles.quantities;
     let headings = [
         q.as_input("amplitude"),
-        q.as_figure("frequency", Quantity::Frequency),
+        q.as_figure("frequency", FigureQuantity::Frequency),
         q.as_energy("loss per cycle"),
         q.as_power("loss per time"),
     ];

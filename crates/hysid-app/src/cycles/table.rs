@@ -1,6 +1,6 @@
 //! Rows of the table of cycles for text and page.
 
-use hysid::diagnosis::cycles::{CycleRow, Field, Figure, Quantity};
+use hysid::diagnosis::cycles::{CycleRow, Field, Figure, FigureQuantity};
 use hysid_document::{Cell, Table};
 
 use super::Cycles;
@@ -33,7 +33,7 @@ pub fn shown(
             "energy" if cycles.table.field == Field::Magnet => "loss per cycle",
             _ => figure.label,
         };
-        let per = if figure.quantity == Quantity::Creep { " per decade" } else { "" };
+        let per = if figure.quantity == FigureQuantity::Creep { " per decade" } else { "" };
         let named = cycles.quantities.as_figure(own.trim_end_matches(per), figure.quantity);
         label(&named) + per
     };

@@ -100,7 +100,7 @@ fn losses(cycles: &Cycles) -> Option<String> {
     }
     let q = &cycles.quantities;
     let figure = |name: &str, quantity| text_label(&q.as_figure(name, quantity));
-    use hysid::diagnosis::cycles::Quantity::{Energy, Frequency, Input, Power};
+    use hysid::diagnosis::cycles::FigureQuantity::{Energy, Frequency, Input, Power};
     let mut table = Table::new([
         figure("amplitude", Input),
         figure("frequency", Frequency),

@@ -1,6 +1,6 @@
 //! The card of invertibility: the next output over the next input, after several pasts.
 
-use hysid::diagnosis::model::{Invertibility, Place, PlaceKind};
+use hysid::diagnosis::model::{Invertibility, NonMonotonePlace, PlaceKind};
 use hysid_document::chart::thin::Point;
 use hysid_document::{Card, Chart, Colour, Curve, unit};
 
@@ -55,7 +55,7 @@ fn overview(found: &Invertibility, quantities: &Quantities) -> Chart {
 }
 
 /// The worst scan alone.
-fn close(worst: &[Point], place: &Place, quantities: &Quantities) -> Chart {
+fn close(worst: &[Point], place: &NonMonotonePlace, quantities: &Quantities) -> Chart {
     let curves = marked(worst, place);
     chart("Next output over the next input where it is not monotone", curves, quantities)
         .with_legend([(Colour::Measured, "after the worst past"), (Colour::Error, mark(Some(place)))])
@@ -66,14 +66,14 @@ fn chart(description: &str, curves: Vec<Curve>, quantities: &Quantities) -> Char
     Chart::new(description, &next(&quantities.input), &next(&quantities.output), curves).sized(SIZE.0, SIZE.1)
 }
 
-fn mark(place: Option<&Place>) -> &'static str {
+fn mark(place: Option<&NonMonotonePlace>) -> &'static str {
     match place.map(|place| place.kind) {
         Some(PlaceKind::Jump) => "jump",
         _ => "goes back",
     }
 }
 
-fn marked(scan: &[Point], place: &Place) -> Vec<Curve> {
+fn marked(scan: &[Point], place: &NonMonotonePlace) -> Vec<Curve> {
     let (from, to) = place.inputs;
     let ends = [(from, place.outputs.0), (to, place.outputs.1)];
     let inside = scan.iter().copied().filter(|point| point.0 > from && point.0 < to);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use anyhow::Result;
 use hysid::Reference;
-use hysid_records::{Factors, Kind, Roles, column_of, places_of};
+use hysid_records::{CellNeed, Roles, UnitFactors, column_of, places_of};
 
 use hysid_tables::{CellReader, DecimalSign, Table};
 
@@ -40,21 +40,21 @@ impl WantedRecord {
 
 impl Wanted {
     /// Reads the columns of a table.
-    pub fn of(table: &Table, roles: &Roles, factors: &Factors) -> Result<Self> {
+    pub fn of(table: &Table, roles: &Roles, factors: &UnitFactors) -> Result<Self> {
         let mut cells = CellReader::new(table.numbers());
-        let mut read = |name: &String, factor: Option<f64>, kind: Kind| -> Result<Vec<f64>> {
+        let mut read = |name: &String, factor: Option<f64>, kind: CellNeed| -> Result<Vec<f64>> {
             let mut numbers = column_of(table, name, kind, &mut cells)?;
             if let Some(factor) = factor {
                 numbers.iter_mut().for_each(|number| *number *= factor);
             }
             Ok(numbers)
         };
-        let time = roles.time.as_ref().map(|name| read(name, factors.time, Kind::INPUT)).transpose()?;
+        let time = roles.time.as_ref().map(|name| read(name, factors.time, CellNeed::INPUT)).transpose()?;
         let inputs = roles.inputs.iter().zip(&factors.inputs);
         let others: Vec<Vec<f64>> =
-            inputs.map(|(name, &factor)| read(name, factor, Kind::INPUT)).collect::<Result<_>>()?;
-        let wanted = read(&roles.output, factors.output, Kind::WANTED)?;
-        let record = |place: hysid_records::Place| {
+            inputs.map(|(name, &factor)| read(name, factor, CellNeed::INPUT)).collect::<Result<_>>()?;
+        let wanted = read(&roles.output, factors.output, CellNeed::WANTED)?;
+        let record = |place: hysid_records::RecordPlace| {
             let cut = |column: &Vec<f64>| column[place.rows.clone()].to_vec();
             WantedRecord {
                 wanted: cut(&wanted),

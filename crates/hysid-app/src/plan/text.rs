@@ -1,6 +1,6 @@
 //! A plan on a terminal.
 
-use hysid::plan::{Kind, Plan};
+use hysid::plan::{Plan, SegmentKind};
 use hysid_document::plain::{WIDTH, indented, rendered, wrapped};
 use hysid_document::{Part, capitalised};
 
@@ -30,7 +30,7 @@ pub fn text(planned: &Planned<'_>) -> String {
 
 /// What each kind of segment adds, in the order of the drive.
 fn purposes(plan: &Plan) -> Vec<String> {
-    let mut kinds: Vec<Kind> = Vec::new();
+    let mut kinds: Vec<SegmentKind> = Vec::new();
     for segment in &plan.segments {
         if !kinds.contains(&segment.kind) {
             kinds.push(segment.kind);

@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use hysid::options::chosen::NamedOptions;
-use hysid::options::table::{FitOption, OPTIONS, Values};
+use hysid::options::table::{FitOption, OPTIONS, OptionValues};
 use serde_json::{Map, Value};
 
 /// Options of the short help of a command.
@@ -49,9 +49,9 @@ fn argument(option: &'static FitOption) -> Arg {
         .help_heading(option.group.heading())
         .hide_short_help(!IN_SHORT_HELP.contains(&option.name));
     match option.values {
-        Values::Flag => argument.action(ArgAction::SetTrue),
+        OptionValues::Flag => argument.action(ArgAction::SetTrue),
         // The short help has no room for all names.
-        Values::Names(names) => argument
+        OptionValues::Names(names) => argument
             .value_name(option.values.placeholder())
             .value_parser(by_name(names()))
             .hide_possible_values(true)
@@ -78,7 +78,7 @@ fn by_name(names: Vec<&'static str>) -> impl TypedValueParser<Value = Value> {
 
 fn value(option: &FitOption, matches: &ArgMatches) -> Option<Value> {
     match option.values {
-        Values::Flag => matches.get_flag(option.name).then_some(Value::Bool(true)),
+        OptionValues::Flag => matches.get_flag(option.name).then_some(Value::Bool(true)),
         _ => matches.get_one::<Value>(option.name).cloned(),
     }
 }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use hysid_records::MOST_ROWS_OF_ZERO;
-use hysid_tables::{DecimalSign, Delimiter, Encoding, Reading, RowSelection};
+use hysid_tables::{DecimalSign, Delimiter, Reading, RowSelection, TextEncoding};
 
 /// How tables are read.
 #[derive(Debug, Clone, Args, Default)]
@@ -30,7 +30,7 @@ pub struct ReadingOptions {
     pub missing: Vec<String>,
     /// Encoding of the text, such as utf-8, windows-1252 or shift_jis [default: detected]
     #[arg(long, value_name = "NAME", hide_short_help = true)]
-    pub encoding: Option<Encoding>,
+    pub encoding: Option<TextEncoding>,
     /// Sheet of a spreadsheet, by its name or number, or variable of a MATLAB file [default: the first sheet that is not empty; all variables]
     #[arg(long, value_name = "NAME", hide_short_help = true)]
     pub sheet: Option<String>,

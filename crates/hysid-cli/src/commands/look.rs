@@ -8,7 +8,7 @@ use hysid_app::data_warnings;
 use hysid_document::object;
 use hysid_files::{Destination, Kind};
 use hysid_records::csv_text;
-use hysid_records::{Data, Looked, Roles, understanding};
+use hysid_records::{Data, Roles, TableOverview, understanding};
 use serde::Serialize;
 
 use crate::Outcome;
@@ -27,7 +27,8 @@ pub fn run(arguments: &Look) -> Result<Outcome> {
     }
     let tables = read_tables(&arguments.files, &arguments.columns.reading)?;
     let roles = Roles::detect(&tables[0], &arguments.columns.choice());
-    let looked: Vec<Looked> = tables.iter().map(|table| Looked::of(table, roles.as_ref().ok())).collect();
+    let looked: Vec<TableOverview> =
+        tables.iter().map(|table| TableOverview::of(table, roles.as_ref().ok())).collect();
     let data = roles.and_then(|roles| data_with(tables, roles, arguments.columns.reading.zero));
     let (warnings, understood) = match &data {
         Ok(data) => {
@@ -52,7 +53,7 @@ pub fn run(arguments: &Look) -> Result<Outcome> {
 }
 
 /// The object that `--json` prints.
-fn printed(files: &[Looked], data: &Result<Data>, warnings: &[String]) -> impl Serialize {
+fn printed(files: &[TableOverview], data: &Result<Data>, warnings: &[String]) -> impl Serialize {
     object! {
         files: files,
         #[serde(skip_serializing_if = "hysid_document::is_nothing")]
@@ -68,8 +69,8 @@ fn printed(files: &[Looked], data: &Result<Data>, warnings: &[String]) -> impl S
 }
 
 /// The tables, and what was understood of the data as a whole.
-fn text(looked: &[Looked], understood: &[(String, String)]) -> String {
-    let mut text = looked.iter().map(Looked::text).collect::<Vec<_>>().join("\n");
+fn text(looked: &[TableOverview], understood: &[(String, String)]) -> String {
+    let mut text = looked.iter().map(TableOverview::text).collect::<Vec<_>>().join("\n");
     if !understood.is_empty() {
         text.push('\n');
     }

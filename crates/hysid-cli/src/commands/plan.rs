@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use hysid::data::summary::Summary;
-use hysid::plan::{MOST_ROWS, Plan, PlanOptions, Protocol, ProtocolOptions, Wanted};
+use hysid::plan::{LimitOptions, MOST_ROWS, Plan, PlanOptions, Protocol, ProtocolOptions};
 use hysid_files::{Destination, Kind};
 use hysid_records::header_line;
 use hysid_records::{Roles, understanding};
@@ -88,14 +88,14 @@ fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
 }
 
 /// The limits that are asked for; `step` is the time between rows, for a duration.
-fn wanted(arguments: &arguments::Plan, step: Option<f64>) -> Result<Wanted> {
+fn wanted(arguments: &arguments::Plan, step: Option<f64>) -> Result<LimitOptions> {
     let rows = arguments.duration.zip(step).map(|(duration, step)| duration / step + 1.0);
     if let Some(rows) = rows.filter(|rows| *rows > MOST_ROWS as f64) {
         return Err(
             Usage(format!("--duration takes {rows:.0} rows: at most {MOST_ROWS} are possible")).into()
         );
     }
-    Ok(Wanted {
+    Ok(LimitOptions {
         range: arguments.range,
         step: arguments.step,
         max_rate: arguments.max_rate,

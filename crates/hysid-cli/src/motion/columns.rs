@@ -2,11 +2,11 @@
 //! name and unit, accelerations never: only their user knows what they are relative to.
 
 use anyhow::{Result, anyhow, bail, ensure};
-use hysid::data::part::{Domain, Part};
 use hysid::data::unit;
+use hysid::data::usual_role::{Domain, UsualRole};
 use hysid::error::MotionColumn;
 use hysid_document::visible::{clipped, listed};
-use hysid_records::{Kind, Roles, Usage};
+use hysid_records::{CellNeed, Roles, Usage};
 use hysid_tables::{Table, is_record};
 
 use super::acceleration::of_acceleration;
@@ -23,8 +23,8 @@ pub const COLUMNS: [MotionColumn; 6] = [
 ];
 
 /// What is needed of the cells of a column.
-pub fn kind(column: MotionColumn) -> Kind {
-    let required = |if_no_number| Kind::Required {
+pub fn kind(column: MotionColumn) -> CellNeed {
+    let required = |if_no_number| CellNeed::Required {
         if_blank: "time, displacement and velocity need a number in every row; choose rows with --rows",
         if_no_number: Some(if_no_number),
     };
@@ -33,7 +33,7 @@ pub fn kind(column: MotionColumn) -> Kind {
         MotionColumn::Displacement => required("not the displacement? name it with --displacement"),
         MotionColumn::Velocity => required("not the velocity? name it with --velocity"),
         MotionColumn::Acceleration | MotionColumn::BaseAcceleration | MotionColumn::AppliedForce => {
-            Kind::Optional
+            CellNeed::Optional
         }
     }
 }
@@ -86,8 +86,9 @@ impl MotionColumns {
             Some(displacement) => displacement,
             None => {
                 guessed.push("displacement, from its name or unit (change: --displacement)");
-                let found =
-                    free.iter().filter(|name| Part::of(name) == Some(Part::Drives(Domain::Mechanics)));
+                let found = free
+                    .iter()
+                    .filter(|name| UsualRole::of(name) == Some(UsualRole::Drives(Domain::Mechanics)));
                 only(table, found.map(|name| (*name).clone()).collect(), "displacement", "--displacement")?
             }
         };
@@ -248,9 +249,11 @@ fn applied_force(table: &Table, mut found: Vec<String>, has_inertia: bool) -> Re
 }
 
 fn is_force(name: &str) -> bool {
-    match Part::of(name) {
-        Some(Part::Follows(Domain::Mechanics)) => true,
-        Some(Part::Excites) => unit::of_column(name).is_none_or(|unit| unit::factor(&unit, "N").is_some()),
+    match UsualRole::of(name) {
+        Some(UsualRole::Follows(Domain::Mechanics)) => true,
+        Some(UsualRole::Excites) => {
+            unit::of_column(name).is_none_or(|unit| unit::factor(&unit, "N").is_some())
+        }
         _ => false,
     }
 }

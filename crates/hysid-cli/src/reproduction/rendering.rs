@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use hysid_document::{Cell, Item, Page, Part, Piece, Table, Text, capitalised};
-use hysid_paper::{Chapter, Target, targets};
+use hysid_paper::{Chapter, ChapterTarget, targets};
 
 /// Header line of [`csv`].
 pub const CSV_HEADER: &str = "experiment,table,row,column,value\n";
@@ -45,7 +45,7 @@ fn targets_sections(chapters: &[Chapter]) -> Vec<Part> {
 
 /// The targets as a terminal shows them, which has no room for their tables.
 pub fn targets_list(chapters: &[Chapter]) -> Vec<Part> {
-    let item = |(chapter, target): (&Chapter, &Target)| {
+    let item = |(chapter, target): (&Chapter, &ChapterTarget)| {
         let several =
             target.several.as_ref().map_or(String::new(), |it| format!("; median of networks {it}"));
         let text = format!(

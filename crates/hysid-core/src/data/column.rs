@@ -3,8 +3,8 @@
 
 mod words;
 
-use crate::data::part::{Domain, Part};
 use crate::data::unit;
+use crate::data::usual_role::{Domain, UsualRole};
 
 /// Least number of values from which a course is found.
 const FEWEST: usize = 10;
@@ -78,7 +78,7 @@ pub fn one_signal(a: &[f64], b: &[f64]) -> Option<f64> {
     (correlation.abs() >= ONE_SIGNAL).then_some(correlation)
 }
 
-impl Part {
+impl UsualRole {
     /// The role that the name and unit of a column indicate; `None` if they indicate none.
     pub fn of(name: &str) -> Option<Self> {
         let (quantity, unit) = unit::split(name);
@@ -145,7 +145,8 @@ mod tests {
 
     #[test]
     fn forces_follow_displacements() {
-        let swapped = |input: &str, output: &str| Part::are_swapped(Part::of(input), Part::of(output));
+        let swapped =
+            |input: &str, output: &str| UsualRole::are_swapped(UsualRole::of(input), UsualRole::of(output));
         let pairs = |text: &'static str| text.split("; ").map(|pair| pair.split_once(" | ").unwrap());
         for (drives, follows) in pairs(
             "disp_mm | force_kN; x_mm | F_N; strain_true | stress_true_MPa; Weg [mm] | Kraft [kN]; \
@@ -162,12 +163,12 @@ mod tests {
             assert!(swapped(input, output), "{input} {output}");
             assert!(!swapped(output, input), "{output} {input}");
         }
-        assert_eq!(Part::of("Temperature [°C]"), Some(Part::Accompanies));
-        assert_eq!(Part::of("T_K"), Some(Part::Accompanies));
+        assert_eq!(UsualRole::of("Temperature [°C]"), Some(UsualRole::Accompanies));
+        assert_eq!(UsualRole::of("T_K"), Some(UsualRole::Accompanies));
         // The unit decides.
-        assert_eq!(Part::of("Spannung"), None);
-        assert_eq!(Part::of("Spannung [MPa]"), Some(Part::Follows(Domain::Mechanics)));
-        assert_eq!(Part::of("Spannung [V]"), Some(Part::Drives(Domain::Electricity)));
+        assert_eq!(UsualRole::of("Spannung"), None);
+        assert_eq!(UsualRole::of("Spannung [MPa]"), Some(UsualRole::Follows(Domain::Mechanics)));
+        assert_eq!(UsualRole::of("Spannung [V]"), Some(UsualRole::Drives(Domain::Electricity)));
         for (input, output) in pairs(
             "u_V | y_um; x | y; H_fit_V | B_V_us; excitation_force_N | displacement_m; \
              Anregung [N] | Weg [mm]; 加振力(N) | 変位(mm); excitation [V] | current [A]",

@@ -18,7 +18,7 @@
 
 /// A column of the signal and the limits of its polyline, in the column's unit.
 #[derive(Debug, Clone, Copy)]
-pub struct Column<'a> {
+pub struct PolylineColumn<'a> {
     /// The value at each row.
     pub values: &'a [f64],
     /// Largest distance of the polyline from a value.
@@ -27,7 +27,7 @@ pub struct Column<'a> {
     pub longest: f64,
 }
 
-impl Column<'_> {
+impl PolylineColumn<'_> {
     fn slope(&self, anchor: usize, row: usize, elapsed: f64) -> f64 {
         (self.values[row] - self.values[anchor]) / elapsed
     }
@@ -35,12 +35,12 @@ impl Column<'_> {
 
 /// Interval of slopes of lines from the last kept row that pass all later rows within the tolerance.
 #[derive(Debug, Clone, Copy)]
-struct Opening {
+struct SlopeInterval {
     low: f64,
     high: f64,
 }
 
-const OPEN: Opening = Opening { low: f64::NEG_INFINITY, high: f64::INFINITY };
+const OPEN: SlopeInterval = SlopeInterval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
 /// Indices of the kept rows: the first row, the last, every row that is `needed`, and those of a polyline that deviates
 /// from every row by at most the tolerances.
@@ -48,7 +48,7 @@ const OPEN: Opening = Opening { low: f64::NEG_INFINITY, high: f64::INFINITY };
 /// `step(row)` is the time since the row before, or 1 without time. Both rows of a step that is infinite, NaN or not
 /// positive are kept.
 pub fn polyline(
-    columns: &[Column],
+    columns: &[PolylineColumn],
     step: impl Fn(usize) -> f64,
     needed: impl Fn(usize) -> bool,
 ) -> Vec<usize> {
@@ -121,8 +121,8 @@ mod tests {
     use crate::elementary::{cos, sin};
     use crate::random::uniform;
 
-    fn column(values: &[f64], tolerance: f64) -> Column<'_> {
-        Column { values, tolerance, longest: f64::INFINITY }
+    fn column(values: &[f64], tolerance: f64) -> PolylineColumn<'_> {
+        PolylineColumn { values, tolerance, longest: f64::INFINITY }
     }
 
     /// Largest distance between a signal and the polyline through some of its rows, at these times.
@@ -160,7 +160,7 @@ mod tests {
         let zigzag: Vec<f64> = (0..1001).map(|k| (f64::from(k % 200) - 100.0).abs()).collect();
         let rows = polyline(&[column(&zigzag, 1e-9)], |_| 1.0, |_| false);
         assert_eq!(rows, (0..=10).map(|k| 100 * k).collect::<Vec<_>>());
-        let short = Column { longest: 10.0, ..column(&zigzag, 1e-9) };
+        let short = PolylineColumn { longest: 10.0, ..column(&zigzag, 1e-9) };
         let rows = polyline(&[short], |_| 1.0, |_| false);
         assert_eq!(rows, (0..=100).map(|k| 10 * k).collect::<Vec<_>>());
     }

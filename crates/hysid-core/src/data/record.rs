@@ -16,11 +16,11 @@ use crate::data::initial_state::lead_in_of_period;
 use crate::data::likeness::Likeness;
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, Result};
-pub use copies::{Copy, copies, likeness};
+pub use copies::{RecordCopy, copies, likeness};
 pub use excitation::Excitation;
 pub use fingerprint::Fingerprint;
-pub use protocols::{Difference, Protocol, protocols};
-pub use speeds::Speeds;
+pub use protocols::{ProtocolDifference, RepeatedProtocol, protocols};
+pub use speeds::SpeedEvidence;
 pub use thinning::Thinning;
 pub use values::Values;
 

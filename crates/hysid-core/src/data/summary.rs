@@ -1,6 +1,6 @@
 //! Summary of a data set, before a fit.
 
-use crate::data::record::{Copy, Dataset, Record, copies};
+use crate::data::record::{Dataset, Record, RecordCopy, copies};
 use crate::data::turning_points::turning_points;
 use crate::data::warning::Warning;
 use crate::elementary::square;
@@ -14,7 +14,7 @@ const FEW_TURNING_POINTS: usize = 2;
 /// Ratio of the longest to the shortest time step of a record above which there is a warning.
 const WILD_STEPS: f64 = 100.0;
 
-/// What a data set contains.
+/// Counts and ranges of a data set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// Rows.
@@ -80,7 +80,7 @@ impl Summary {
             }
         }
         let records = data.records();
-        let copies = copies(records).into_iter().map(|Copy { copy, of, likeness }| {
+        let copies = copies(records).into_iter().map(|RecordCopy { copy, of, likeness }| {
             let [copy, of] = [copy, of].map(|place| records[place].name().to_string());
             Warning::SameMeasurement { copy, of, likeness }
         });

@@ -3,10 +3,10 @@
 mod derived;
 mod quantity;
 
-use crate::data::part::Part;
+use crate::data::usual_role::UsualRole;
 use crate::elementary::{log10, powi};
 pub use derived::{energy, power, pure_quotient, quotient};
-use quantity::Quantity;
+use quantity::UnitQuantity;
 
 /// Known units that are no multiples of others: a temperature in degrees Celsius has another zero.
 const OTHER: [&str; 1] = ["degC"];
@@ -26,11 +26,11 @@ const FURTHER_TIME_NAMES: &str = "timestamp elapsed elapsedtime timeelapsed test
 const TIME_WORDS: [&str; 6] = ["time", "zeit", "temps", "tiempo", "tempo", "время"];
 
 /// The usual role of a quantity with this unit in hysteresis, if it has one.
-pub(crate) fn part(unit: &str) -> Option<Part> {
+pub(crate) fn part(unit: &str) -> Option<UsualRole> {
     if OTHER.contains(&unit) || OTHER_ALONE.contains(&unit) && unit != "n.u." {
-        return Some(Part::Accompanies);
+        return Some(UsualRole::Accompanies);
     }
-    Quantity::of(unit)?.part()
+    UnitQuantity::of(unit)?.part()
 }
 
 /// Conversion of a column from one unit to another.
@@ -51,7 +51,7 @@ impl Conversion {
         if from == to {
             return Self::Same;
         }
-        match (Quantity::of(&from), Quantity::of(&to)) {
+        match (UnitQuantity::of(&from), UnitQuantity::of(&to)) {
             (Some(from), Some(to)) if from.dimension == to.dimension => match from.factor / to.factor {
                 // Such as `us` and `µs`.
                 1.0 => Self::Same,
@@ -65,7 +65,7 @@ impl Conversion {
 
 /// The factor from one unit to another; `None` if a unit is unknown or of another quantity.
 pub fn factor(from: &str, to: &str) -> Option<f64> {
-    let (from, to) = (Quantity::of(from)?, Quantity::of(to)?);
+    let (from, to) = (UnitQuantity::of(from)?, UnitQuantity::of(to)?);
     (from.dimension == to.dimension).then(|| rounded(from.factor / to.factor))
 }
 
@@ -82,7 +82,7 @@ pub fn of_column(name: &str) -> Option<String> {
 
 /// True for a text that is a known unit and nothing else, such as `kN`, `A/m` or `°C`.
 pub fn is_unit(text: &str) -> bool {
-    OTHER.contains(&text) || OTHER_ALONE.contains(&text) || Quantity::of(text).is_some()
+    OTHER.contains(&text) || OTHER_ALONE.contains(&text) || UnitQuantity::of(text).is_some()
 }
 
 /// True for `t`, `time`, and either with a unit of time.
@@ -107,7 +107,7 @@ fn is_named_time(name: &str, names: &str) -> bool {
 }
 
 fn is_in_unit_of_time(unit: Option<&str>) -> bool {
-    let quantity = unit.and_then(Quantity::of);
+    let quantity = unit.and_then(UnitQuantity::of);
     quantity.is_some_and(|quantity| quantity.dimension == quantity::TIME)
 }
 
@@ -174,7 +174,7 @@ fn is_known(unit: &str) -> bool {
 }
 
 fn is_length(unit: &str) -> bool {
-    is_known(unit) && Quantity::of(unit).is_some_and(|quantity| quantity.dimension == quantity::LENGTH)
+    is_known(unit) && UnitQuantity::of(unit).is_some_and(|quantity| quantity.dimension == quantity::LENGTH)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use super::error_free::polynomial;
-use super::quarter_turns::{FAR, Turned, turned_far, turned_near};
+use super::quarter_turns::{FAR, ReducedAngle, turned_far, turned_near};
 
 /// `S(z)`: Chebyshev interpolation of degree 6 on `z <= (π/4)²`, computed with 120 digits; its error is 1.2e-20.
 const SINE: [f64; 7] = [
@@ -62,7 +62,7 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
 /// The sine of an angle and some quarter turns more. Both functions are computed, which is quicker than a branch that
 /// no processor can predict.
 #[inline(always)]
-fn of_turned(turned: &Turned, more: u64) -> f64 {
+fn of_turned(turned: &ReducedAngle, more: u64) -> f64 {
     let quarters = turned.quarters.wrapping_add(more);
     let (sine, cosine) = (sine(turned.r, turned.rest), cosine(turned.r, turned.rest));
     let is_odd = (quarters & 1).wrapping_neg();

@@ -32,8 +32,8 @@ const CUBE_AND_UP: [f64; 6] = [
     0.3333333333333391,
 ];
 
-/// What the logarithm of a number is computed from.
-pub(super) struct Reduced {
+/// Reduced argument of a logarithm.
+pub(super) struct ReducedArgument {
     /// `k`
     pub exponent: f64,
     /// `ln c`, as a sum
@@ -63,9 +63,9 @@ pub(super) fn exponent_and_fraction(x: f64) -> (i64, f64) {
     (exponent, f64::from_bits(bits.wrapping_sub((exponent as u64) << 52)))
 }
 
-/// What the logarithm of `2^exponent z` is computed from.
+/// Reduces `2^exponent z` for its logarithm.
 #[inline(always)]
-pub(super) fn reduced(exponent: i64, z: f64) -> Reduced {
+pub(super) fn reduced(exponent: i64, z: f64) -> ReducedArgument {
     let shifted = z + ROUND;
     let c = shifted - ROUND;
     let [inverse, ln_c, rest] = LOGARITHMS[((shifted.to_bits() & 127) - 46) as usize];
@@ -73,10 +73,10 @@ pub(super) fn reduced(exponent: i64, z: f64) -> Reduced {
     let quotient = difference * inverse;
     let (u, _) = halves(quotient);
     let rest_of_u = (difference - u * c) * inverse;
-    Reduced { exponent: exponent as f64, ln_c: [ln_c, rest], u: (u, rest_of_u), quotient, inverse }
+    ReducedArgument { exponent: exponent as f64, ln_c: [ln_c, rest], u: (u, rest_of_u), quotient, inverse }
 }
 
-impl Reduced {
+impl ReducedArgument {
     #[inline(always)]
     pub fn ln(&self) -> f64 {
         let (u_1, u_2) = self.u;

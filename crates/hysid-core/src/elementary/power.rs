@@ -4,7 +4,7 @@
 
 use super::error_free::{halves, ordered_sum};
 use super::exponential::{power_of_two, scaled_exp};
-use super::logarithm::{LN_2, Reduced, exponent_and_fraction, is_normal, reduced};
+use super::logarithm::{LN_2, ReducedArgument, exponent_and_fraction, is_normal, reduced};
 
 /// `g(u)` of the logarithm: Chebyshev interpolation of degree 6 on `|u| <= 0.0109`, computed with 120 digits; its error is
 /// 3e-17.
@@ -95,7 +95,7 @@ fn of_positive((exponent, z): (i64, f64), y: f64) -> f64 {
 
 /// The logarithm as a sum: its leading 26 bits, and the rest.
 #[inline(always)]
-fn accurate_ln(reduced: &Reduced) -> (f64, f64) {
+fn accurate_ln(reduced: &ReducedArgument) -> (f64, f64) {
     let (u_1, u_2) = reduced.u;
     let (head, error) = ordered_sum(reduced.exponent * LN_2[0] + reduced.ln_c[0], u_1);
     // u_1 has so few bits that its square is exact.

@@ -3,7 +3,7 @@
 use super::error_free::{ROUND, ordered_sum, product, sum};
 
 /// An angle within an eighth of a turn of a multiple of quarter turns.
-pub(super) struct Turned {
+pub(super) struct ReducedAngle {
     /// `n`, up to multiples of 4
     pub quarters: u64,
     /// `r`, and what rounding to `r` left.
@@ -51,7 +51,7 @@ static DIGITS: [u64; 21] = [
 
 /// Divides an angle below [`FAR`].
 #[inline(always)]
-pub(super) fn turned_near(x: f64) -> Turned {
+pub(super) fn turned_near(x: f64) -> ReducedAngle {
     let shifted = x * INVERSE + ROUND;
     let n = shifted - ROUND;
     let (r, error) = sum(x - n * QUARTER[0], -n * QUARTER[1]);
@@ -61,14 +61,14 @@ pub(super) fn turned_near(x: f64) -> Turned {
         let (r, second_error) = sum(r, -n * QUARTER[2]);
         ordered_sum(r, error + second_error - n * QUARTER[3])
     };
-    Turned { quarters: shifted.to_bits(), r, rest }
+    ReducedAngle { quarters: shifted.to_bits(), r, rest }
 }
 
 /// Divides any angle, with those digits of `2/π` whose products with `x` are neither multiples of 4 nor far below a
 /// rounding error; `r` is NaN for an angle that is not finite.
-pub(super) fn turned_far(x: f64) -> Turned {
+pub(super) fn turned_far(x: f64) -> ReducedAngle {
     if !x.is_finite() {
-        return Turned { quarters: 0, r: f64::NAN, rest: 0.0 };
+        return ReducedAngle { quarters: 0, r: f64::NAN, rest: 0.0 };
     }
     let bits = x.to_bits();
     // |x| = mantissa 2^exponent
@@ -89,7 +89,11 @@ pub(super) fn turned_far(x: f64) -> Turned {
     let (r, rest) = angle(if is_above { fraction.wrapping_neg() } else { fraction });
     let is_negative = is_above != (x < 0.0);
     let quarters = if x < 0.0 { quarters.wrapping_neg() } else { quarters };
-    if is_negative { Turned { quarters, r: -r, rest: -rest } } else { Turned { quarters, r, rest } }
+    if is_negative {
+        ReducedAngle { quarters, r: -r, rest: -rest }
+    } else {
+        ReducedAngle { quarters, r, rest }
+    }
 }
 
 /// 64 digits of `2/π` from a place on.

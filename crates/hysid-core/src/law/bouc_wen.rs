@@ -33,7 +33,7 @@ pub use degradation::Degradation;
 /// Longest part of the input in one step of Runge and Kutta, in yield displacements, at quickness 1.
 const LONGEST_PART: f64 = 0.1;
 
-/// After so many yield displacements in one direction `z` does not change any more.
+/// Yield displacements in one direction after which `z` does not change any more.
 const SATURATED: f64 = 60.0;
 
 /// From here on `z` does not grow any more, to rounding.
@@ -165,7 +165,7 @@ impl BoucWen {
         }
     }
 
-    /// Moves up by so many parts, or until the yield force is reached.
+    /// Moves up by `parts` parts, or until the yield force is reached.
     fn constant_upwards(&self, inner: Inner, part: f64, parts: usize) -> Inner {
         let mut inner = inner;
         for _ in 0..parts {
@@ -193,6 +193,7 @@ impl BoucWen {
                 && hardly_moves
                 && inner.z > 0.0
                 && let Some((followed, way)) = degradation.follow(self.n, inner, left)
+            // (8.52)
             {
                 (inner, left) = (followed, left - way);
             }
@@ -209,12 +210,13 @@ impl BoucWen {
             let m = 2.0 * self.b - 1.0;
             let to_zero = if m.abs() < 1e-9 { -z } else { ln_1p(-m * z) / m };
             if by < to_zero {
+                // (8.7) for ζ_0 < 0
                 let way = if m.abs() < 1e-9 { by } else { -exp_m1(-m * by) / m };
                 return (z * exp(-m * by) + way).min(0.0);
             }
             (z, by) = (0.0, by - to_zero);
         }
-        1.0 - (1.0 - z) * exp(-by)
+        1.0 - (1.0 - z) * exp(-by) // (8.7) for ζ_0 ≥ 0
     }
 
     /// How much faster than `x/z_u` the element comes to rest at its yield force.
@@ -254,6 +256,7 @@ impl BoucWen {
         let slope = |z: f64| {
             let share = if z < 0.0 { 1.0 - 2.0 * self.b } else { 1.0 };
             let softening = powf(z.abs(), self.n) * share;
+            // (8.5), or (8.6)
             properties.as_ref().map_or(1.0 - softening, |properties| properties.slope(z, softening))
         };
         // (8.5) and (8.6) keep |z| ≤ 1; this keeps the numbers there as well, whatever the part.
@@ -265,6 +268,7 @@ impl BoucWen {
         let k3 = slope(z3);
         let z4 = within(start.z + by * k3);
         let end = start.z + by * (k1 + 2.0 * (k2 + k3) + slope(z4)) / 6.0;
+        // (8.8), by Simpson's rule
         let work = if properties.is_some() { by * (start.z + 2.0 * (z2 + z3) + z4) / 6.0 } else { 0.0 };
         Inner { z: within(end), e: degradation::limited(start.e + work) }
     }
@@ -291,6 +295,7 @@ impl Law for BoucWen {
     fn step(&self, state: &mut BoucWenState, sample: Sample) -> f64 {
         let sample = sample.limited();
         let z = self.advance(state, sample.x);
+        // (8.4)
         self.offset
             + self.elastic_stiffness * sample.x
             + self.hysteretic_stiffness * (self.yield_displacement * z)

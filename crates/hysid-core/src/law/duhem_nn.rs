@@ -35,9 +35,9 @@ use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 use crate::simd;
 
-pub use cell::{Cell, Input, Memory, Shape};
-pub use parameters::Layout;
-pub use sensitivities::Run;
+pub use cell::{Cell, CellMemory, CellShape, Input};
+pub use parameters::CellLayout;
+pub use sensitivities::CellRun;
 
 /// Largest number of tanh neurons and of stops: the memory of a fit grows with the square of their product.
 pub const MOST_NEURONS: usize = 100;
@@ -82,13 +82,13 @@ impl DuhemNn {
     }
 }
 
-struct Step<'a> {
+struct CellStep<'a> {
     cell: &'a Cell,
-    memory: &'a mut Memory,
+    memory: &'a mut CellMemory,
     input: Input,
 }
 
-impl WithSimd for Step<'_> {
+impl WithSimd for CellStep<'_> {
     type Output = f64;
 
     #[inline(always)]
@@ -99,7 +99,7 @@ impl WithSimd for Step<'_> {
 }
 
 impl Law for DuhemNn {
-    type State = Memory;
+    type State = CellMemory;
 
     const FACTS: Facts = Facts {
         rate: Rate::Optional,
@@ -120,13 +120,13 @@ impl Law for DuhemNn {
         })
     };
 
-    fn virgin(&self) -> Memory {
+    fn virgin(&self) -> CellMemory {
         self.cell.memory()
     }
 
-    fn step(&self, memory: &mut Memory, sample: Sample) -> f64 {
+    fn step(&self, memory: &mut CellMemory, sample: Sample) -> f64 {
         let input = self.scaled(sample);
-        let y = simd::run(Step { cell: &self.cell, memory, input });
+        let y = simd::run(CellStep { cell: &self.cell, memory, input });
         self.output_mean + self.output_scale * y
     }
 

@@ -141,11 +141,12 @@ impl Law for DynamicPrandtlIshlinskii {
         let mut u = sample.x;
         if let Some(time_constant) = self.lag {
             state.lag = advance(state.lag, risen, decay(time_step, time_constant));
-            u -= state.lag;
+            u -= state.lag; // (8.53)
         }
+        // (8.54)
         let mut m = self.plays.step(&mut state.plays, Sample { x: u, ..sample });
         for zone in &self.dead_zones {
-            m += zone.weight * dead_zone(u, zone.threshold);
+            m += zone.weight * dead_zone(u, zone.threshold); // (8.54)
         }
         let m_risen = if state.has_begun { m - m_before } else { 0.0 };
         let [of_plays, of_input] = &mut state.stresses;
@@ -153,17 +154,17 @@ impl Law for DynamicPrandtlIshlinskii {
         let mut beside = self.direct * sample.x;
         for ((relaxation, stress), input_stress) in self.relaxations.iter().zip(of_plays).zip(of_input) {
             let factors = decay(time_step, relaxation.time_constant);
-            *stress = advance(*stress, m_risen, factors);
-            *input_stress = advance(*input_stress, risen, factors);
-            f += relaxation.share * *stress;
-            beside += relaxation.input_weight * *input_stress;
+            *stress = advance(*stress, m_risen, factors); // (1.11)
+            *input_stress = advance(*input_stress, risen, factors); // (1.11)
+            f += relaxation.share * *stress; // (8.55)
+            beside += relaxation.input_weight * *input_stress; // (8.57)
         }
         let mut y = f;
         if let Some(resonance) = self.resonance {
             state.motion = if state.has_begun {
                 let length = if time_step > 0.0 { time_step } else { 0.0 };
                 let step = Propagation::new(resonance.frequency, resonance.damping, length);
-                step.moved(state.motion, [f_before, f])
+                step.moved(state.motion, [f_before, f]) // (8.56), by (15.3) and (15.4)
             } else {
                 [f, 0.0]
             };
@@ -171,7 +172,7 @@ impl Law for DynamicPrandtlIshlinskii {
         }
         state.before = [sample.x, m, f];
         state.has_begun = true;
-        y + beside
+        y + beside // (8.57)
     }
 
     fn work_of_row(&self, _: f64, _: f64) -> f64 {

@@ -5,7 +5,7 @@
 pub struct Facts {
     /// The name on the command line and in model files.
     pub name: &'static str,
-    /// What the law is, in a few words.
+    /// Summary of the law, in a few words.
     pub summary: &'static str,
     /// Whether the rate of the input is in its equations.
     pub rate: Rate,

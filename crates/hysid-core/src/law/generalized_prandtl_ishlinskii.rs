@@ -47,7 +47,7 @@ impl Envelope {
     /// The envelope at an input.
     #[inline]
     pub fn value(&self, x: f64) -> f64 {
-        self.a0 * tanh(self.a1 * x + self.a2) + self.a3
+        self.a0 * tanh(self.a1 * x + self.a2) + self.a3 // (8.13)
     }
 
     fn parameters(&self, side: char) -> [Parameter; 4] {
@@ -66,7 +66,7 @@ impl Envelope {
 /// The next value of a play: `max(left - r, min(right + r, play))` between the envelopes (theory.md (8.12)).
 #[inline(always)]
 pub fn follow(play: f64, left: f64, right: f64, r: f64) -> f64 {
-    (left - r).max((right + r).min(play))
+    (left - r).max((right + r).min(play)) // (8.12)
 }
 
 /// A generalized Prandtl-Ishlinskii model in the user's units: `y = c + Σ_j p(r_j) S_j` (theory.md (8.14)).
@@ -127,7 +127,7 @@ impl Law for GeneralizedPrandtlIshlinskii {
         self.weights.for_each(self.spacing, 0, |index, weight| {
             let play = &mut state[index];
             *play = follow(*play, left, right, r);
-            y += weight * *play;
+            y += weight * *play; // (8.14)
             r = self.spacing * (index + 1) as f64;
         });
         y

@@ -40,10 +40,10 @@ use crate::simd;
 
 pub use element::Element;
 pub use hold::Hold;
-pub use parameters::{Form, Layout};
+pub use parameters::{DynamicsForm, DynamicsLayout};
 pub use propagation::Propagation;
-pub use sensitivities::{Drive, Run};
-pub use trial::Motion;
+pub use sensitivities::{DynamicsDrive, DynamicsRun};
+pub use trial::DynamicsMotion;
 
 /// Largest number of modes, of elements and of states of an element.
 pub const MOST_PARTS: usize = 10;
@@ -93,7 +93,7 @@ pub struct Mode {
 
 /// Numbers of the parts of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shape {
+pub struct ElementShape {
     /// Stops.
     pub stops: usize,
     /// States that move along the path of the displacement.
@@ -105,7 +105,7 @@ pub struct Shape {
     pub deteriorates: bool,
 }
 
-impl Shape {
+impl ElementShape {
     /// Number of inputs of the tanh layer, the constant included.
     pub fn inputs(self) -> usize {
         3 + self.stops + self.states
@@ -145,13 +145,13 @@ pub struct Dynamics {
     pub elements: Vec<Element>,
 }
 
-struct Row<'a> {
+struct DynamicsStep<'a> {
     dynamics: &'a Dynamics,
-    motion: &'a mut Motion,
+    motion: &'a mut DynamicsMotion,
     sample: Sample,
 }
 
-impl WithSimd for Row<'_> {
+impl WithSimd for DynamicsStep<'_> {
     type Output = f64;
 
     #[inline(always)]
@@ -164,13 +164,13 @@ impl WithSimd for Row<'_> {
 
 impl Dynamics {
     /// At rest before the first sample.
-    pub(crate) fn virgin(&self) -> Motion {
-        Motion::virgin(self)
+    pub(crate) fn virgin(&self) -> DynamicsMotion {
+        DynamicsMotion::virgin(self)
     }
 
     /// Goes to the next sample and returns the output there, in its unit.
-    pub(crate) fn step(&self, motion: &mut Motion, sample: Sample) -> f64 {
-        let y = simd::run(Row { dynamics: self, motion, sample });
+    pub(crate) fn step(&self, motion: &mut DynamicsMotion, sample: Sample) -> f64 {
+        let y = simd::run(DynamicsStep { dynamics: self, motion, sample });
         self.output_offset + self.output_scale * y
     }
 
@@ -188,7 +188,7 @@ impl Dynamics {
     /// Elementary operations of a row of so much time, roughly and at most: each step evaluates the elements several times.
     pub(crate) fn work_of_row(&self, time: f64) -> f64 {
         let of_element = |element: &Element| {
-            let Shape { neurons, .. } = element.shape();
+            let ElementShape { neurons, .. } = element.shape();
             10 * self.modes.len() + 20 * (1 + neurons) + 2 * element.layer.len()
         };
         let of_step =
@@ -197,8 +197,8 @@ impl Dynamics {
     }
 
     /// The free parameters in this form, with their symbols, in scaled units where they have no unit of their own.
-    pub(crate) fn parameters(&self, form: Form) -> Vec<Parameter> {
-        let is_general = form == Form::StateSpace;
+    pub(crate) fn parameters(&self, form: DynamicsForm) -> Vec<Parameter> {
+        let is_general = form == DynamicsForm::StateSpace;
         let is_coupled = is_general || self.modes.len() > 1;
         let any = (-LARGEST_WEIGHT, LARGEST_WEIGHT);
         let positive = (f64::MIN_POSITIVE, LARGEST_VALUE);
@@ -288,11 +288,11 @@ impl Dynamics {
                 "the tanh neurons beside stops that deteriorate have a constant, whose weights must be 0",
             );
         }
-        Parameter::check_all(&self.parameters(Form::StateSpace), law)
+        Parameter::check_all(&self.parameters(DynamicsForm::StateSpace), law)
     }
 }
 
-/// Defaults of a law with so many modes: memory states, or deteriorating stops for elements with degradation.
+/// Defaults of a law with this number of modes: memory states, or deteriorating stops for elements with degradation.
 pub(super) const fn defaults(modes: usize, degradation: bool) -> Defaults {
     let search = Defaults { modes, starts: 4, epochs: 200, ..Defaults::SEARCHED };
     match degradation {
@@ -306,7 +306,7 @@ pub(super) const fn defaults(modes: usize, degradation: bool) -> Defaults {
 macro_rules! law_of_dynamics {
     ($law:ident, $form:expr, $modes:literal, $words:literal, $name:literal, $summary:literal) => {
         impl $crate::law::Law for $law {
-            type State = $crate::law::hysteretic_dynamics::Motion;
+            type State = $crate::law::hysteretic_dynamics::DynamicsMotion;
 
             const FACTS: $crate::law::facts::Facts = $crate::law::facts::Facts {
                 needs_time: true,

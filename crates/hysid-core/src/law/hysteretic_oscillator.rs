@@ -10,12 +10,12 @@
 //! displacement; with several each element is between masses that the identification finds.
 //!
 //! For a force as input, `C = b σ`, divided by the scale of the input, is the compliance of a mode and `1/(C ω²)` its mass.
-//! For a voltage or an acceleration the data do not tell the mass. The stiffness `1/C` is not unique either, because `r`
+//! For a voltage or an acceleration the data do not give the mass. The stiffness `1/C` is not unique either, because `r`
 //! may contain an elastic part.
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::hysteretic_dynamics::{Dynamics, Form, law_of_dynamics};
+use crate::law::hysteretic_dynamics::{Dynamics, DynamicsForm, law_of_dynamics};
 
 /// A hysteretic oscillator in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,6 +23,6 @@ use crate::law::hysteretic_dynamics::{Dynamics, Form, law_of_dynamics};
 pub struct HystereticOscillator(pub Dynamics);
 
 law_of_dynamics! {
-    HystereticOscillator, Form::Oscillator, 1, "hysteretic oscillator",
+    HystereticOscillator, DynamicsForm::Oscillator, 1, "hysteretic oscillator",
     "hysteretic-oscillator", "masses on springs and dampers with hysteretic elements, for data with a resonance; needs time"
 }

@@ -12,7 +12,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::hysteretic_dynamics::{Dynamics, Form, law_of_dynamics};
+use crate::law::hysteretic_dynamics::{Dynamics, DynamicsForm, law_of_dynamics};
 
 /// A hysteretic state space model in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -20,6 +20,6 @@ use crate::law::hysteretic_dynamics::{Dynamics, Form, law_of_dynamics};
 pub struct HystereticStateSpace(pub Dynamics);
 
 law_of_dynamics! {
-    HystereticStateSpace, Form::StateSpace, 2, "hysteretic state space model",
+    HystereticStateSpace, DynamicsForm::StateSpace, 2, "hysteretic state space model",
     "hysteretic-state-space", "linear state space model with hysteretic elements, for data with a resonance; needs time"
 }

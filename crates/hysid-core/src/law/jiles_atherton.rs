@@ -32,7 +32,7 @@ const LONGEST_PART: f64 = 0.05;
 /// Parts of a single step of the input at most.
 const MOST_PARTS: f64 = 4000.0;
 
-/// Beyond so many times `a + k + α M_s` the material is saturated and nothing more is computed.
+/// Multiple of `a + k + α M_s` beyond which the material is saturated and nothing more is computed.
 const SATURATED: f64 = 300.0;
 
 /// Least `k - α|M_an - M|` as a share of `k` (theory.md (8.25)).
@@ -131,19 +131,20 @@ impl JilesAtherton {
 
     /// `d(M/M_s)/dH` on the way up; never negative.
     fn slope(&self, h: f64, m: f64) -> f64 {
-        let (langevin, steepness) = langevin((h + self.coupling() * m) / self.a);
+        let (langevin, steepness) = langevin((h + self.coupling() * m) / self.a); // (8.22)
         let anhysteretic = steepness / self.a;
         let missing = (langevin - m).max(0.0);
         match self.form {
             JilesAthertonForm::Original => {
+                // (8.25)
                 let pinning = (self.k - self.coupling() * missing).max(LEAST_PINNING * self.k);
                 let reversible = self.c * anhysteretic;
-                let feedback = (self.coupling() * reversible).min(LARGEST_FEEDBACK);
-                ((1.0 - self.c) * missing / pinning + reversible) / (1.0 - feedback)
+                let feedback = (self.coupling() * reversible).min(LARGEST_FEEDBACK); // (8.25)
+                ((1.0 - self.c) * missing / pinning + reversible) / (1.0 - feedback) // (8.23)
             }
             JilesAthertonForm::Differential => {
-                let n = missing / self.k + self.c * anhysteretic;
-                n / (1.0 - (self.coupling() * n).min(LARGEST_FEEDBACK))
+                let n = missing / self.k + self.c * anhysteretic; // (8.24)
+                n / (1.0 - (self.coupling() * n).min(LARGEST_FEEDBACK)) // (8.24), (8.25)
             }
         }
     }
@@ -182,7 +183,7 @@ impl Law for JilesAtherton {
     fn step(&self, state: &mut JilesAthertonState, sample: Sample) -> f64 {
         let sample = sample.limited();
         let m = self.advance(state, sample.x);
-        self.offset + self.permeability * sample.x + self.saturation * m
+        self.offset + self.permeability * sample.x + self.saturation * m // (8.22)
     }
 
     fn work_of_row(&self, travel: f64, _: f64) -> f64 {

@@ -94,7 +94,7 @@ impl Lugre {
     /// `g(v)/F_C`: the friction of steady motion divided by the sliding friction, without the viscous part.
     pub fn steady(&self, rate: f64) -> f64 {
         let share = rate / self.stribeck_velocity;
-        1.0 + self.stribeck * exp(-share * share)
+        1.0 + self.stribeck * exp(-share * share) // (8.26): g(v)/F_C
     }
 
     /// Advances to the next sample and returns the bristles: the exact solution for a rate that is constant
@@ -107,9 +107,10 @@ impl Lugre {
         if by != 0.0 {
             let end = by.signum() * steady;
             let decay = exp(-by.abs() / (self.presliding * steady));
-            state.deflection = end + (state.deflection - end) * decay;
+            state.deflection = end + (state.deflection - end) * decay; // (8.28)
         }
         let deflection = state.deflection;
+        // (8.26)
         let rate = (sample.rate - sample.rate.abs() * deflection / steady) / self.presliding;
         Bristles { deflection, rate }
     }
@@ -136,6 +137,7 @@ impl Law for Lugre {
         let sample = sample.limited();
         let bristles = self.advance(state, sample);
         let damping = self.bristle_damping * bristles.rate;
+        // (8.27)
         let force = self.sliding * bristles.deflection + damping + self.viscous * sample.rate;
         (self.offset + self.spring * sample.x + force).clamp(-f64::MAX, f64::MAX)
     }

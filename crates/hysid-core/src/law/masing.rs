@@ -20,7 +20,7 @@ use crate::error::{Error, Result};
 use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
-use crate::law::turning_point_stack::{Branch, TurningPointStack};
+use crate::law::turning_point_stack::{StackBranch, TurningPointStack};
 use crate::law::{Dimension, Law, Parameter, Sample, stored_as};
 use crate::property::Property;
 
@@ -117,8 +117,9 @@ impl Law for Masing {
         let x = limited(sample.x);
         stack.advance(x, 0.0);
         let y = match stack.branch() {
-            Branch::Virgin => self.virgin_curve(x),
-            Branch::From { start, .. } => start.value + 2.0 * self.virgin_curve(0.5 * (x - start.x)),
+            StackBranch::Virgin => self.virgin_curve(x),
+            // (7.3)
+            StackBranch::From { start, .. } => start.value + 2.0 * self.virgin_curve(0.5 * (x - start.x)),
         };
         stack.set_value(y);
         self.parts.constant + y

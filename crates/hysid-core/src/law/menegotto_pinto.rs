@@ -118,7 +118,7 @@ pub struct MenegottoPinto {
 
 /// A branch from a turning point, in the direction of its movement.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Branch {
+struct SteelBranch {
     /// `d_r`, with the sign of the direction.
     from: f64,
     /// `q_r`, likewise.
@@ -131,7 +131,7 @@ struct Branch {
     chord: [(f64, f64); 2],
 }
 
-impl Branch {
+impl SteelBranch {
     fn new(from: f64, start: f64, room: f64, roundness: f64) -> Self {
         Self { from, start, room, roundness, chord: [(from, start); 2] }
     }
@@ -161,7 +161,7 @@ impl Branch {
             return self.start;
         }
         let z = ((d - self.from) / self.room).max(0.0);
-        self.start + self.room * yielding(z, self.roundness)
+        self.start + self.room * yielding(z, self.roundness) // (8.48)
     }
 }
 
@@ -169,7 +169,7 @@ impl Branch {
 #[derive(Debug, Clone, PartialEq)]
 pub struct MenegottoPintoState {
     /// Branches upwards and downwards, the oldest first.
-    branches: [Vec<Branch>; 2],
+    branches: [Vec<SteelBranch>; 2],
     /// 0 upwards, 1 downwards; `None` before the first movement.
     direction: Option<usize>,
     d: f64,
@@ -206,29 +206,30 @@ impl MenegottoPinto {
             _ => (1.0, self.isotropic),
         };
         let excursion = powf((0.5 * (extremes[0] + extremes[1])).max(0.0), 0.8);
-        ratio * (1.0 + isotropic * excursion).max(LEAST_STRENGTH)
+        ratio * (1.0 + isotropic * excursion).max(LEAST_STRENGTH) // (8.50)
     }
 
     /// The branch of a virgin material.
-    fn virgin_branch(&self, direction: usize) -> Branch {
+    fn virgin_branch(&self, direction: usize) -> SteelBranch {
         let room = self.down.filter(|_| direction == 1).map_or(1.0, |down| down.ratio);
-        Branch::new(0.0, 0.0, room, self.roundness)
+        SteelBranch::new(0.0, 0.0, room, self.roundness)
     }
 
     /// The branch from the present point in a direction.
-    fn branch(&self, state: &MenegottoPintoState, direction: usize) -> Branch {
+    fn branch(&self, state: &MenegottoPintoState, direction: usize) -> SteelBranch {
         let sign = sign_of(direction);
         let (from, start) = (sign * state.d, sign * state.q);
         let room = (self.yield_stress(direction, state.extremes) - start).max(0.0);
         let excursion = (state.extremes[direction] - (from + room)).abs();
+        // (8.49)
         let roundness = self.roundness * (1.0 - self.loss * excursion / (self.pace + excursion));
-        Branch::new(from, start, room, roundness.max(LEAST_ROUNDNESS))
+        SteelBranch::new(from, start, room, roundness.max(LEAST_ROUNDNESS))
     }
 
     /// Advances to the next input and returns `q`.
     pub fn advance(&self, state: &mut MenegottoPintoState, x: f64) -> f64 {
         let limited = |d: f64| d.clamp(-LARGEST_DISPLACEMENT, LARGEST_DISPLACEMENT);
-        let d = limited(x / self.yield_displacement);
+        let d = limited(x / self.yield_displacement); // (8.47)
         if d == state.d {
             return state.q;
         }
@@ -243,6 +244,7 @@ impl MenegottoPinto {
         while opposite.last().is_some_and(|branch| -branch.from <= d_along) {
             opposite.pop();
         }
+        // (8.51)
         let along = followed(&mut state.branches[direction], d_along, (d - state.d).abs());
         (state.d, state.q) = (d, sign * along);
         state.q
@@ -276,7 +278,7 @@ impl MenegottoPinto {
 
 /// The smallest `q` of the branches at `d` (theory.md (8.51)). Branches later than its own have met it and are
 /// deleted. An earlier branch is only evaluated where the last one may have met it. `by` is the length of this step.
-fn followed(branches: &mut Vec<Branch>, d: f64, by: f64) -> f64 {
+fn followed(branches: &mut Vec<SteelBranch>, d: f64, by: f64) -> f64 {
     let Some((last, earlier)) = branches.split_last_mut() else { return 0.0 };
     let (mut least, mut kept) = (last.at(d), earlier.len() + 1);
     for (index, branch) in earlier.iter_mut().enumerate().rev() {
@@ -324,6 +326,7 @@ impl Law for MenegottoPinto {
     fn step(&self, state: &mut MenegottoPintoState, sample: Sample) -> f64 {
         let x = sample.limited().x;
         let q = self.advance(state, x);
+        // (8.47)
         (self.offset + self.hardening_stiffness * x + self.strength * q).clamp(-f64::MAX, f64::MAX)
     }
 

@@ -99,6 +99,7 @@ impl DeadZones {
     pub fn value(&self, z: f64) -> f64 {
         let parts = &self.parts;
         let zones = parts.thresholds.iter().zip(&parts.weights);
+        // (7.6)
         parts.constant + parts.linear * z + zones.map(|(&r, w)| w * dead_zone(z, r)).sum::<f64>()
     }
 

@@ -60,7 +60,7 @@ pub struct NeuroMadelung {
 
 /// The network `N` with the limits of its inputs and output, in scaled units.
 #[derive(Debug, Clone, Copy)]
-pub struct Branch<'a> {
+pub struct BranchNetwork<'a> {
     /// Bias and weights of each tanh neuron in turn.
     pub hidden: &'a [f64],
     /// Constant and weights of the output.
@@ -70,7 +70,7 @@ pub struct Branch<'a> {
     high: f64,
 }
 
-impl Branch<'_> {
+impl BranchNetwork<'_> {
     /// Number of values of one tanh neuron: its bias and weights.
     pub fn run(&self) -> usize {
         self.hidden.len() / (self.output.len() - 1).max(1)
@@ -82,9 +82,9 @@ impl Branch<'_> {
         let seen = &seen[..inputs.len()];
         let mut slope = self.output[0];
         for (neuron, c) in self.hidden.chunks_exact(self.run()).zip(&self.output[1..]) {
-            slope += c * tanh(argument(neuron, seen));
+            slope += c * tanh(argument(neuron, seen)); // (8.20)
         }
-        self.limited(inputs[2] + (inputs[0] - inputs[1]) * slope)
+        self.limited(inputs[2] + (inputs[0] - inputs[1]) * slope) // (8.19)
     }
 
     /// The inputs, limited to the trained ranges: beyond them a branch keeps the slope of its chord.
@@ -124,10 +124,10 @@ impl NeuroMadelung {
     }
 
     /// The network with its limits.
-    pub fn branch(&self) -> Branch<'_> {
+    pub fn branch(&self) -> BranchNetwork<'_> {
         let scaled = |y: f64| (y - self.output_mean) / self.output_scale;
         let (low, high) = (scaled(self.output_range.0), scaled(self.output_range.1));
-        Branch { hidden: &self.hidden, output: &self.output, low, high }
+        BranchNetwork { hidden: &self.hidden, output: &self.output, low, high }
     }
 
     /// The scaled input and rate.

@@ -133,7 +133,7 @@ pub struct PeakOrientedState {
     d: f64,
     /// Largest `d` so far on each side; not negative.
     peaks: [f64; 2],
-    loading: Loading,
+    loading: LoadingBranch,
     unloading: Option<Unloading>,
     /// `e`, in yield forces times yield displacements.
     work: f64,
@@ -142,7 +142,7 @@ pub struct PeakOrientedState {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Loading {
+struct LoadingBranch {
     /// `d_0`.
     from: f64,
     /// `d_t`.
@@ -198,18 +198,20 @@ impl PeakOriented {
 
     /// `x` as `d` of a side.
     fn displacement(&self, side: usize, x: f64) -> f64 {
-        let d = x / self.side(side).yield_displacement;
+        let d = x / self.side(side).yield_displacement; // (8.37)
         (if side == 0 { d } else { -d }).clamp(-LARGEST_DISPLACEMENT, LARGEST_DISPLACEMENT)
     }
 
     /// `E(d)` for `d ≥ 0`: the envelope before deterioration, in yield forces.
     pub fn envelope(&self, d: f64) -> f64 {
-        let curve = envelope::hardening_curve(d, self.n, self.hardening);
+        let curve = envelope::hardening_curve(d, self.n, self.hardening); // (8.38)
+        // (8.38), (8.39)
         self.degradation.map_or(curve, |degradation| curve * degradation.capped_share(d))
     }
 
     /// `σ` after the deterioration `D`.
     fn strength(&self, deterioration: f64) -> f64 {
+        // (8.46)
         self.degradation.map_or(1.0, |degradation| 1.0 - degradation.strength_loss * deterioration)
     }
 
@@ -220,45 +222,48 @@ impl PeakOriented {
     }
 
     /// The branch of a side that begins without force at `from`.
-    fn loading(&self, state: &PeakOrientedState, side: usize, from: f64) -> Loading {
+    fn loading(&self, state: &PeakOrientedState, side: usize, from: f64) -> LoadingBranch {
         let strength = self.strength(state.deterioration);
         let (peak, far) = (state.peaks[side], (-from).max(0.0));
         let (growth, loss) = self.degradation.map_or((0.0, 0.0), |degradation| {
             let Degradation { target_growth, pinching_growth, .. } = degradation;
             (target_growth * state.deterioration, pinching_growth * state.deterioration)
         });
-        let target = (peak * (1.0 + growth)).max(far.sqrt().min(1.0));
+        let target = (peak * (1.0 + growth)).max(far.sqrt().min(1.0)); // (8.46): d_t
         let top = if target > 0.0 { strength * self.envelope(target) } else { 0.0 };
+        // (8.43): k_u
         let stiffness = powf(self.secant(if peak > 0.0 { peak } else { target }, strength), self.unloading);
         // `ω` (theory.md (8.40)).
         let room = if target > from { 1.0 - top / ((target - from) * stiffness) } else { 0.0 };
+        // (8.40): φ_ω
         let height =
             self.pinch_place + room.clamp(0.0, 1.0) * (self.pinch_height * (1.0 - loss) - self.pinch_place);
         let bend = Bend { place: self.pinch_place, height, weight: self.pinch_weight };
-        Loading { from, target, top, bend, strength }
+        LoadingBranch { from, target, top, bend, strength }
     }
 
     /// The force on a branch at `d`, beyond its beginning.
-    fn force(&self, loading: &Loading, d: f64) -> f64 {
+    fn force(&self, loading: &LoadingBranch, d: f64) -> f64 {
         if d >= loading.target {
-            return loading.strength * self.envelope(d.max(0.0));
+            return loading.strength * self.envelope(d.max(0.0)); // (8.41)
         }
+        // (8.41)
         loading.top * loading.bend.height_at((d - loading.from) / (loading.target - loading.from))
     }
 
     /// The branch from a turning point at `from` on a branch.
-    fn unloading(&self, loading: &Loading, peak: f64, from: f64) -> Unloading {
+    fn unloading(&self, loading: &LoadingBranch, peak: f64, from: f64) -> Unloading {
         let force = self.force(loading, from);
         let secant = self.secant(peak, loading.strength);
-        let stiffness = powf(secant, self.unloading);
-        let curvature = self.curvature * (1.0 - secant / stiffness).clamp(0.0, 1.0);
+        let stiffness = powf(secant, self.unloading); // (8.43)
+        let curvature = self.curvature * (1.0 - secant / stiffness).clamp(0.0, 1.0); // (8.44): c_r
         // Not beyond the point where the branch began: a small loop dissipates.
-        let zero = (from - force / stiffness).max(loading.from).min(from);
+        let zero = (from - force / stiffness).max(loading.from).min(from); // (8.43): d_z
         Unloading { from, force, zero, curvature }
     }
 
     /// Work of a branch that was loaded and unloaded to zero force.
-    fn dissipated(&self, loading: &Loading, unloading: &Unloading) -> f64 {
+    fn dissipated(&self, loading: &LoadingBranch, unloading: &Unloading) -> f64 {
         let middle = loading.target.clamp(loading.from, unloading.from);
         let area = |from: f64, to: f64| {
             let at = |(node, weight): (f64, f64)| weight * self.force(loading, from + node * (to - from));
@@ -269,14 +274,15 @@ impl PeakOriented {
         let gained = area(loading.from, middle) + area(middle, bend) + area(bend, unloading.from);
         let returned =
             unloading.force * (unloading.from - unloading.zero) * unloading_area(unloading.curvature);
-        (gained - returned).max(0.0)
+        (gained - returned).max(0.0) // (8.45)
     }
 
     /// The force passes 0: the branch is complete, and one of the other side begins.
     fn pass_zero(&self, state: &mut PeakOrientedState, side: usize, unloading: &Unloading) {
         if let Some(degradation) = &self.degradation {
+            // (8.45)
             state.work = (state.work + self.dissipated(&state.loading, unloading)).min(LARGEST_DISPLACEMENT);
-            state.deterioration = degradation.deterioration(state.work);
+            state.deterioration = degradation.deterioration(state.work); // (8.46)
         }
         let other = 1 - side;
         let ratio = self.side(side).yield_displacement / self.side(other).yield_displacement;
@@ -303,7 +309,7 @@ impl PeakOriented {
         }
         if d > unloading.zero {
             let share = (unloading.from - d) / (unloading.from - unloading.zero);
-            return signed(side, unloading.force * unloading_share(share, unloading.curvature));
+            return signed(side, unloading.force * unloading_share(share, unloading.curvature)); // (8.44)
         }
         self.pass_zero(state, side, &unloading);
         // Rounding must not put it before the beginning of the branch.
@@ -337,7 +343,7 @@ impl Law for PeakOriented {
             side: None,
             d: 0.0,
             peaks: [0.0; 2],
-            loading: Loading { from: 0.0, target: 0.0, top: 0.0, bend, strength: 1.0 },
+            loading: LoadingBranch { from: 0.0, target: 0.0, top: 0.0, bend, strength: 1.0 },
             unloading: None,
             work: 0.0,
             deterioration: 0.0,
@@ -348,7 +354,7 @@ impl Law for PeakOriented {
         let x = sample.limited().x;
         let [up, down] = self.advance(state, x);
         let force = self.side(0).strength * up + self.side(1).strength * down;
-        (self.offset + self.spring * x + force).clamp(-f64::MAX, f64::MAX)
+        (self.offset + self.spring * x + force).clamp(-f64::MAX, f64::MAX) // (8.37)
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -113,6 +113,7 @@ impl Law for PrandtlIshlinskii {
 
     fn step(&self, plays: &mut Vec<f64>, sample: Sample) -> f64 {
         let x = limited(sample.x);
+        // (7.4)
         self.constant + self.linear * x + sum_of_plays(plays, x, &self.thresholds, &self.weights)
     }
 

@@ -23,10 +23,10 @@ use crate::error::{Error, Result};
 use crate::law::facts::{Defaults, ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::thresholds::{check_weights, limited};
-use crate::law::turning_point_stack::{Branch, TurningPointStack};
+use crate::law::turning_point_stack::{StackBranch, TurningPointStack};
 use crate::law::{Dimension, Law, Parameter, Sample, stored_as};
 use crate::property::Property;
-use everett::Everett;
+use everett::EverettTables;
 use plane::Plane;
 
 /// Most intervals of each axis.
@@ -40,7 +40,7 @@ pub struct Preisach {
     weights: PreisachWeights,
     /// Output in the virgin state, reversible part left out.
     virgin: f64,
-    everett: Everett,
+    everett: EverettTables,
     /// Reversible output at each line, without `k x`.
     reversible: Vec<f64>,
 }
@@ -69,7 +69,7 @@ pub struct Tables {
     /// `i`, the sum of the weights of row `i` between columns `j` and `i`, and that of column `j` between rows `j` and
     /// `i`. All are 0 above the diagonal.
     pub cells: Vec<[f64; 4]>,
-    /// What the virgin curve switches upwards and downwards: magnitudes of the input, rising from 0, and for each the
+    /// Output along the virgin curve upwards and downwards: magnitudes of the input, rising from 0, and for each the
     /// coefficients of a parabola in the distance from there; the last is constant.
     pub virgin: [(Vec<f64>, Vec<[f64; 3]>); 2],
     /// Reversible output at each line, without `k x`.
@@ -117,7 +117,7 @@ impl Preisach {
         for (j, v) in weights.reversible.iter().enumerate() {
             reversible.push(reversible[j] + 2.0 * v);
         }
-        Ok(Self { everett: Everett::new(&plane, &weights.cells), virgin, reversible, weights })
+        Ok(Self { everett: EverettTables::new(&plane, &weights.cells), virgin, reversible, weights })
     }
 
     /// The parameters.
@@ -147,6 +147,7 @@ impl Preisach {
     /// `c + k x + Σ v_j m_j(x)`
     fn reversible_part(&self, x: f64) -> f64 {
         let (interval, share) = self.everett.place(x).parts();
+        // (7.8)
         let between = self.reversible[interval] + 2.0 * share * self.weights.reversible[interval];
         self.weights.constant + self.weights.slope * x + between
     }
@@ -175,10 +176,10 @@ impl Law for Preisach {
         let x = limited(sample.x);
         stack.advance(x, 0.0);
         let switched = match stack.branch() {
-            Branch::Virgin if x >= 0.0 => self.virgin + 2.0 * self.everett.virgin(x),
-            Branch::Virgin => self.virgin - 2.0 * self.everett.virgin(x),
-            Branch::From { start, .. } if x > start.x => start.value + 2.0 * self.everett(x, start.x),
-            Branch::From { start, .. } => start.value - 2.0 * self.everett(start.x, x),
+            StackBranch::Virgin if x >= 0.0 => self.virgin + 2.0 * self.everett.virgin(x), // (7.11)
+            StackBranch::Virgin => self.virgin - 2.0 * self.everett.virgin(x),             // (7.11)
+            StackBranch::From { start, .. } if x > start.x => start.value + 2.0 * self.everett(x, start.x),
+            StackBranch::From { start, .. } => start.value - 2.0 * self.everett(start.x, x),
         };
         stack.set_value(switched);
         switched + self.reversible_part(x)

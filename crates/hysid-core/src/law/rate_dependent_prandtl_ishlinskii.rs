@@ -48,9 +48,9 @@ impl Thresholds {
     /// The sum and the factor by which all thresholds `α i` change at a rate.
     fn growth(&self, rate: f64) -> (f64, f64) {
         match *self {
-            Self::Linear { beta } => (beta * rate.abs(), 1.0),
+            Self::Linear { beta } => (beta * rate.abs(), 1.0), // (8.16)
             Self::Logarithmic { beta, lambda, epsilon } => {
-                (0.0, ln(beta + lambda * powf(rate.abs(), epsilon)).max(0.0))
+                (0.0, ln(beta + lambda * powf(rate.abs(), epsilon)).max(0.0)) // (8.17)
             }
         }
     }
@@ -94,7 +94,7 @@ impl RateDependentPrandtlIshlinskii {
         let (added, factor) = self.thresholds.growth(sample.rate);
         for (index, play) in plays.iter_mut().enumerate() {
             let r = self.spacing * (index + 1) as f64 * factor + added;
-            *play = (sample.x - r).max((sample.x + r).min(*play));
+            *play = (sample.x - r).max((sample.x + r).min(*play)); // (8.15)
         }
     }
 }

@@ -15,7 +15,7 @@ pub(super) fn numbers(seed: u64, count: usize) -> Vec<f64> {
     (0..count).map(|_| next()).collect()
 }
 
-/// A path from 0 through turning points, with so many equal steps to each of them.
+/// A path from 0 through turning points, with the same number of equal steps to each of them.
 pub(super) fn refined(turning: &[f64], parts: u32) -> Vec<f64> {
     let mut from = 0.0;
     let mut path = Vec::new();

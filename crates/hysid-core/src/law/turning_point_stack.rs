@@ -21,7 +21,7 @@ pub struct TurningPoint<T> {
 
 /// The curve that the present point lies on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Branch<T> {
+pub enum StackBranch<T> {
     /// The virgin curve: there is no turning point.
     Virgin,
     /// A branch that began at a turning point.
@@ -70,7 +70,7 @@ impl<T: Clone> TurningPointStack<T> {
     }
 
     /// As [`TurningPointStack::advance`]; calls `changed` after a point is added and before points are deleted.
-    pub fn advance_with(&mut self, x: f64, value: T, mut changed: impl FnMut(Change<'_, T>)) {
+    pub fn advance_with(&mut self, x: f64, value: T, mut changed: impl FnMut(StackChange<'_, T>)) {
         if let Some(present) = &self.present {
             if x == present.x {
                 self.present = Some(TurningPoint { x, value });
@@ -84,22 +84,22 @@ impl<T: Clone> TurningPointStack<T> {
             let at_origin = self.points.is_empty() && present.x == 0.0;
             if heads_up != (x > present.x) && !at_origin {
                 self.points.push(present.clone());
-                changed(Change::PutDown(&self.points));
+                changed(StackChange::PutDown(&self.points));
             }
         }
         loop {
             let wiped = match self.points.as_slice() {
                 [] => 0,
-                [first] => usize::from(x.abs() >= first.x.abs()),
+                [first] => usize::from(x.abs() >= first.x.abs()), // (7.2), rule 3
                 [.., before, start] => {
                     let closed = if before.x > start.x { x >= before.x } else { x <= before.x };
-                    2 * usize::from(closed)
+                    2 * usize::from(closed) // (7.2), rule 2
                 }
             };
             if wiped == 0 {
                 break;
             }
-            changed(Change::WipedOut(&self.points, wiped));
+            changed(StackChange::WipedOut(&self.points, wiped));
             self.points.truncate(self.points.len() - wiped);
         }
         self.present = Some(TurningPoint { x, value });
@@ -113,11 +113,11 @@ impl<T: Clone> TurningPointStack<T> {
     }
 
     /// The curve that the present point lies on.
-    pub fn branch(&self) -> Branch<T> {
+    pub fn branch(&self) -> StackBranch<T> {
         match self.points.as_slice() {
-            [] => Branch::Virgin,
-            [start] => Branch::From { start: start.clone(), before: None },
-            [.., before, start] => Branch::From { start: start.clone(), before: Some(before.clone()) },
+            [] => StackBranch::Virgin,
+            [start] => StackBranch::From { start: start.clone(), before: None },
+            [.., before, start] => StackBranch::From { start: start.clone(), before: Some(before.clone()) },
         }
     }
 
@@ -134,7 +134,7 @@ impl<T: Clone> TurningPointStack<T> {
 
 /// A change of the turning points on the way to a new input.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Change<'a, T> {
+pub enum StackChange<'a, T> {
     /// The last of these points was added.
     PutDown(&'a [TurningPoint<T>]),
     /// So many of these points, the last ones, are about to be deleted.

@@ -57,13 +57,13 @@ impl DilatedSpace {
         Self { n, form }
     }
 
-    /// Numbers that a space of so many variables holds after so many dilatations.
+    /// Numbers that a space holds, for its numbers of variables and dilatations.
     pub fn numbers(variables: usize, dilatations: usize) -> usize {
         let rows = if variables < MANY_VARIABLES { variables } else { variables.min(dilatations) };
         variables.saturating_mul(rows)
     }
 
-    /// True if it is a finite matrix for so many variables.
+    /// True if it is a finite matrix for this number of variables.
     pub fn is_sound(&self, variables: usize) -> bool {
         let are_finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
         let is_sound = match &self.form {

@@ -176,8 +176,8 @@ mod tests {
             let mut pace = Pace::new(StopCheck::never());
             for first in (0..rows).step_by(BLOCK) {
                 let number = |column: usize, row: usize| uniform((column * 10_000 + first + row) as u64);
-                let column = |column: usize| Row(std::array::from_fn(|row| number(column, row)));
-                let block: Vec<Row> = (0..n).map(column).collect();
+                let column = |column: usize| BlockRow(std::array::from_fn(|row| number(column, row)));
+                let block: Vec<BlockRow> = (0..n).map(column).collect();
                 let rows = BLOCK.min(rows - first);
                 few.add(simd, block.iter(), rows);
                 if batch.free() < rows {
@@ -190,9 +190,9 @@ mod tests {
         }
     }
 
-    struct Row([f64; BLOCK]);
+    struct BlockRow([f64; BLOCK]);
 
-    impl AsRef<[f64; BLOCK]> for Row {
+    impl AsRef<[f64; BLOCK]> for BlockRow {
         fn as_ref(&self) -> &[f64; BLOCK] {
             &self.0
         }

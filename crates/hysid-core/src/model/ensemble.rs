@@ -60,7 +60,7 @@ pub struct Node {
     pub kind: NodeKind,
 }
 
-/// What a node is.
+/// Content of a node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NodeKind {
@@ -211,7 +211,7 @@ impl Ensemble {
         &self.group
     }
 
-    /// All members.
+    /// All members, in the order in which nodes number them.
     pub fn members(&self) -> &[Model] {
         &self.members
     }

@@ -14,7 +14,7 @@ use crate::law::Classical;
 use crate::model::input_transform::InputTransform;
 use crate::model::{Band, Ensemble, Group, Model, Predictor, Provenance, TrainedRanges};
 use crate::network::scaling::Scaling;
-use crate::network::{Architecture, Layout, Network};
+use crate::network::{Architecture, Network, ParameterLayout};
 use crate::options::ModelName;
 
 /// Version of the layout.
@@ -148,7 +148,7 @@ fn checksum(text: &str) -> Option<u32> {
 impl NetworkParts {
     fn of(network: &Network, scaling: &Scaling) -> Self {
         let architecture = *network.architecture();
-        let layout = Layout::new(architecture);
+        let layout = ParameterLayout::new(architecture);
         let parameters = network.parameters();
         let ln_beta = &parameters[layout.ln_beta];
         let stop = |(j, weights): (usize, &[f64])| Stop {
@@ -181,7 +181,7 @@ impl NetworkParts {
         if self.readout.hidden.iter().any(|neuron| neuron.len() != run) {
             return Err(Error::Parts(format!("not every hidden neuron has {run} weights")));
         }
-        let mut parameters = Vec::with_capacity(Layout::new(self.architecture).len());
+        let mut parameters = Vec::with_capacity(ParameterLayout::new(self.architecture).len());
         parameters.extend(self.memory.stops.iter().flat_map(|stop| &stop.weights));
         parameters.extend(self.memory.stops.iter().filter_map(|stop| stop.ln_beta));
         parameters.extend(self.memory.linear.iter().flatten());

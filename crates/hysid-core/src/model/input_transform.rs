@@ -128,7 +128,7 @@ pub fn common_magnitude(mut magnitudes: Vec<f64>) -> f64 {
 }
 
 /// Transformed data, and the method of their rate.
-pub struct Transformed<'d> {
+pub struct TransformedData<'d> {
     /// The input transform.
     pub preprocessing: InputTransform,
     /// The transformed data.
@@ -137,7 +137,7 @@ pub struct Transformed<'d> {
     pub rate: Option<RateMethod>,
 }
 
-impl<'d> Transformed<'d> {
+impl<'d> TransformedData<'d> {
     /// The data as seen by a model; an error for unusable data or shares, or a rate that cannot be computed.
     pub fn of(
         data: &'d Dataset,
@@ -162,13 +162,13 @@ impl<'d> Transformed<'d> {
 }
 
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Past {
+pub(crate) struct InputPast {
     largest: f64,
     path: f64,
     last: Option<f64>,
 }
 
-impl Past {
+impl InputPast {
     /// Adds the next input and returns `m = max |x| so far / X` and `p = ln(1 + 10 path so far / P) / ln 11`
     /// (theory.md (11.2)).
     fn take(&mut self, x: f64, (largest, longest): (f64, f64)) -> [f64; HISTORY_INPUTS] {
@@ -186,7 +186,7 @@ impl Past {
     }
 }
 
-/// A lead-in as a model sees it.
+/// A lead-in in the transformed input.
 pub(crate) struct SeenLeadIn {
     /// The transformed first input at each row.
     pub first: Vec<f64>,
@@ -232,7 +232,7 @@ impl InputTransform {
     }
 
     /// Writes all transformed inputs of a sample into `seen`.
-    pub(crate) fn sample(&self, inputs: &[f64], past: &mut Past, seen: &mut Vec<f64>) {
+    pub(crate) fn sample(&self, inputs: &[f64], past: &mut InputPast, seen: &mut Vec<f64>) {
         seen.clear();
         seen.extend(
             inputs.iter().enumerate().map(|(input, &value)| self.input_as_seen(input, limited(value))),
@@ -243,7 +243,7 @@ impl InputTransform {
     }
 
     /// Transforms a lead-in, whose last row has the first input of `first_row`. `past` then contains it.
-    pub(crate) fn lead_in(&self, rows: &[f64], first_row: &[f64], past: &mut Past) -> SeenLeadIn {
+    pub(crate) fn lead_in(&self, rows: &[f64], first_row: &[f64], past: &mut InputPast) -> SeenLeadIn {
         if let Some(scales) = self.history {
             past.take_all(rows, self.origin(0), scales);
         }
@@ -268,7 +268,7 @@ impl InputTransform {
             .map(|(input, values)| values.iter().map(|&value| self.input_as_seen(input, value)).collect())
             .collect();
         if let Some(scales) = self.history {
-            let mut past = Past::default();
+            let mut past = InputPast::default();
             past.take_all(&excitation.lead_in_rows(), self.origin(0), scales);
             let (largest, path) = x.iter().map(|&x| past.take(x - self.origin(0), scales).into()).unzip();
             inputs.extend([largest, path]);
@@ -378,7 +378,7 @@ mod tests {
         assert!((p[3] - 1.0).abs() < 1e-15);
         assert!((record.given_rate().unwrap()[2] - asinh(-3.0 / 1.25)).abs() < 1e-15);
 
-        let (mut past, mut sample) = (Past::default(), Vec::new());
+        let (mut past, mut sample) = (InputPast::default(), Vec::new());
         for (row, &x) in data.records()[0].inputs()[0].iter().enumerate() {
             preprocessing.sample(&[x], &mut past, &mut sample);
             assert_eq!(sample, [u[row], m[row], p[row]]);

@@ -13,7 +13,7 @@ mod record;
 mod search;
 
 use crate::error::{Error, InverseError, Result, SampleError};
-use crate::model::inverse::search::{Ending, Found, Point, Wanted};
+use crate::model::inverse::search::{SearchEnding, SearchPoint, SearchResult, TargetValue};
 use crate::model::ranges::with_slack;
 use crate::model::{BandLevel, Model, Stepper};
 
@@ -98,7 +98,7 @@ pub struct Inverse<'m> {
     is_search: bool,
     tolerance: f64,
     /// The last sample, and its time.
-    last: Option<(Point, f64)>,
+    last: Option<(SearchPoint, f64)>,
     /// Slope of the output by the input, as last seen.
     slope: f64,
     /// Inputs of a trial.
@@ -197,7 +197,7 @@ impl<'m> Inverse<'m> {
         self
     }
 
-    /// The model.
+    /// The model that is inverted.
     pub fn model(&self) -> &Model {
         self.stepper.model()
     }
@@ -255,7 +255,7 @@ impl<'m> Inverse<'m> {
     }
 
     fn search(&mut self, value: f64, windows: Windows, time: f64, ahead: f64) -> Result<Inverted> {
-        let wanted = |window| Wanted { value, tolerance: self.tolerance, window };
+        let wanted = |window| TargetValue { value, tolerance: self.tolerance, window };
         let (trained, all) = (wanted(windows.trained), wanted(windows.all));
         let mut trials = 0;
         let first = self.guess(value, ahead);
@@ -273,7 +273,7 @@ impl<'m> Inverse<'m> {
             None => None,
         };
         let before = self.last;
-        let (Found { mut point, mut ending, mut slope }, mut last_trial) =
+        let (SearchResult { mut point, mut ending, mut slope }, mut last_trial) =
             self.find(trained, first, time + ahead, &mut trials, |_| Ok(0.0))?;
         if ending.is_beside() && windows.trained != windows.all {
             let (wider, trial) = self.find(all, first, time + ahead, &mut trials, |_| Ok(0.0))?;
@@ -281,10 +281,10 @@ impl<'m> Inverse<'m> {
         }
         if ending.is_beside() && windows.is_of_rate {
             let (end, side) = self.towards(value, windows.trained);
-            point = Point { argument: end, value: self.trial(end, time + ahead)? };
+            point = SearchPoint { argument: end, value: self.trial(end, time + ahead)? };
             last_trial = end;
             trials += 1;
-            ending = if ending == Ending::Extremum { ending } else { side };
+            ending = if ending == SearchEnding::Extremum { ending } else { side };
         }
         let (input, mut output) = (self.part_of_way(point.argument, time, ahead), point.value);
         if ahead > 0.0 || last_trial != input {
@@ -296,7 +296,7 @@ impl<'m> Inverse<'m> {
         if let Some(slope) = slope.filter(|slope| slope * self.slope > 0.0 && slope.is_finite()) {
             self.slope = slope;
         }
-        self.last = Some((Point { argument: input, value: output }, time));
+        self.last = Some((SearchPoint { argument: input, value: output }, time));
         Ok(Inverted {
             input,
             output,
@@ -310,12 +310,12 @@ impl<'m> Inverse<'m> {
     /// The input at which the output and what is added to it is the wanted one, and the last trial.
     fn find(
         &mut self,
-        wanted: Wanted,
+        wanted: TargetValue,
         first: f64,
         time: f64,
         trials: &mut usize,
         added: impl Fn(&mut Stepper<'m>) -> Result<f64>,
-    ) -> Result<(Found, f64)> {
+    ) -> Result<(SearchResult, f64)> {
         let mut last_trial = f64::NAN;
         let (stepper, inputs) = (&mut self.stepper, &mut self.inputs);
         let mut output = |input: f64| -> Result<f64> {
@@ -332,7 +332,7 @@ impl<'m> Inverse<'m> {
     /// The inputs at which either edge of the prediction band has the wanted output.
     fn edges(
         &mut self,
-        wanted: Wanted,
+        wanted: TargetValue,
         first: f64,
         level: BandLevel,
         time: f64,
@@ -347,9 +347,9 @@ impl<'m> Inverse<'m> {
     }
 
     /// The end of a window that leads to the wanted output by the slope over the whole range, past local extrema.
-    fn towards(&self, wanted: f64, (low, high): (f64, f64)) -> (f64, Ending) {
+    fn towards(&self, wanted: f64, (low, high): (f64, f64)) -> (f64, SearchEnding) {
         let rises = self.last.is_none_or(|(last, _)| wanted > last.value);
-        if rises == (self.slope > 0.0) { (high, Ending::High) } else { (low, Ending::Low) }
+        if rises == (self.slope > 0.0) { (high, SearchEnding::High) } else { (low, SearchEnding::Low) }
     }
 
     fn trial(&mut self, input: f64, time: f64) -> Result<f64> {
@@ -360,28 +360,28 @@ impl<'m> Inverse<'m> {
     /// The input at this time, on the way from the last sample to the input at the end of the preview.
     fn part_of_way(&self, end: f64, time: f64, ahead: f64) -> f64 {
         match self.last {
-            Some((Point { argument, .. }, before)) if ahead > 0.0 => {
+            Some((SearchPoint { argument, .. }, before)) if ahead > 0.0 => {
                 argument + (end - argument) * ((time - before) / (time + ahead - before))
             }
             _ => end,
         }
     }
 
-    fn reach(&self, ending: Ending, input: f64, windows: Windows) -> Reach {
+    fn reach(&self, ending: SearchEnding, input: f64, windows: Windows) -> Reach {
         let at_low = input == self.limits.0;
         let at_high = input == self.limits.1;
         match ending {
-            Ending::Reached => Reach::Reached,
-            Ending::Low if at_low || !windows.is_of_rate => Reach::LowLimit,
-            Ending::High if at_high || !windows.is_of_rate => Reach::HighLimit,
-            Ending::Low | Ending::High => Reach::Slew,
-            Ending::Extremum => Reach::NotMonotone,
-            Ending::Jump => Reach::Jump,
+            SearchEnding::Reached => Reach::Reached,
+            SearchEnding::Low if at_low || !windows.is_of_rate => Reach::LowLimit,
+            SearchEnding::High if at_high || !windows.is_of_rate => Reach::HighLimit,
+            SearchEnding::Low | SearchEnding::High => Reach::Slew,
+            SearchEnding::Extremum => Reach::NotMonotone,
+            SearchEnding::Jump => Reach::Jump,
         }
     }
 
     /// True for an input, or a rate of a model with one, outside the range of the training data.
-    fn is_extrapolated(&self, input: f64, time: f64, before: Option<(Point, f64)>) -> bool {
+    fn is_extrapolated(&self, input: f64, time: f64, before: Option<(SearchPoint, f64)>) -> bool {
         let is_outside = |value: f64, range: (f64, f64)| {
             let (low, high) = with_slack(range);
             value < low || value > high
@@ -413,7 +413,7 @@ impl<'m> Inverse<'m> {
 
     fn windows(&self, elapsed: Option<f64>) -> Windows {
         let within = |rate: Option<f64>, (low, high): (f64, f64)| match (rate, self.last, elapsed) {
-            (Some(rate), Some((Point { argument, .. }, _)), Some(elapsed)) => {
+            (Some(rate), Some((SearchPoint { argument, .. }, _)), Some(elapsed)) => {
                 let way = rate * elapsed;
                 ((argument - way).max(low), (argument + way).min(high))
             }
@@ -433,7 +433,7 @@ impl<'m> Inverse<'m> {
             return input;
         }
         match self.last {
-            Some((Point { argument, value }, _)) => {
+            Some((SearchPoint { argument, value }, _)) => {
                 let guess = argument + (wanted - value) / self.slope;
                 if guess.is_finite() { guess } else { argument }
             }

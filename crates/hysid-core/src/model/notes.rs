@@ -7,7 +7,7 @@ use crate::model::selection::{Selection, WarmUp};
 use crate::model::{Ensemble, Model};
 use crate::significant::Significant;
 
-/// A validation error below this share of the training error tells of rows that are easier than the others. Designed.
+/// A validation error below this share of the training error shows rows that are easier than the others. Designed.
 const EASIER: f64 = 0.8;
 
 /// Weights of a law that a row may stand for.

@@ -3,15 +3,15 @@
 use crate::data::warning::Warning;
 use crate::model::Model;
 
-/// What the rows so far are compared with.
+/// Trained ranges, and the ranges of the rows so far.
 #[derive(Debug, Clone)]
 pub(super) struct Ranges {
-    inputs: Vec<Reach>,
-    rate: Option<Reach>,
+    inputs: Vec<InputReach>,
+    rate: Option<InputReach>,
 }
 
 #[derive(Debug, Clone)]
-struct Reach {
+struct InputReach {
     name: String,
     trained: (f64, f64),
     seen: (f64, f64),
@@ -32,8 +32,9 @@ impl Ranges {
     pub fn of(model: &Model) -> Self {
         let inputs = model.names.inputs.iter().zip(&model.trained.inputs);
         let rate = model.rate.and(model.trained.rate);
-        let rate = rate.map(|trained| Reach::new(format!("the rate of {}", model.names.inputs[0]), trained));
-        Self { inputs: inputs.map(|(name, &trained)| Reach::new(name.clone(), trained)).collect(), rate }
+        let rate =
+            rate.map(|trained| InputReach::new(format!("the rate of {}", model.names.inputs[0]), trained));
+        Self { inputs: inputs.map(|(name, &trained)| InputReach::new(name.clone(), trained)).collect(), rate }
     }
 
     /// Takes rows: all inputs, and the rate of the first.
@@ -46,11 +47,11 @@ impl Ranges {
 
     /// Warns of what is outside.
     pub fn warnings(&self) -> Vec<Warning> {
-        self.inputs.iter().chain(&self.rate).filter_map(Reach::warning).collect()
+        self.inputs.iter().chain(&self.rate).filter_map(InputReach::warning).collect()
     }
 }
 
-impl Reach {
+impl InputReach {
     fn new(name: String, trained: (f64, f64)) -> Self {
         Self { name, trained, seen: (f64::INFINITY, f64::NEG_INFINITY), rows: 0, outside: 0 }
     }

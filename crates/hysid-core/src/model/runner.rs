@@ -13,14 +13,14 @@ use crate::law::series::lead_in_samples;
 use crate::law::{Classical, ClassicalState, Sample};
 use crate::model::band::disagreement;
 use crate::model::ensemble::{Excursion, MedianBuffers};
-use crate::model::input_transform::{InputTransform, Past, SeenLeadIn};
+use crate::model::input_transform::{InputPast, InputTransform, SeenLeadIn};
 use crate::model::ranges::Ranges;
 use crate::model::{Ensemble, Model, Predictor};
 use crate::network::free_run::{CHUNK, FreeRun};
 
 /// How sure an output is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Spread {
+pub(super) struct OutputSpread {
     /// How much the members of an ensemble disagree; 0 for a single model.
     pub disagreement: f64,
     /// Degree of having been outside the trained range, 0 to 1.
@@ -29,7 +29,7 @@ pub(super) struct Spread {
 
 #[derive(Debug, Clone)]
 pub(super) struct Runner<'m> {
-    body: Parts<'m>,
+    body: RunnerKind<'m>,
     excursion: Excursion,
     range: (f64, f64),
     /// Rates of the rows of a chunk, by each method that the model or a member has.
@@ -41,24 +41,24 @@ pub(super) struct Runner<'m> {
     is_periodic: bool,
     /// The memory has been driven along the lead-in of the record.
     is_begun: bool,
-    /// What the trained ranges are compared with, if that is wanted: its rate is that of this method.
+    /// Trained ranges to compare with, if requested, and the method for the rate.
     ranges: Option<(Ranges, Option<RateMethod>)>,
 }
 
 #[derive(Debug, Clone)]
-enum Parts<'m> {
-    Single(Box<Single<'m>>),
-    Ensemble(Box<Members<'m>>),
+enum RunnerKind<'m> {
+    Single(Box<SingleRunner<'m>>),
+    Ensemble(Box<EnsembleRunner<'m>>),
 }
 
 /// A single model: a network or a law, with its input transform.
 #[derive(Debug, Clone)]
-struct Single<'m> {
+struct SingleRunner<'m> {
     mechanism: Mechanism<'m>,
     /// `None` for a model without input transform.
     preprocessing: Option<&'m InputTransform>,
     rate: Option<RateMethod>,
-    past: Past,
+    past: InputPast,
     /// Transformed columns of a chunk.
     seen: Vec<Vec<f64>>,
     seen_rate: Vec<f64>,
@@ -72,9 +72,9 @@ enum Mechanism<'m> {
 
 /// The members of an ensemble, and room for their outputs.
 #[derive(Debug, Clone)]
-struct Members<'m> {
+struct EnsembleRunner<'m> {
     ensemble: &'m Ensemble,
-    members: Vec<Single<'m>>,
+    members: Vec<SingleRunner<'m>>,
     outputs: Vec<Vec<f64>>,
     medians: MedianBuffers,
 }
@@ -104,11 +104,11 @@ impl<'m> Runner<'m> {
     ) -> Self {
         let (body, range) = match body {
             Predictor::Ensemble(ensemble) => {
-                (Parts::Ensemble(Box::new(Members::of(ensemble))), ensemble.range())
+                (RunnerKind::Ensemble(Box::new(EnsembleRunner::of(ensemble))), ensemble.range())
             }
             body => {
                 let everything = (f64::NEG_INFINITY, f64::INFINITY);
-                (Parts::Single(Box::new(Single::of(body, preprocessing, rate))), everything)
+                (RunnerKind::Single(Box::new(SingleRunner::of(body, preprocessing, rate))), everything)
             }
         };
         let mut methods: Vec<RateMethod> = body.singles().iter().filter_map(|single| single.rate).collect();
@@ -148,7 +148,7 @@ impl<'m> Runner<'m> {
     /// Back to the initial state, before another record.
     pub fn reset(&mut self) {
         self.is_begun = false;
-        self.body.singles_mut().iter_mut().for_each(Single::reset);
+        self.body.singles_mut().iter_mut().for_each(SingleRunner::reset);
         self.excursion = Excursion::beyond(self.range);
     }
 
@@ -170,7 +170,7 @@ impl<'m> Runner<'m> {
         excitation: &Excitation<'_>,
         first: usize,
         outputs: &mut [f64],
-        mut spreads: Option<&mut [Spread]>,
+        mut spreads: Option<&mut [OutputSpread]>,
     ) -> Result<()> {
         let (expected, found) = (self.body.inputs(), excitation.inputs().len());
         if expected != found {
@@ -207,7 +207,7 @@ impl<'m> Runner<'m> {
         excitation: &Excitation<'_>,
         first: usize,
         outputs: &mut [f64],
-        spreads: Option<&mut [Spread]>,
+        spreads: Option<&mut [OutputSpread]>,
     ) -> Result<()> {
         let rows = first..first + outputs.len();
         self.begin(excitation, first);
@@ -227,27 +227,27 @@ impl<'m> Runner<'m> {
             ranges.take(&inputs, method.map(|method| chunk.rate(method)));
         }
         match &mut self.body {
-            Parts::Single(single) => {
+            RunnerKind::Single(single) => {
                 single.run(&chunk, outputs)?;
                 for (spread, &x) in spreads.into_iter().flatten().zip(inputs[0]) {
-                    *spread = Spread { disagreement: 0.0, outside: self.excursion.take(x) };
+                    *spread = OutputSpread { disagreement: 0.0, outside: self.excursion.take(x) };
                 }
                 Ok(())
             }
-            Parts::Ensemble(members) => members.run(&chunk, &mut self.excursion, outputs, spreads),
+            RunnerKind::Ensemble(members) => members.run(&chunk, &mut self.excursion, outputs, spreads),
         }
     }
 }
 
-impl<'m> Parts<'m> {
-    fn singles(&self) -> &[Single<'m>] {
+impl<'m> RunnerKind<'m> {
+    fn singles(&self) -> &[SingleRunner<'m>] {
         match self {
             Self::Single(single) => std::slice::from_ref(single),
             Self::Ensemble(members) => &members.members,
         }
     }
 
-    fn singles_mut(&mut self) -> &mut [Single<'m>] {
+    fn singles_mut(&mut self) -> &mut [SingleRunner<'m>] {
         match self {
             Self::Single(single) => std::slice::from_mut(single),
             Self::Ensemble(members) => &mut members.members,
@@ -267,7 +267,7 @@ impl Chunk<'_> {
     }
 }
 
-impl<'m> Single<'m> {
+impl<'m> SingleRunner<'m> {
     fn of(body: &'m Predictor, preprocessing: Option<&'m InputTransform>, rate: Option<RateMethod>) -> Self {
         let mechanism = match body {
             Predictor::Network { network, scaling } => {
@@ -279,7 +279,7 @@ impl<'m> Single<'m> {
         };
         let preprocessing = preprocessing.filter(|preprocessing| !preprocessing.is_none());
         let (seen, seen_rate) = (Vec::new(), Vec::new());
-        Self { mechanism, preprocessing, rate, past: Past::default(), seen, seen_rate }
+        Self { mechanism, preprocessing, rate, past: InputPast::default(), seen, seen_rate }
     }
 
     fn inputs(&self) -> usize {
@@ -291,7 +291,7 @@ impl<'m> Single<'m> {
     }
 
     fn reset(&mut self) {
-        self.past = Past::default();
+        self.past = InputPast::default();
         match &mut self.mechanism {
             Mechanism::Network(network) => network.reset(),
             Mechanism::Law(law, state, _) => **state = law.virgin(),
@@ -329,7 +329,7 @@ impl<'m> Single<'m> {
 }
 
 /// Transformed inputs, column by column.
-fn see(preprocessing: &InputTransform, inputs: &[&[f64]], past: &mut Past, seen: &mut Vec<Vec<f64>>) {
+fn see(preprocessing: &InputTransform, inputs: &[&[f64]], past: &mut InputPast, seen: &mut Vec<Vec<f64>>) {
     seen.resize(inputs.len() + preprocessing.added_inputs(), Vec::new());
     seen.iter_mut().for_each(Vec::clear);
     let (mut sample, mut sample_seen) = (vec![0.0; inputs.len()], Vec::new());
@@ -366,10 +366,11 @@ impl Mechanism<'_> {
     }
 }
 
-impl<'m> Members<'m> {
+impl<'m> EnsembleRunner<'m> {
     fn of(ensemble: &'m Ensemble) -> Self {
-        let member = |member: &'m Model| Single::of(&member.body, Some(&member.preprocessing), member.rate);
-        let members: Vec<Single<'m>> = ensemble.members().iter().map(member).collect();
+        let member =
+            |member: &'m Model| SingleRunner::of(&member.body, Some(&member.preprocessing), member.rate);
+        let members: Vec<SingleRunner<'m>> = ensemble.members().iter().map(member).collect();
         let outputs = vec![Vec::new(); members.len()];
         Self { ensemble, members, outputs, medians: MedianBuffers::new(ensemble.group()) }
     }
@@ -379,7 +380,7 @@ impl<'m> Members<'m> {
         chunk: &Chunk<'_>,
         excursion: &mut Excursion,
         outputs: &mut [f64],
-        spreads: Option<&mut [Spread]>,
+        spreads: Option<&mut [OutputSpread]>,
     ) -> Result<()> {
         for (member, of_member) in self.members.iter_mut().zip(&mut self.outputs) {
             of_member.resize(outputs.len(), 0.0);
@@ -392,7 +393,7 @@ impl<'m> Members<'m> {
             *output = medians.output(group, outside, |member| of_members[member][row]);
             if let Some(spread) = spreads.next() {
                 let all = medians.predictions(group, outside, |member| of_members[member][row]);
-                *spread = Spread { disagreement: disagreement(all), outside };
+                *spread = OutputSpread { disagreement: disagreement(all), outside };
             }
         }
         Ok(())

@@ -54,7 +54,7 @@ impl Selection {
         [self.chosen(&kinds), self.why(&kinds)]
     }
 
-    /// What the validation errors are errors of.
+    /// Rows behind the validation errors, in words.
     pub fn held_out_rows(&self) -> String {
         let all = self.folds.len();
         match &self.beyond {

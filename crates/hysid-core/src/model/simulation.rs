@@ -5,7 +5,7 @@ use std::mem;
 use crate::data::record::Excitation;
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, Result};
-use crate::model::runner::{Runner, Spread};
+use crate::model::runner::{OutputSpread, Runner};
 use crate::model::{Band, BandLevel, Model, Prediction};
 
 /// A simulation that takes the rows of a record in blocks. The outputs are those of [`Model::response`] or
@@ -19,12 +19,12 @@ pub struct Simulation<'m> {
     runner: Runner<'m>,
     band: Option<(&'m Band, BandLevel)>,
     record: String,
-    window: Window,
+    window: RowWindow,
 }
 
 /// The rows that are still needed: some that are simulated, and those behind them that are not.
 #[derive(Debug, Clone, Default)]
-struct Window {
+struct RowWindow {
     time: Option<Vec<f64>>,
     inputs: Vec<Vec<f64>>,
     rate: Option<Vec<f64>>,
@@ -38,14 +38,14 @@ struct Window {
 impl<'m> Simulation<'m> {
     pub(super) fn new(model: &'m Model, band: Option<(&'m Band, BandLevel)>) -> Self {
         let runner = Runner::of_model(model).watching(model);
-        Self { model, runner, band, record: String::new(), window: Window::default() }
+        Self { model, runner, band, record: String::new(), window: RowWindow::default() }
     }
 
     /// Begins a record of this name, from the model's initial state or its own lead-in; drops pending rows.
     pub fn begin(&mut self, record: impl Into<String>) {
         self.runner.reset();
         self.record = record.into();
-        self.window = Window::default();
+        self.window = RowWindow::default();
     }
 
     /// Simulates the next rows of the record. Returns the outputs of all rows so far whose rates are known
@@ -79,7 +79,7 @@ impl<'m> Simulation<'m> {
         let first = self.window.simulated;
         let rows = end.saturating_sub(first);
         let mut output = vec![0.0; rows];
-        let mut spreads = vec![Spread::default(); if self.band.is_some() { rows } else { 0 }];
+        let mut spreads = vec![OutputSpread::default(); if self.band.is_some() { rows } else { 0 }];
         if rows > 0 {
             let excitation = self.window.excitation(&self.record);
             let spreads = self.band.is_some().then_some(spreads.as_mut_slice());
@@ -94,8 +94,8 @@ impl<'m> Simulation<'m> {
 
 impl Prediction {
     /// Outputs with their band, if there is one.
-    pub(super) fn of(band: Option<(&Band, BandLevel)>, output: Vec<f64>, spreads: &[Spread]) -> Self {
-        let half = |spread: &Spread| {
+    pub(super) fn of(band: Option<(&Band, BandLevel)>, output: Vec<f64>, spreads: &[OutputSpread]) -> Self {
+        let half = |spread: &OutputSpread| {
             band.map(|(band, level)| band.half_width(level, spread.disagreement, spread.outside))
         };
         let halves: Vec<f64> = spreads.iter().filter_map(half).collect();
@@ -118,7 +118,7 @@ fn behind(error: Error, rows: usize) -> Error {
     }
 }
 
-impl Window {
+impl RowWindow {
     fn len(&self) -> usize {
         self.inputs.first().map_or(0, Vec::len)
     }

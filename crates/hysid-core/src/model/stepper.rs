@@ -11,7 +11,7 @@ use crate::law::series::lead_in_samples;
 use crate::law::{ClassicalState, Sample};
 use crate::model::band::{BandLevel, disagreement};
 use crate::model::ensemble::{Excursion, MedianBuffers};
-use crate::model::input_transform::{Past, SeenLeadIn, limited};
+use crate::model::input_transform::{InputPast, SeenLeadIn, limited};
 use crate::model::{Model, Predictor};
 use crate::network::Simulator;
 
@@ -22,7 +22,7 @@ pub use snapshot::Snapshot;
 #[derive(Debug, Clone)]
 pub struct Stepper<'m> {
     model: Cow<'m, Model>,
-    state: State,
+    state: StepperState,
     /// The state before the last trial, if that is not committed.
     committed: Option<Snapshot>,
     /// Lead-in of the record.
@@ -30,9 +30,9 @@ pub struct Stepper<'m> {
 }
 
 #[derive(Debug, Clone)]
-struct State {
-    memory: Memory,
-    past: Past,
+struct StepperState {
+    memory: StepperMemory,
+    past: InputPast,
     /// Inputs of the last sample as the model saw them.
     seen: Vec<f64>,
     /// Time and first input of the last sample.
@@ -42,7 +42,7 @@ struct State {
 }
 
 #[derive(Debug, Clone)]
-enum Memory {
+enum StepperMemory {
     /// A network's simulator, and room for its channels.
     Network(Box<Simulator>, Vec<f64>),
     Law(Box<ClassicalState>),
@@ -52,13 +52,13 @@ enum Memory {
 /// The members of an ensemble on their way.
 #[derive(Debug, Clone)]
 struct EnsembleMemory {
-    members: Vec<State>,
+    members: Vec<StepperState>,
     excursion: Excursion,
     outputs: Vec<f64>,
     medians: MedianBuffers,
 }
 
-impl Memory {
+impl StepperMemory {
     fn virgin(body: &Predictor) -> Self {
         match body {
             Predictor::Network { network, .. } => {
@@ -66,7 +66,7 @@ impl Memory {
             }
             Predictor::Law(law) => Self::Law(Box::new(law.virgin())),
             Predictor::Ensemble(ensemble) => Self::Ensemble(Box::new(EnsembleMemory {
-                members: ensemble.members().iter().map(State::virgin).collect(),
+                members: ensemble.members().iter().map(StepperState::virgin).collect(),
                 excursion: Excursion::beyond(ensemble.range()),
                 outputs: Vec::with_capacity(ensemble.members().len()),
                 medians: MedianBuffers::new(ensemble.group()),
@@ -77,12 +77,12 @@ impl Memory {
 
 impl<'m> Stepper<'m> {
     pub(super) fn new(model: Cow<'m, Model>) -> Self {
-        let mut state = State::virgin(&model);
+        let mut state = StepperState::virgin(&model);
         state.excursion = excursion(&model);
         Self { state, committed: None, lead_in: model.lead_in.clone(), model }
     }
 
-    /// The model.
+    /// The model that is simulated.
     pub fn model(&self) -> &Model {
         &self.model
     }
@@ -145,9 +145,9 @@ impl<'m> Stepper<'m> {
 }
 
 /// Disagreement of the members after their last sample, where `outside` is how far the record has been outside.
-fn disagreement_at(model: &Model, memory: &mut Memory, outside: f64) -> f64 {
+fn disagreement_at(model: &Model, memory: &mut StepperMemory, outside: f64) -> f64 {
     match (&model.body, memory) {
-        (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) if !memory.outputs.is_empty() => {
+        (Predictor::Ensemble(ensemble), StepperMemory::Ensemble(memory)) if !memory.outputs.is_empty() => {
             let EnsembleMemory { outputs, medians, .. } = &mut **memory;
             disagreement(medians.predictions(ensemble.group(), outside, |member| outputs[member]))
         }
@@ -160,11 +160,11 @@ fn excursion(model: &Model) -> Option<Excursion> {
     model.band().map(|_| Excursion::beyond(model.first_input_range()))
 }
 
-impl State {
+impl StepperState {
     fn virgin(model: &Model) -> Self {
         Self {
-            memory: Memory::virgin(&model.body),
-            past: Past::default(),
+            memory: StepperMemory::virgin(&model.body),
+            past: InputPast::default(),
             seen: Vec::with_capacity(model.inputs() + model.preprocessing.added_inputs()),
             last: None,
             excursion: None,
@@ -192,7 +192,8 @@ impl State {
         if let Some(large) = inputs.iter().chain(&rate).find(|value| value.abs() > LARGEST_VALUE) {
             return Err(SampleError::TooLarge(*large).into());
         }
-        if let (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) = (&model.body, &self.memory) {
+        if let (Predictor::Ensemble(ensemble), StepperMemory::Ensemble(memory)) = (&model.body, &self.memory)
+        {
             let mut members = memory.members.iter().zip(ensemble.members());
             return members.try_for_each(|(state, member)| state.check(member, inputs, time, rate));
         }
@@ -211,7 +212,9 @@ impl State {
 
     /// Drives the memory along a lead-in, whose last row has the first input of the first sample.
     fn lead_in(&mut self, model: &Model, rows: &[f64], first_row: &[f64]) {
-        if let (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) = (&model.body, &mut self.memory) {
+        if let (Predictor::Ensemble(ensemble), StepperMemory::Ensemble(memory)) =
+            (&model.body, &mut self.memory)
+        {
             for (state, member) in memory.members.iter_mut().zip(ensemble.members()) {
                 state.lead_in(member, rows, first_row);
             }
@@ -219,7 +222,7 @@ impl State {
         }
         let SeenLeadIn { first, others } = model.preprocessing.lead_in(rows, first_row, &mut self.past);
         match (&model.body, &mut self.memory) {
-            (Predictor::Network { scaling, .. }, Memory::Network(simulator, u)) => {
+            (Predictor::Network { scaling, .. }, StepperMemory::Network(simulator, u)) => {
                 let mut channels: Vec<[f64; 1]> = vec![[0.0]; u.len()];
                 for x in first {
                     scaling.fill_lead_in(&[x], &others, &mut channels);
@@ -227,7 +230,7 @@ impl State {
                     simulator.step(u, f64::INFINITY);
                 }
             }
-            (Predictor::Law(law), Memory::Law(state)) => {
+            (Predictor::Law(law), StepperMemory::Law(state)) => {
                 for sample in lead_in_samples(&first) {
                     law.step(state, sample);
                 }
@@ -242,7 +245,7 @@ impl State {
         let seen_rate = rate.map(|rate| model.preprocessing.rate(limited(rate)));
         model.preprocessing.sample(inputs, &mut self.past, &mut self.seen);
         let y = match (&model.body, &mut self.memory) {
-            (Predictor::Network { scaling, .. }, Memory::Network(simulator, u)) => {
+            (Predictor::Network { scaling, .. }, StepperMemory::Network(simulator, u)) => {
                 let mut channels = u.iter_mut();
                 for (input, (&x, &scale)) in self.seen.iter().zip(&scaling.inputs).enumerate() {
                     *channels.next().expect("a channel for each input") = x * (1.0 / scale);
@@ -254,11 +257,11 @@ impl State {
                 }
                 scaling.output(simulator.step(u, elapsed))
             }
-            (Predictor::Law(law), Memory::Law(state)) => {
+            (Predictor::Law(law), StepperMemory::Law(state)) => {
                 let step = if model.needs_time() { elapsed } else { 0.0 };
                 law.step(state, Sample { x: self.seen[0], rate: seen_rate.unwrap_or(0.0), step })
             }
-            (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) => {
+            (Predictor::Ensemble(ensemble), StepperMemory::Ensemble(memory)) => {
                 let EnsembleMemory { members, excursion, outputs, medians } = &mut **memory;
                 let outside = excursion.take(inputs[0]);
                 outputs.clear();
@@ -278,16 +281,16 @@ impl State {
 
     fn reset(&mut self, model: &Model) {
         match (&model.body, &mut self.memory) {
-            (Predictor::Network { .. }, Memory::Network(simulator, _)) => simulator.reset(),
-            (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) => {
+            (Predictor::Network { .. }, StepperMemory::Network(simulator, _)) => simulator.reset(),
+            (Predictor::Ensemble(ensemble), StepperMemory::Ensemble(memory)) => {
                 for (state, member) in memory.members.iter_mut().zip(ensemble.members()) {
                     state.reset(member);
                 }
                 memory.excursion = Excursion::beyond(ensemble.range());
             }
-            (body, memory) => *memory = Memory::virgin(body),
+            (body, memory) => *memory = StepperMemory::virgin(body),
         }
-        self.past = Past::default();
+        self.past = InputPast::default();
         self.last = None;
     }
 }

@@ -40,7 +40,7 @@ impl Family {
         }
     }
 
-    /// What it is, in a few words.
+    /// Summary of the family, in a few words.
     pub fn summary(self) -> &'static str {
         match self {
             Family::Pnn => "network of stops with a linear readout",

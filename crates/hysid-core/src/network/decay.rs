@@ -72,9 +72,9 @@ mod tests {
     use crate::operator::relaxation;
     use crate::simd;
 
-    struct All<'a>(&'a [f64]);
+    struct AllDecays<'a>(&'a [f64]);
 
-    impl pulp::WithSimd for All<'_> {
+    impl pulp::WithSimd for AllDecays<'_> {
         type Output = Vec<Decay>;
         #[inline(always)]
         fn with_simd<S: Simd>(self, _: S) -> Vec<Decay> {
@@ -94,7 +94,7 @@ mod tests {
             .chain((0..1200).map(|k| powf(10.0, f64::from(-k) / 4.0)))
             .chain([0.0, -0.0, -1.0, f64::NAN, 1e9, f64::INFINITY])
             .collect();
-        let of_all = simd::run_with_all(|| All(&phi));
+        let of_all = simd::run_with_all(|| AllDecays(&phi));
         assert!(of_all.iter().all(|found| *found == of_all[0]), "instruction sets differ");
         for (&phi, found) in phi.iter().zip(&of_all[0]) {
             let (stress, increment) = relaxation::decay(phi, 1.0);

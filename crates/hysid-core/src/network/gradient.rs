@@ -15,10 +15,10 @@
 use pulp::{Simd, WithSimd};
 
 use crate::network::block::Block;
-use crate::network::memory::{BLOCK, Row};
+use crate::network::memory::{BLOCK, BlockValues};
 use crate::network::readout::{Backward, Readout};
-use crate::network::sweep::{Drive, TakeBlock, Walk};
-use crate::network::{Architecture, Layout};
+use crate::network::sweep::{NetworkDrive, NetworkSweep, TakeBlock};
+use crate::network::{Architecture, ParameterLayout};
 use crate::simd::{self, LANES, multiply_add_lanes};
 use crate::stop_check::StopCheck;
 
@@ -26,12 +26,12 @@ use crate::stop_check::StopCheck;
 pub struct GradientOverRecords<'a> {
     /// Architecture of the network.
     pub architecture: &'a Architecture,
-    /// Its parameters, in the order of [`Layout`].
+    /// Its parameters, in the order of [`ParameterLayout`].
     pub parameters: &'a [f64],
     /// Its output weights `c`.
     pub output: &'a [f64],
     /// Scaled inputs of each record.
-    pub drives: &'a [Drive],
+    pub drives: &'a [NetworkDrive],
     /// Scaled outputs of each record.
     pub targets: &'a [Vec<f64>],
     /// Stops the computation early; the sum is then incomplete and must not be used.
@@ -50,15 +50,15 @@ impl WithSimd for GradientOverRecords<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
-        let layout = Layout::new(*self.architecture);
-        let mut sums = Sums {
+        let layout = ParameterLayout::new(*self.architecture);
+        let mut sums = GradientSums {
             output: self.output,
             backward: Backward::new(self.architecture),
-            residual: Row([0.0; BLOCK]),
+            residual: BlockValues([0.0; BLOCK]),
             gradient: vec![[0.0; LANES]; layout.len()],
             layout,
         };
-        let walk = Walk {
+        let walk = NetworkSweep {
             architecture: self.architecture,
             parameters: self.parameters,
             with_slopes: true,
@@ -69,15 +69,15 @@ impl WithSimd for GradientOverRecords<'_> {
     }
 }
 
-struct Sums<'a> {
+struct GradientSums<'a> {
     output: &'a [f64],
-    layout: Layout,
+    layout: ParameterLayout,
     backward: Backward,
-    residual: Row,
+    residual: BlockValues,
     gradient: Vec<[f64; LANES]>,
 }
 
-impl TakeBlock for Sums<'_> {
+impl TakeBlock for GradientSums<'_> {
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, rows: usize, block: &Block, readout: &Readout) {
         let Block { u, z, h, slopes, target } = block;
@@ -89,7 +89,7 @@ impl TakeBlock for Sums<'_> {
         self.backward.run::<S>(readout, self.output, &self.residual, block);
         let by_neuron = &mut self.gradient[self.layout.hidden.clone()];
         for (sums, slope) in by_neuron.chunks_exact_mut(1 + z.len()).zip(&self.backward.by_sum) {
-            add_products(simd, slope, &[Row([1.0; BLOCK])], &mut sums[..1]);
+            add_products(simd, slope, &[BlockValues([1.0; BLOCK])], &mut sums[..1]);
             add_products(simd, slope, z, &mut sums[1..]);
         }
         let (linear, rest) = self.backward.by_memory.split_at(usize::from(!self.layout.linear.is_empty()));
@@ -120,7 +120,7 @@ impl TakeBlock for Sums<'_> {
 
 /// Adds to each sum the products of `a` with one of the rows of `b`, row by row of the block.
 #[inline(always)]
-fn add_products<S: Simd>(simd: S, a: &Row, b: &[Row], sums: &mut [[f64; LANES]]) {
+fn add_products<S: Simd>(simd: S, a: &BlockValues, b: &[BlockValues], sums: &mut [[f64; LANES]]) {
     let a = S::as_simd_f64s(&a.0).0;
     for (b, sum) in b.iter().zip(sums) {
         let sum = S::as_mut_simd_f64s(sum).0;
@@ -134,7 +134,7 @@ fn add_products<S: Simd>(simd: S, a: &Row, b: &[Row], sums: &mut [[f64; LANES]])
 
 /// Adds to each sum the products of its own two rows.
 #[inline(always)]
-fn add_products_of_each<S: Simd>(simd: S, a: &[Row], b: &[Row], sums: &mut [[f64; LANES]]) {
+fn add_products_of_each<S: Simd>(simd: S, a: &[BlockValues], b: &[BlockValues], sums: &mut [[f64; LANES]]) {
     for ((a, b), sum) in a.iter().zip(b).zip(sums) {
         add_products(simd, a, std::slice::from_ref(b), std::slice::from_mut(sum));
     }

@@ -5,13 +5,13 @@ use crate::random::uniform;
 use crate::stop_check::StopCheck;
 
 /// Two records of a network with all parts and three groups of stops, of which one is not full.
-struct Case {
+struct SimdCase {
     network: Network,
-    drives: [Drive; 2],
+    drives: [NetworkDrive; 2],
     targets: [Vec<f64>; 2],
 }
 
-impl Case {
+impl SimdCase {
     fn new() -> Self {
         let architecture = Architecture::new(
             Family::XpnnPlus,
@@ -25,9 +25,9 @@ impl Case {
         let numbers = |seed: u64, count: usize| (0..count as u64).map(move |k| number(seed << 32 | k));
         let mut parameters: Vec<f64> =
             numbers(1, architecture.searched_parameters()).map(|p| 2.0 * p).collect();
-        Layout::new(architecture).clamp(&mut parameters);
+        ParameterLayout::new(architecture).clamp(&mut parameters);
         let output = numbers(2, architecture.output_weights()).collect();
-        let drive = |seed: u64, rows: usize| Drive {
+        let drive = |seed: u64, rows: usize| NetworkDrive {
             channels: (0..3).map(|c| numbers(seed + c, rows).map(|u| 3.0 * u).collect()).collect(),
             steps: numbers(seed + 3, rows).map(f64::abs).collect(),
         };
@@ -42,8 +42,8 @@ impl Case {
         }
     }
 
-    fn columns(&self) -> Columns<'_> {
-        Columns {
+    fn columns(&self) -> JacobianColumns<'_> {
+        JacobianColumns {
             architecture: &self.network.architecture,
             parameters: &self.network.parameters,
             output: Some(&self.network.output),
@@ -52,9 +52,9 @@ impl Case {
 }
 
 /// The first record in one run, and then once more sample by sample.
-struct Simulated<'a>(&'a Case);
+struct NetworkOutputs<'a>(&'a SimdCase);
 
-impl WithSimd for Simulated<'_> {
+impl WithSimd for NetworkOutputs<'_> {
     type Output = Vec<f64>;
 
     #[inline(always)]
@@ -63,10 +63,10 @@ impl WithSimd for Simulated<'_> {
         let mut simulator = self.0.network.simulator();
         let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
         let mut y = vec![0.0; drive.len()];
-        Run { simulator: &mut simulator, u: &u, steps: &drive.steps, y: &mut y }.with_simd(simd);
+        NetworkRun { simulator: &mut simulator, u: &u, steps: &drive.steps, y: &mut y }.with_simd(simd);
         for (row, &step) in drive.steps.iter().enumerate() {
             let u: Vec<f64> = drive.channels.iter().map(|channel| channel[row]).collect();
-            y.push(Step { simulator: &mut simulator, u: &u, step }.with_simd(simd));
+            y.push(NetworkStep { simulator: &mut simulator, u: &u, step }.with_simd(simd));
         }
         y
     }
@@ -81,13 +81,13 @@ fn must_be_equal(of_all: &[Vec<f64>]) {
 
 #[test]
 fn simulations_are_equal() {
-    let case = Case::new();
-    must_be_equal(&simd::run_with_all(|| Simulated(&case)));
+    let case = SimdCase::new();
+    must_be_equal(&simd::run_with_all(|| NetworkOutputs(&case)));
 }
 
 #[test]
 fn gram_matrices_are_equal() {
-    let case = Case::new();
+    let case = SimdCase::new();
     let columns = case.columns();
     let grams = simd::run_with_all(|| GramOverRecords {
         columns,
@@ -102,7 +102,7 @@ fn gram_matrices_are_equal() {
 
 #[test]
 fn jacobians_are_equal() {
-    let case = Case::new();
+    let case = SimdCase::new();
     let jacobians = simd::run_with_all(|| RowsOverRecords {
         columns: case.columns(),
         first: 0,
@@ -115,7 +115,7 @@ fn jacobians_are_equal() {
 
 #[test]
 fn gradients_are_equal() {
-    let case = Case::new();
+    let case = SimdCase::new();
     must_be_equal(&simd::run_with_all(|| GradientOverRecords {
         architecture: &case.network.architecture,
         parameters: &case.network.parameters,

@@ -26,20 +26,20 @@ use pulp::{Simd, WithSimd};
 
 use crate::linear_algebra::{Batch, FewColumns, Gram};
 use crate::network::block::Block;
-use crate::network::memory::{BLOCK, Row};
+use crate::network::memory::{BLOCK, BlockValues};
 use crate::network::readout::{Backward, Readout};
-use crate::network::sweep::{Drive, TakeBlock, Walk};
-use crate::network::{Architecture, Layout, Network};
+use crate::network::sweep::{NetworkDrive, NetworkSweep, TakeBlock};
+use crate::network::{Architecture, Network, ParameterLayout};
 use crate::simd;
 use crate::stop_check::{Pace, StopCheck};
 
 /// Output and Jacobian of a network over a record, in scaled units.
 #[derive(Debug, Clone)]
-pub struct Linearised {
+pub struct LinearisedNetwork {
     /// Scaled output of each row.
     pub output: Vec<f64>,
     /// Derivative of the output by each parameter, with output weights held fixed: one column for each
-    /// parameter in the order of [`Layout`], with one value a row. At a kink of a stop it is one of the two
+    /// parameter in the order of [`ParameterLayout`], with one value a row. At a kink of a stop it is one of the two
     /// one-sided derivatives (a sub-gradient).
     pub jacobian: Vec<Vec<f64>>,
 }
@@ -50,9 +50,9 @@ impl Network {
     ///
     /// # Panics
     /// If the drive's channels are not those of the architecture.
-    pub fn linearise(&self, drive: &Drive) -> Linearised {
+    pub fn linearise(&self, drive: &NetworkDrive) -> LinearisedNetwork {
         let p = self.parameters.len();
-        let columns = Columns {
+        let columns = JacobianColumns {
             architecture: &self.architecture,
             parameters: &self.parameters,
             output: Some(&self.output),
@@ -69,30 +69,30 @@ impl Network {
         let mut output = vec![0.0; drive.len()];
         let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
         self.simulator().run(&u, &drive.steps, &mut output);
-        Linearised { output, jacobian }
+        LinearisedNetwork { output, jacobian }
     }
 }
 
 /// Columns computed for each row with a target: features, target and, with output weights, the Jacobian.
 #[derive(Debug, Clone, Copy)]
-pub struct Columns<'a> {
-    /// The network.
+pub struct JacobianColumns<'a> {
+    /// Architecture of the network.
     pub architecture: &'a Architecture,
-    /// Its parameters.
+    /// Nonlinear parameters, in the order of [`ParameterLayout`].
     pub parameters: &'a [f64],
     /// Its output weights; `None` for no Jacobian.
     pub output: Option<&'a [f64]>,
 }
 
-impl<'a> Columns<'a> {
+impl<'a> JacobianColumns<'a> {
     /// Number of columns.
     pub fn count(&self) -> usize {
         let jacobian = if self.output.is_some() { self.parameters.len() } else { 0 };
         self.architecture.output_weights() + 1 + jacobian
     }
 
-    fn walk(&self, stop: StopCheck<'a>) -> Walk<'a> {
-        Walk {
+    fn walk(&self, stop: StopCheck<'a>) -> NetworkSweep<'a> {
+        NetworkSweep {
             architecture: self.architecture,
             parameters: self.parameters,
             with_slopes: self.output.is_some(),
@@ -101,12 +101,12 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// The Gram matrix of the [`Columns`] over records. Rows with a NaN target are skipped.
+/// The Gram matrix of the [`JacobianColumns`] over records. Rows with a NaN target are skipped.
 pub struct GramOverRecords<'a> {
     /// The columns.
-    pub columns: Columns<'a>,
+    pub columns: JacobianColumns<'a>,
     /// Scaled inputs of each record.
-    pub drives: &'a [Drive],
+    pub drives: &'a [NetworkDrive],
     /// Scaled outputs of each record.
     pub targets: &'a [Vec<f64>],
     /// Stops the computation early; the matrix is then incomplete and must not be used.
@@ -126,13 +126,14 @@ impl WithSimd for GramOverRecords<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Gram {
         let n = self.columns.count();
-        let many = || Gathered::Many { gram: Gram::new(n), batch: Batch::new(n), pace: Pace::new(self.stop) };
-        let gathered = FewColumns::new(n).map_or_else(many, Gathered::Few);
+        let many =
+            || GramMatrix::Many { gram: Gram::new(n), batch: Batch::new(n), pace: Pace::new(self.stop) };
+        let gathered = FewColumns::new(n).map_or_else(many, GramMatrix::Few);
         let mut taken = ColumnsOfBlock::new(self.columns, gathered);
         self.columns.walk(self.stop).over(simd, self.drives, self.targets, &mut taken);
         match taken.to {
-            Gathered::Few(few) => few.gram(simd),
-            Gathered::Many { mut gram, mut batch, mut pace } => {
+            GramMatrix::Few(few) => few.gram(simd),
+            GramMatrix::Many { mut gram, mut batch, mut pace } => {
                 gram.add(simd, &mut batch, &mut pace);
                 gram
             }
@@ -142,18 +143,18 @@ impl WithSimd for GramOverRecords<'_> {
 
 /// Takes the columns of some rows.
 trait TakeRows {
-    fn take<'r, S: Simd>(&mut self, simd: S, rows: usize, columns: impl Iterator<Item = &'r Row>);
+    fn take<'r, S: Simd>(&mut self, simd: S, rows: usize, columns: impl Iterator<Item = &'r BlockValues>);
 }
 
 /// The Gram matrix of the rows so far.
-enum Gathered<'a> {
+enum GramMatrix<'a> {
     Few(FewColumns),
     Many { gram: Gram, batch: Batch, pace: Pace<'a> },
 }
 
-impl TakeRows for Gathered<'_> {
+impl TakeRows for GramMatrix<'_> {
     #[inline(always)]
-    fn take<'r, S: Simd>(&mut self, simd: S, rows: usize, columns: impl Iterator<Item = &'r Row>) {
+    fn take<'r, S: Simd>(&mut self, simd: S, rows: usize, columns: impl Iterator<Item = &'r BlockValues>) {
         match self {
             Self::Few(few) => few.add(simd, columns, rows),
             Self::Many { gram, batch, pace } => {
@@ -167,28 +168,28 @@ impl TakeRows for Gathered<'_> {
 }
 
 /// Keeps the columns of every row, from the first that is wanted on.
-struct Rows {
+struct KeptRows {
     first: usize,
     columns: Vec<Vec<f64>>,
 }
 
-impl TakeRows for Rows {
+impl TakeRows for KeptRows {
     #[inline(always)]
-    fn take<'r, S: Simd>(&mut self, _: S, rows: usize, columns: impl Iterator<Item = &'r Row>) {
+    fn take<'r, S: Simd>(&mut self, _: S, rows: usize, columns: impl Iterator<Item = &'r BlockValues>) {
         for (kept, column) in self.columns.iter_mut().zip(columns.skip(self.first)) {
             kept.extend_from_slice(&column[..rows]);
         }
     }
 }
 
-/// The [`Columns`] of every row with a target, from column `first` on, stored; for few rows.
+/// The [`JacobianColumns`] of every row with a target, from column `first` on, stored; for few rows.
 pub struct RowsOverRecords<'a> {
     /// The columns.
-    pub columns: Columns<'a>,
+    pub columns: JacobianColumns<'a>,
     /// The first column that is stored.
     pub first: usize,
     /// Scaled inputs of each record.
-    pub drives: &'a [Drive],
+    pub drives: &'a [NetworkDrive],
     /// Scaled outputs of each record.
     pub targets: &'a [Vec<f64>],
     /// Stops the computation early; rows are then missing.
@@ -196,7 +197,7 @@ pub struct RowsOverRecords<'a> {
 }
 
 impl RowsOverRecords<'_> {
-    /// The columns.
+    /// Computes the stored columns, each with one number for each row.
     pub fn columns(self) -> Vec<Vec<f64>> {
         simd::run(self)
     }
@@ -210,7 +211,7 @@ impl WithSimd for RowsOverRecords<'_> {
         let rows = self.targets.iter().flatten().filter(|y| !y.is_nan()).count();
         let wanted = self.columns.count() - self.first;
         let columns = (0..wanted).map(|_| Vec::with_capacity(rows)).collect();
-        let mut taken = ColumnsOfBlock::new(self.columns, Rows { first: self.first, columns });
+        let mut taken = ColumnsOfBlock::new(self.columns, KeptRows { first: self.first, columns });
         self.columns.walk(self.stop).over(simd, self.drives, self.targets, &mut taken);
         taken.to.columns
     }
@@ -218,23 +219,26 @@ impl WithSimd for RowsOverRecords<'_> {
 
 /// Computes the columns of a block and hands them on.
 struct ColumnsOfBlock<'a, T> {
-    spec: Columns<'a>,
-    layout: Layout,
+    spec: JacobianColumns<'a>,
+    layout: ParameterLayout,
     /// If a Jacobian is wanted.
     backward: Option<Backward>,
-    constant: Row,
-    jacobian: Vec<Row>,
+    constant: BlockValues,
+    jacobian: Vec<BlockValues>,
     to: T,
 }
 
 impl<'a, T> ColumnsOfBlock<'a, T> {
-    fn new(spec: Columns<'a>, to: T) -> Self {
+    fn new(spec: JacobianColumns<'a>, to: T) -> Self {
         Self {
             spec,
-            layout: Layout::new(*spec.architecture),
+            layout: ParameterLayout::new(*spec.architecture),
             backward: spec.output.map(|_| Backward::new(spec.architecture)),
-            constant: Row([1.0; BLOCK]),
-            jacobian: vec![Row([0.0; BLOCK]); if spec.output.is_some() { spec.parameters.len() } else { 0 }],
+            constant: BlockValues([1.0; BLOCK]),
+            jacobian: vec![
+                BlockValues([0.0; BLOCK]);
+                if spec.output.is_some() { spec.parameters.len() } else { 0 }
+            ],
             to,
         }
     }
@@ -245,7 +249,7 @@ impl<'a, T> ColumnsOfBlock<'a, T> {
         let (Some(output), Some(backward)) = (self.spec.output, &mut self.backward) else { return };
         let jacobian = &mut self.jacobian;
         let Block { u, z, slopes, .. } = block;
-        backward.run::<S>(readout, output, &Row([1.0; BLOCK]), block);
+        backward.run::<S>(readout, output, &BlockValues([1.0; BLOCK]), block);
         let by_neuron = &mut jacobian[self.layout.hidden.clone()];
         for (columns, slope) in by_neuron.chunks_exact_mut(1 + z.len()).zip(&backward.by_sum) {
             columns[0] = *slope;
@@ -283,7 +287,7 @@ impl<T: TakeRows> TakeBlock for ColumnsOfBlock<'_, T> {
 }
 
 #[inline(always)]
-fn product(a: &Row, b: &Row, out: &mut Row) {
+fn product(a: &BlockValues, b: &BlockValues, out: &mut BlockValues) {
     for ((out, &a), &b) in out.iter_mut().zip(a).zip(b) {
         *out = a * b;
     }

@@ -19,7 +19,7 @@ use pulp::Simd;
 use crate::elementary::exp;
 use crate::network::decay::decay;
 use crate::network::transpose::transpose;
-use crate::network::{Architecture, Layout};
+use crate::network::{Architecture, ParameterLayout};
 use crate::operator::{deteriorating_stop, play, relaxation, stop};
 use crate::simd::multiply_add;
 
@@ -31,9 +31,9 @@ pub(crate) const BLOCK: usize = 64;
 /// It begins at a cache line: a vector of 512 bits that lies across two of them is slow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
-pub(crate) struct Row(pub [f64; BLOCK]);
+pub(crate) struct BlockValues(pub [f64; BLOCK]);
 
-impl Deref for Row {
+impl Deref for BlockValues {
     type Target = [f64; BLOCK];
 
     #[inline(always)]
@@ -42,7 +42,7 @@ impl Deref for Row {
     }
 }
 
-impl<'a> IntoIterator for &'a Row {
+impl<'a> IntoIterator for &'a BlockValues {
     type Item = &'a f64;
     type IntoIter = std::slice::Iter<'a, f64>;
 
@@ -52,7 +52,7 @@ impl<'a> IntoIterator for &'a Row {
     }
 }
 
-impl Row {
+impl BlockValues {
     /// Takes some numbers of a channel. Rows beyond the last repeat it, up to whole vectors: a stop that sees an input
     /// again rests.
     #[inline(always)]
@@ -74,21 +74,21 @@ pub(crate) fn limited(u: f64) -> f64 {
     if low < LARGEST_SCALED { low } else { LARGEST_SCALED }
 }
 
-impl AsRef<[f64; BLOCK]> for Row {
+impl AsRef<[f64; BLOCK]> for BlockValues {
     #[inline(always)]
     fn as_ref(&self) -> &[f64; BLOCK] {
         &self.0
     }
 }
 
-impl AsRef<[f64]> for Row {
+impl AsRef<[f64]> for BlockValues {
     #[inline(always)]
     fn as_ref(&self) -> &[f64] {
         &self.0
     }
 }
 
-impl DerefMut for Row {
+impl DerefMut for BlockValues {
     #[inline(always)]
     fn deref_mut(&mut self) -> &mut [f64; BLOCK] {
         &mut self.0
@@ -116,14 +116,14 @@ pub(crate) struct MemoryLayer {
     channels: usize,
     stops: usize,
     deteriorating: bool,
-    groups: Vec<Group>,
+    groups: Vec<StopGroup>,
     linear: Option<Vec<f64>>,
     /// Channel and 1/τ of each relaxation neuron.
     relaxation: Vec<(usize, f64)>,
 }
 
 #[derive(Debug, Clone)]
-struct Group {
+struct StopGroup {
     weights: Vec<Lanes>,
     inverse_beta: Lanes,
 }
@@ -154,24 +154,24 @@ pub(crate) struct Sensitivity {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct MemorySlopes {
     /// `∂z_j/∂w_jc`, see [`MemorySlopes::by_weight`].
-    pub weights: Vec<Row>,
+    pub weights: Vec<BlockValues>,
     /// `∂z_j/∂ln β_j`; empty without deterioration.
-    pub ln_beta: Vec<Row>,
+    pub ln_beta: Vec<BlockValues>,
     /// `∂z/∂ln τ` of each relaxation neuron.
-    pub ln_tau: Vec<Row>,
+    pub ln_tau: Vec<BlockValues>,
 }
 
 impl MemorySlopes {
     pub fn new(a: &Architecture) -> Self {
         Self {
-            weights: vec![Row([0.0; BLOCK]); a.stops * a.channels()],
-            ln_beta: vec![Row([0.0; BLOCK]); if a.deterioration { a.stops } else { 0 }],
-            ln_tau: vec![Row([0.0; BLOCK]); a.relaxation_neurons()],
+            weights: vec![BlockValues([0.0; BLOCK]); a.stops * a.channels()],
+            ln_beta: vec![BlockValues([0.0; BLOCK]); if a.deterioration { a.stops } else { 0 }],
+            ln_tau: vec![BlockValues([0.0; BLOCK]); a.relaxation_neurons()],
         }
     }
 
     /// `∂z_j/∂w_jc`: a group's rows stand together, by channel, then by stop.
-    pub fn by_weight(&self, stops: usize, channels: usize, j: usize, c: usize) -> &Row {
+    pub fn by_weight(&self, stops: usize, channels: usize, j: usize, c: usize) -> &BlockValues {
         let first = j - j % LANES;
         let live = (stops - first).min(LANES);
         &self.weights[first * channels + c * live + j % LANES]
@@ -181,7 +181,7 @@ impl MemorySlopes {
 impl MemoryLayer {
     /// Arranges the parameters, which must fit the architecture.
     pub fn new(architecture: &Architecture, parameters: &[f64]) -> Self {
-        let layout = Layout::new(*architecture);
+        let layout = ParameterLayout::new(*architecture);
         let channels = architecture.channels();
         let weights = &parameters[layout.stop_weights];
         let ln_beta = &parameters[layout.ln_beta];
@@ -189,7 +189,7 @@ impl MemoryLayer {
             let lane = |value: &dyn Fn(usize) -> f64| {
                 std::array::from_fn(|l| if first + l < architecture.stops { value(first + l) } else { 0.0 })
             };
-            Group {
+            StopGroup {
                 weights: (0..channels).map(|c| lane(&|j| weights[j * channels + c])).collect(),
                 inverse_beta: lane(&|j| ln_beta.get(j).map_or(0.0, |ln_beta| exp(-ln_beta))),
             }
@@ -231,7 +231,7 @@ impl MemoryLayer {
         usize::from(self.linear.is_some()) + self.stops + self.relaxation.len()
     }
 
-    /// Advances by `rows` rows of scaled inputs `u` (by channel, as [`Row::take_channel`] takes them), and writes
+    /// Advances by `rows` rows of scaled inputs `u` (by channel, as [`BlockValues::take_channel`] takes them), and writes
     /// every neuron's output into `z`.
     ///
     /// `steps` are the time steps before each row, 0 at the start of a record; empty without
@@ -241,10 +241,10 @@ impl MemoryLayer {
         &self,
         simd: S,
         state: &mut MemoryState,
-        u: &[Row],
-        steps: &Row,
+        u: &[BlockValues],
+        steps: &BlockValues,
         rows: usize,
-        z: &mut [Row],
+        z: &mut [BlockValues],
     ) {
         let (linear, rest) = z[..self.neurons()].split_at_mut(usize::from(self.linear.is_some()));
         let (stops, stress) = rest.split_at_mut(self.stops);
@@ -267,11 +267,11 @@ impl MemoryLayer {
     fn advance<S: Simd, const L: usize>(
         &self,
         simd: S,
-        group: &Group,
+        group: &StopGroup,
         memory: (&mut Lanes, &mut Lanes),
-        u: &[Row],
+        u: &[BlockValues],
         rows: usize,
-        z: &mut [Row],
+        z: &mut [BlockValues],
     ) {
         match (self.deteriorating, self.channels > 2) {
             (true, true) => advance::<S, L, true, true>(simd, group, memory, u, rows, z),
@@ -300,6 +300,7 @@ impl MemoryLayer {
             z.copy_from_slice(&outputs[..z.len()]);
         }
         if let (Some(weights), Some(z)) = (&self.linear, linear.first_mut()) {
+            // (2.3)
             *z = weights.iter().zip(u).fold(0.0, |sum, (&weight, &u)| multiply_add::<S>(weight, u, sum));
         }
         for ((&(channel, inverse_tau), z), stress) in
@@ -307,6 +308,7 @@ impl MemoryLayer {
         {
             let increment = u[channel] - state.last[channel];
             let factors = decay::<S>(time_step * inverse_tau);
+            // (2.4)
             *stress = relaxation::advance(*stress, increment, (factors.stress, factors.increment));
             *z = *stress;
         }
@@ -322,10 +324,10 @@ impl MemoryLayer {
         simd: S,
         state: &mut MemoryState,
         sensitivity: &mut Sensitivity,
-        u: &[Row],
-        steps: &Row,
+        u: &[BlockValues],
+        steps: &BlockValues,
         rows: usize,
-        z: &mut [Row],
+        z: &mut [BlockValues],
         slopes: &mut MemorySlopes,
     ) {
         let (linear, rest) = z[..self.neurons()].split_at_mut(usize::from(self.linear.is_some()));
@@ -363,32 +365,32 @@ impl MemoryLayer {
         state.started = true;
         for (group, plays) in self.groups.iter().zip(&mut state.play) {
             for (play, v) in plays.iter_mut().zip(drive::<S>(group, &first)) {
-                *play = play::follow(*play, v, 1.0);
+                *play = play::follow(*play, v, 1.0); // (2.2)
             }
         }
     }
 
     /// A play that has jumped at the first row follows that row's input.
     #[inline(always)]
-    fn begin_slopes<S: Simd>(&self, sensitivity: &mut Sensitivity, u: &[Row]) {
+    fn begin_slopes<S: Simd>(&self, sensitivity: &mut Sensitivity, u: &[BlockValues]) {
         for (group, slopes) in self.groups.iter().zip(&mut sensitivity.play) {
             let v = drive::<S>(group, |c| u[c][0]);
             for (slopes, u) in slopes.iter_mut().zip(u) {
                 for (slope, v) in slopes.iter_mut().zip(v) {
-                    *slope = if v.abs() > 1.0 { u[0] } else { 0.0 };
+                    *slope = if v.abs() > 1.0 { u[0] } else { 0.0 }; // (2.9): u_ref
                 }
             }
         }
     }
 
     #[inline(always)]
-    fn run_linear<S: Simd>(&self, u: &[Row], rows: usize, z: &mut [Row]) {
+    fn run_linear<S: Simd>(&self, u: &[BlockValues], rows: usize, z: &mut [BlockValues]) {
         if let Some(weights) = &self.linear {
             let z = &mut z[0][..whole_lanes(rows)];
             z.fill(0.0);
             for (&weight, u) in weights.iter().zip(u) {
                 for (z, &u) in z.iter_mut().zip(u) {
-                    *z = multiply_add::<S>(weight, u, *z);
+                    *z = multiply_add::<S>(weight, u, *z); // (2.3)
                 }
             }
         }
@@ -401,16 +403,16 @@ impl MemoryLayer {
         &self,
         state: &mut MemoryState,
         mut sensitivity: Option<&mut Sensitivity>,
-        u: &[Row],
-        steps: &Row,
+        u: &[BlockValues],
+        steps: &BlockValues,
         rows: usize,
-        z: &mut [Row],
-        ln_tau: &mut [Row],
+        z: &mut [BlockValues],
+        ln_tau: &mut [BlockValues],
     ) {
         if self.relaxation.is_empty() {
             return;
         }
-        let mut factors = [Row([0.0; BLOCK]); 3];
+        let mut factors = [BlockValues([0.0; BLOCK]); 3];
         let [left, gain, by_ln_tau] = &mut factors;
         let reached = whole_lanes(rows);
         for (m, &(channel, inverse_tau)) in self.relaxation.iter().enumerate() {
@@ -429,7 +431,7 @@ impl MemoryLayer {
                     slope = left[t] * slope + by_ln_tau[t] * stress + increment * (gain[t] - left[t]);
                     ln_tau[m][t] = slope;
                 }
-                stress = relaxation::advance(stress, increment, (left[t], gain[t]));
+                stress = relaxation::advance(stress, increment, (left[t], gain[t])); // (2.4)
                 z[m][t] = stress;
                 last = u[channel][t];
             }
@@ -441,7 +443,7 @@ impl MemoryLayer {
     }
 
     #[inline(always)]
-    fn remember(&self, state: &mut MemoryState, u: &[Row], rows: usize) {
+    fn remember(&self, state: &mut MemoryState, u: &[BlockValues], rows: usize) {
         for (last, u) in state.last.iter_mut().zip(u) {
             *last = u[rows - 1];
         }
@@ -450,7 +452,7 @@ impl MemoryLayer {
 
 /// Input `v = w·u` of each stop of a group in a row, in one rounding order for every kernel.
 #[inline(always)]
-fn drive<S: Simd>(group: &Group, u: impl Fn(usize) -> f64) -> Lanes {
+fn drive<S: Simd>(group: &StopGroup, u: impl Fn(usize) -> f64) -> Lanes {
     let x = u(0);
     let mut v: Lanes = std::array::from_fn(|l| group.weights[0][l] * x);
     for (c, weights) in group.weights.iter().enumerate().skip(1) {
@@ -465,7 +467,7 @@ fn drive<S: Simd>(group: &Group, u: impl Fn(usize) -> f64) -> Lanes {
 /// [`deteriorating_stop::remaining_strength`] with a fused product: one operation less, and another rounding.
 #[inline(always)]
 fn remaining_strength<S: Simd>(slip: f64, inverse_beta: f64) -> f64 {
-    let strength = multiply_add::<S>(-slip, inverse_beta, 1.0);
+    let strength = multiply_add::<S>(-slip, inverse_beta, 1.0); // (2.2): 1 - s/β
     if strength > 0.0 { strength } else { 0.0 }
 }
 
@@ -481,12 +483,12 @@ fn follow<S: Simd, const L: usize, const DETERIORATING: bool>(
     // A plain loop, which becomes vectors; a closure for each lane does not.
     for l in 0..L {
         let before = play[l];
-        let after = play::follow(before, v[l], 1.0);
+        let after = play::follow(before, v[l], 1.0); // (2.2): p
         play[l] = after;
-        let mut output = stop::elongation(v[l], after);
+        let mut output = stop::elongation(v[l], after); // (2.2): ε
         if DETERIORATING {
-            slip[l] = deteriorating_stop::accumulate(slip[l], before, after);
-            output *= remaining_strength::<S>(slip[l], inverse_beta[l]);
+            slip[l] = deteriorating_stop::accumulate(slip[l], before, after); // (2.2): s
+            output *= remaining_strength::<S>(slip[l], inverse_beta[l]); // (2.2): z
         }
         outputs[l] = output;
     }
@@ -497,14 +499,14 @@ fn follow<S: Simd, const L: usize, const DETERIORATING: bool>(
 #[inline(always)]
 fn advance<S: Simd, const L: usize, const DETERIORATING: bool, const MANY: bool>(
     simd: S,
-    group: &Group,
+    group: &StopGroup,
     (play, slip): (&mut Lanes, &mut Lanes),
-    u: &[Row],
+    u: &[BlockValues],
     rows: usize,
-    z: &mut [Row],
+    z: &mut [BlockValues],
 ) {
     // Nearly all networks have one or two channels: their weights stay in registers.
-    const NO_INPUT: &Row = &Row([0.0; BLOCK]);
+    const NO_INPUT: &BlockValues = &BlockValues([0.0; BLOCK]);
     let (x, second) = (&u[0], u.get(1).unwrap_or(NO_INPUT));
     let of_x: [f64; L] = first_lanes(&group.weights[0]);
     let of_second: [f64; L] = first_lanes(group.weights.get(1).unwrap_or(&[0.0; LANES]));
@@ -541,12 +543,12 @@ fn first_lanes<const L: usize>(lanes: &Lanes) -> [f64; L] {
 
 /// Turns eight rows of a block, the chunk with this number, from time-major to neuron-major.
 #[inline(always)]
-fn turn<S: Simd, const L: usize>(simd: S, tile: &[[f64; L]; LANES], chunk: usize, rows: &mut [Row]) {
+fn turn<S: Simd, const L: usize>(simd: S, tile: &[[f64; L]; LANES], chunk: usize, rows: &mut [BlockValues]) {
     transpose(simd, tile, rows.iter_mut().map(|row| &mut row.as_chunks_mut::<LANES>().0[chunk]));
 }
 
 /// Rows of whole vectors that hold `rows` rows. Loops run so far and no further: a loop over a whole
-/// block has a length that the compiler knows, and it would unroll the kernel out of the instruction
+/// block has a length that is known to the compiler, which would unroll the kernel out of the instruction
 /// cache.
 #[inline(always)]
 pub(crate) fn whole_lanes(rows: usize) -> usize {
@@ -555,7 +557,7 @@ pub(crate) fn whole_lanes(rows: usize) -> usize {
 
 /// Turns a group's values over a block from time-major to neuron-major.
 #[inline(always)]
-fn turn_block<S: Simd>(simd: S, values: &[Lanes], rows: &mut [Row]) {
+fn turn_block<S: Simd>(simd: S, values: &[Lanes], rows: &mut [BlockValues]) {
     for (chunk, tile) in values.as_chunks::<LANES>().0.iter().enumerate() {
         turn(simd, tile, chunk, rows);
     }
@@ -571,9 +573,9 @@ struct StopMemory<'a> {
 
 /// Where a group's outputs and their derivatives go, one row for each.
 struct StopSlopes<'a> {
-    z: &'a mut [Row],
-    weights: &'a mut [Row],
-    ln_beta: &'a mut [Row],
+    z: &'a mut [BlockValues],
+    weights: &'a mut [BlockValues],
+    ln_beta: &'a mut [BlockValues],
 }
 
 /// Advances one group through a block with its sub-gradient `∂z/∂w = (1 - s/β) ∂ε/∂w - (ε/β) ∂s/∂w`
@@ -581,9 +583,9 @@ struct StopSlopes<'a> {
 #[inline(always)]
 fn advance_with_slopes<S: Simd>(
     simd: S,
-    group: &Group,
+    group: &StopGroup,
     memory: StopMemory,
-    u: &[Row],
+    u: &[BlockValues],
     rows: usize,
     outputs: StopSlopes,
 ) {
@@ -600,17 +602,17 @@ fn advance_with_slopes<S: Simd>(
         for l in 0..LANES {
             let v = v[l];
             let before = memory.play[l];
-            let after = play::follow(before, v, 1.0);
+            let after = play::follow(before, v, 1.0); // (2.2): p
             memory.play[l] = after;
-            let slip = deteriorating_stop::accumulate(memory.slip[l], before, after);
+            let slip = deteriorating_stop::accumulate(memory.slip[l], before, after); // (2.2): s
             memory.slip[l] = slip;
             let left = remaining_strength::<S>(slip, group.inverse_beta[l]);
-            let elongation = stop::elongation(v, after);
+            let elongation = stop::elongation(v, after); // (2.2): ε
             let wears = if left > 0.0 { elongation * group.inverse_beta[l] } else { 0.0 };
-            output[t][l] = elongation * left;
+            output[t][l] = elongation * left; // (2.2): z
             strength[t][l] = left;
             wear[t][l] = wears;
-            by_ln_beta[t][l] = wears * slip;
+            by_ln_beta[t][l] = wears * slip; // (2.9): ∂z/∂ln β
             moved[t][l] = after - before;
         }
     }
@@ -625,9 +627,11 @@ fn advance_with_slopes<S: Simd>(
         for (t, &u) in u[..rows].iter().enumerate() {
             for l in 0..LANES {
                 let before = play_slope[l];
-                let after = if moved[t][l] != 0.0 { u } else { before };
+                let after = if moved[t][l] != 0.0 { u } else { before }; // (2.9): ∂p/∂w
                 play_slope[l] = after;
+                // (2.9): ∂s/∂w
                 slip_slope[l] += if moved[t][l] > 0.0 { after - before } else { before - after };
+                // (2.9): ∂z/∂w
                 slope[t][l] = strength[t][l] * (u - after) - wear[t][l] * slip_slope[l];
             }
         }

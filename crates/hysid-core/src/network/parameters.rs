@@ -8,7 +8,7 @@ use crate::network::Architecture;
 
 /// Positions of the parameters in the flat vector: stops (`w`, `ln β`), `a`, `ln τ`, then `b` and `U`.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Layout {
+pub struct ParameterLayout {
     architecture: Architecture,
     /// `w`: weights of the stops, one value for each channel of the first stop, then of the second, ...
     pub stop_weights: Range<usize>,
@@ -22,7 +22,7 @@ pub struct Layout {
     pub hidden: Range<usize>,
 }
 
-impl Layout {
+impl ParameterLayout {
     /// The layout of an architecture.
     pub fn new(architecture: Architecture) -> Self {
         let mut end = 0;
@@ -144,7 +144,7 @@ mod tests {
         for family in Family::ALL {
             let inputs = if family.takes_further_inputs() { 3 } else { 1 };
             let architecture = Architecture::new(family, Sizes::default(), inputs, true, true).unwrap();
-            let layout = Layout::new(architecture);
+            let layout = ParameterLayout::new(architecture);
             let mut names = layout.names();
             assert_eq!(names.len(), architecture.searched_parameters());
             assert_eq!(names.len(), layout.len());

@@ -11,9 +11,9 @@
 use pulp::Simd;
 
 use crate::network::block::Block;
-use crate::network::memory::{BLOCK, LANES, Lanes, Row};
+use crate::network::memory::{BLOCK, BlockValues, LANES, Lanes};
 use crate::network::tanh::{tanh, tanh_of_row};
-use crate::network::{Architecture, Layout};
+use crate::network::{Architecture, ParameterLayout};
 use crate::simd::{multiply_add, multiply_add_lanes};
 
 /// Vectors that a kernel keeps in registers for each neuron.
@@ -37,7 +37,7 @@ impl Readout {
             memory: architecture.memory_neurons(),
             constant: architecture.constant,
             direct: architecture.has_direct_path(),
-            weights: parameters[Layout::new(*architecture).hidden].to_vec(),
+            weights: parameters[ParameterLayout::new(*architecture).hidden].to_vec(),
         }
     }
 
@@ -57,14 +57,15 @@ impl Readout {
 
     /// Outputs of the tanh neurons for the first `rows` rows of a block, rounded up to whole vectors.
     #[inline(always)]
-    pub fn tanh_layer<S: Simd>(&self, simd: S, z: &[Row], rows: usize, h: &mut [Row]) {
+    pub fn tanh_layer<S: Simd>(&self, simd: S, z: &[BlockValues], rows: usize, h: &mut [BlockValues]) {
         let z = &z[..self.memory];
         let vectors = rows.div_ceil(S::F64_LANES);
         let reached = vectors * S::F64_LANES;
         let mut i = 0;
-        let (mut rest, mut power) = (Row([0.0; BLOCK]), Row([0.0; BLOCK]));
+        let (mut rest, mut power) = (BlockValues([0.0; BLOCK]), BlockValues([0.0; BLOCK]));
         let (pairs, last) = h[..self.hidden].as_chunks_mut::<2>();
         for [first, second] in pairs {
+            // (2.5), two neurons at a time
             weighted_sums(simd, z, [self.neuron(i), self.neuron(i + 1)], vectors, [first, second]);
             for neuron in [first, second] {
                 tanh_of_row::<S>(&mut neuron[..reached], &mut rest[..reached], &mut power[..reached]);
@@ -72,14 +73,22 @@ impl Readout {
             i += 2;
         }
         if let [last] = last {
-            weighted_sums(simd, z, [self.neuron(i)], vectors, [&mut *last]);
+            weighted_sums(simd, z, [self.neuron(i)], vectors, [&mut *last]); // (2.5)
             tanh_of_row::<S>(&mut last[..reached], &mut rest[..reached], &mut power[..reached]);
         }
     }
 
     /// The output of the first `rows` rows of a block, in the scaled unit.
     #[inline(always)]
-    pub fn output<S: Simd>(&self, simd: S, output: &[f64], z: &[Row], h: &[Row], rows: usize, y: &mut Row) {
+    pub fn output<S: Simd>(
+        &self,
+        simd: S,
+        output: &[f64],
+        z: &[BlockValues],
+        h: &[BlockValues],
+        rows: usize,
+        y: &mut BlockValues,
+    ) {
         let (constant, hidden, direct) = self.split(output);
         let y = S::as_mut_simd_f64s(&mut y.0).0;
         let vectors = rows.div_ceil(S::F64_LANES);
@@ -98,10 +107,10 @@ impl Readout {
     #[inline(always)]
     pub fn features<'r>(
         &self,
-        constant: &'r Row,
-        z: &'r [Row],
-        h: &'r [Row],
-    ) -> impl Iterator<Item = &'r Row> {
+        constant: &'r BlockValues,
+        z: &'r [BlockValues],
+        h: &'r [BlockValues],
+    ) -> impl Iterator<Item = &'r BlockValues> {
         let direct = if self.direct { &z[..self.memory] } else { &[] };
         self.constant.then_some(constant).into_iter().chain(&h[..self.hidden]).chain(direct)
     }
@@ -111,36 +120,36 @@ impl Readout {
 #[derive(Debug, Clone)]
 pub(crate) struct Backward {
     /// By the weighted sum of each tanh neuron: the weight times `c_i (1 - h_i²)`.
-    pub by_sum: Vec<Row>,
+    pub by_sum: Vec<BlockValues>,
     /// By the output of each memory neuron: the weight times `q_j = Σ_i c_i (1 - h_i²) U_ij + d_j` (theory.md
     /// (2.11)).
-    pub by_memory: Vec<Row>,
+    pub by_memory: Vec<BlockValues>,
 }
 
 impl Backward {
     pub fn new(architecture: &Architecture) -> Self {
         Self {
-            by_sum: vec![Row([0.0; BLOCK]); architecture.hidden],
-            by_memory: vec![Row([0.0; BLOCK]); architecture.memory_neurons()],
+            by_sum: vec![BlockValues([0.0; BLOCK]); architecture.hidden],
+            by_memory: vec![BlockValues([0.0; BLOCK]); architecture.memory_neurons()],
         }
     }
 
     #[inline(always)]
-    pub fn run<S: Simd>(&mut self, readout: &Readout, output: &[f64], weight: &Row, block: &Block) {
+    pub fn run<S: Simd>(&mut self, readout: &Readout, output: &[f64], weight: &BlockValues, block: &Block) {
         let (_, hidden, direct) = readout.split(output);
         for (j, q) in self.by_memory.iter_mut().enumerate() {
             let d = direct.get(j).copied().unwrap_or(0.0);
             for (q, weight) in q.iter_mut().zip(weight) {
-                *q = d * weight;
+                *q = d * weight; // (2.11): d_j
             }
         }
         for (i, ((&c, h), slope)) in hidden.iter().zip(&block.h).zip(&mut self.by_sum).enumerate() {
             for ((slope, &h), &weight) in slope.iter_mut().zip(h).zip(weight) {
-                *slope = c * multiply_add::<S>(-h, h, 1.0) * weight;
+                *slope = c * multiply_add::<S>(-h, h, 1.0) * weight; // (2.11): c_i (1 - h_i²)
             }
             let (_, weights) = readout.neuron(i);
             for (q, &weight) in self.by_memory.iter_mut().zip(weights) {
-                accumulate::<S>(weight, &slope.0, &mut q.0);
+                accumulate::<S>(weight, &slope.0, &mut q.0); // (2.11): times U_ij
             }
         }
     }
@@ -159,10 +168,10 @@ fn accumulate<S: Simd>(factor: f64, x: &[f64], y: &mut [f64]) {
 #[inline(always)]
 fn weighted_sums<S: Simd, const K: usize>(
     simd: S,
-    z: &[Row],
+    z: &[BlockValues],
     neurons: [(f64, &[f64]); K],
     vectors: usize,
-    sums: [&mut Row; K],
+    sums: [&mut BlockValues; K],
 ) {
     let mut sums = sums.map(|sum| S::as_mut_simd_f64s(&mut sum.0).0);
     let mut first = 0;
@@ -179,7 +188,7 @@ fn weighted_sums<S: Simd, const K: usize>(
 #[inline(always)]
 fn weighted_sum_of_vectors<S: Simd, const K: usize, const V: usize>(
     simd: S,
-    z: &[Row],
+    z: &[BlockValues],
     neurons: &[(f64, &[f64]); K],
     first: usize,
     sums: &mut [&mut [S::f64s]; K],
@@ -197,15 +206,15 @@ fn weighted_sum_of_vectors<S: Simd, const K: usize, const V: usize>(
 fn outputs<S: Simd, const V: usize>(
     simd: S,
     constant: f64,
-    (hidden, h): (&[f64], &[Row]),
-    (direct, z): (&[f64], &[Row]),
+    (hidden, h): (&[f64], &[BlockValues]),
+    (direct, z): (&[f64], &[BlockValues]),
     first: usize,
     y: &mut [S::f64s],
 ) {
     let [of_hidden] = add_weighted(simd, h, [hidden], first, [[simd.splat_f64s(constant); V]]);
     let [of_memory] = add_weighted(simd, z, [direct], first, [[simd.splat_f64s(0.0); V]]);
     for v in 0..V {
-        y[first + v] = simd.add_f64s(of_hidden[v], of_memory[v]);
+        y[first + v] = simd.add_f64s(of_hidden[v], of_memory[v]); // (2.6)
     }
 }
 
@@ -213,7 +222,7 @@ fn outputs<S: Simd, const V: usize>(
 #[inline(always)]
 fn add_weighted<S: Simd, const K: usize, const V: usize>(
     simd: S,
-    rows: &[Row],
+    rows: &[BlockValues],
     weights: [&[f64]; K],
     first: usize,
     mut total: [[S::f64s; V]; K],
@@ -289,9 +298,9 @@ impl SampleReadout {
         // One loop over all groups, of a length that the compiler does not know: it unrolls a loop over a single group
         // and then uses narrower vectors.
         for h in h.iter_mut() {
-            *h = tanh::<S>(*h);
+            *h = tanh::<S>(*h); // (2.5)
         }
-        dot::<S>(&self.of_hidden, h, self.constant) + of_memory
+        dot::<S>(&self.of_hidden, h, self.constant) + of_memory // (2.6)
     }
 }
 

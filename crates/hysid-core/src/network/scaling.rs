@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Excitation, Record};
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::network::{Architecture, Drive};
+use crate::network::{Architecture, NetworkDrive};
 
 /// Scale factors, found on the training data and stored in the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -83,7 +83,7 @@ impl Scaling {
         record: &Record,
         architecture: &Architecture,
         rate: Option<RateMethod>,
-    ) -> Result<Drive> {
+    ) -> Result<NetworkDrive> {
         let rate = rate.filter(|_| architecture.rate);
         let lead_in = record.lead_in_rows();
         let rows = lead_in.len() + record.len();
@@ -98,7 +98,7 @@ impl Scaling {
             behind.fill(0.0);
             Self::fill_steps(&excitation, 0, behind);
         }
-        Ok(Drive { channels, steps })
+        Ok(NetworkDrive { channels, steps })
     }
 
     /// Fills the channels of the rows of a lead-in: first input, rate 0, further inputs as at the first row.

@@ -12,13 +12,13 @@ use pulp::{Simd, WithSimd};
 use crate::data::polyline::steps_between;
 use crate::network::Architecture;
 use crate::network::block::Block;
-use crate::network::memory::{BLOCK, MemoryLayer, MemoryState, Row, Sensitivity};
+use crate::network::memory::{BLOCK, BlockValues, MemoryLayer, MemoryState, Sensitivity};
 use crate::network::readout::Readout;
 use crate::stop_check::{Pace, StopCheck};
 
 /// Scaled inputs of a network over a record, with time steps.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drive {
+pub struct NetworkDrive {
     /// One column for each channel (first input, its rate if there is one, further inputs), each with one
     /// value a row.
     pub channels: Vec<Vec<f64>>,
@@ -27,7 +27,7 @@ pub struct Drive {
     pub steps: Vec<f64>,
 }
 
-impl Drive {
+impl NetworkDrive {
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.channels.first().map_or(0, Vec::len)
@@ -49,7 +49,7 @@ impl Drive {
 
 /// A network on its way over records: its parameters, and whether derivatives are wanted.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Walk<'a> {
+pub(crate) struct NetworkSweep<'a> {
     pub architecture: &'a Architecture,
     pub parameters: &'a [f64],
     pub with_slopes: bool,
@@ -62,13 +62,13 @@ pub(crate) trait TakeBlock {
     fn take<S: Simd>(&mut self, simd: S, rows: usize, block: &Block, readout: &Readout);
 }
 
-impl Walk<'_> {
+impl NetworkSweep<'_> {
     /// Walks over every record from the virgin state; ends early once stopped.
     #[inline(always)]
     pub fn over<S: Simd>(
         &self,
         simd: S,
-        records: &[Drive],
+        records: &[NetworkDrive],
         targets: &[impl AsRef<[f64]>],
         to: &mut impl TakeBlock,
     ) {
@@ -94,7 +94,7 @@ struct Workspace<'a> {
 }
 
 impl<'a> Workspace<'a> {
-    fn new(walk: &Walk<'a>) -> Self {
+    fn new(walk: &NetworkSweep<'a>) -> Self {
         let a = walk.architecture;
         Self {
             pace: Pace::new(walk.stop),
@@ -110,10 +110,10 @@ impl<'a> Workspace<'a> {
 
     /// Runs through a record and hands on whole blocks of rows with a target.
     #[inline(always)]
-    fn record<S: Simd>(&mut self, simd: S, drive: &Drive, target: &[f64], to: &mut impl TakeBlock) {
+    fn record<S: Simd>(&mut self, simd: S, drive: &NetworkDrive, target: &[f64], to: &mut impl TakeBlock) {
         let mut state = self.memory.virgin();
         let mut sensitivity = self.with_slopes.then(|| self.memory.virgin_sensitivity());
-        let mut steps = Row([0.0; BLOCK]);
+        let mut steps = BlockValues([0.0; BLOCK]);
         for start in (0..drive.len()).step_by(BLOCK) {
             if self.pace.is_over(self.operations) {
                 return;
@@ -139,7 +139,7 @@ impl<'a> Workspace<'a> {
                 None => simd.vectorize(Advance { memory, state, block, steps, rows }),
             }
             if wanted == BLOCK && self.filled == 0 {
-                simd.vectorize(HandOn { readout: &self.readout, block: &mut self.block, rows, to });
+                simd.vectorize(BlockCompletion { readout: &self.readout, block: &mut self.block, rows, to });
                 continue;
             }
             if wanted == 0 {
@@ -162,7 +162,7 @@ impl<'a> Workspace<'a> {
     fn flush<S: Simd>(&mut self, simd: S, to: &mut impl TakeBlock) {
         let rows = std::mem::take(&mut self.filled);
         if rows > 0 {
-            simd.vectorize(HandOn { readout: &self.readout, block: &mut self.pending, rows, to });
+            simd.vectorize(BlockCompletion { readout: &self.readout, block: &mut self.pending, rows, to });
         }
     }
 }
@@ -172,7 +172,7 @@ struct Advance<'w> {
     memory: &'w MemoryLayer,
     state: &'w mut MemoryState,
     block: &'w mut Block,
-    steps: &'w Row,
+    steps: &'w BlockValues,
     rows: usize,
 }
 
@@ -192,7 +192,7 @@ struct AdvanceWithSlopes<'w> {
     state: &'w mut MemoryState,
     sensitivity: &'w mut Sensitivity,
     block: &'w mut Block,
-    steps: &'w Row,
+    steps: &'w BlockValues,
     rows: usize,
 }
 
@@ -208,14 +208,14 @@ impl WithSimd for AdvanceWithSlopes<'_> {
 }
 
 /// Completes a block of rows with a target and hands it on.
-struct HandOn<'w, T> {
+struct BlockCompletion<'w, T> {
     readout: &'w Readout,
     block: &'w mut Block,
     rows: usize,
     to: &'w mut T,
 }
 
-impl<T: TakeBlock> WithSimd for HandOn<'_, T> {
+impl<T: TakeBlock> WithSimd for BlockCompletion<'_, T> {
     type Output = ();
 
     #[inline(always)]

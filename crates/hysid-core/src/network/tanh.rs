@@ -79,9 +79,9 @@ mod tests {
     use crate::elementary::{self, powf};
     use crate::simd;
 
-    struct All<'a>(&'a [f64]);
+    struct AllTanh<'a>(&'a [f64]);
 
-    impl pulp::WithSimd for All<'_> {
+    impl pulp::WithSimd for AllTanh<'_> {
         type Output = Vec<f64>;
         #[inline(always)]
         fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
@@ -100,7 +100,7 @@ mod tests {
             .chain((0..1200).map(|k| powf(10.0, -k as f64 / 4.0)))
             .chain([0.0, 1e300, f64::MAX])
             .collect();
-        let of_all = simd::run_with_all(|| All(&x));
+        let of_all = simd::run_with_all(|| AllTanh(&x));
         assert!(of_all.iter().all(|y| *y == of_all[0]), "instruction sets differ");
         let y = &of_all[0];
         for (&x, &y) in x.iter().zip(y) {
@@ -109,7 +109,7 @@ mod tests {
             assert!(y.abs() <= 1.0);
         }
         let negative: Vec<f64> = x.iter().map(|x| -x).collect();
-        let odd = simd::run(All(&negative));
+        let odd = simd::run(AllTanh(&negative));
         assert!(y.iter().zip(&odd).all(|(y, odd)| y.to_bits() == (-odd).to_bits()));
     }
 }

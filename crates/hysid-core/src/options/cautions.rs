@@ -1,7 +1,7 @@
 //! Cautions before a fit: data that do not suit the model.
 
 use crate::data::rate::RateMethod;
-use crate::data::record::{Dataset, Speeds};
+use crate::data::record::{Dataset, SpeedEvidence};
 use crate::data::warning::Warning;
 use crate::options::classical::ClassicalModel;
 use crate::options::{FitSpec, ModelName};
@@ -30,7 +30,7 @@ impl FitSpec {
     fn rate_not_shown(&self, data: &Dataset) -> Option<String> {
         let model = self.model();
         let is_used = matches!(self.rate(), Some(method) if method != RateMethod::Given) && model.uses_rate();
-        (is_used && data.speeds() == Speeds::One).then(|| {
+        (is_used && data.speeds() == SpeedEvidence::One).then(|| {
             format!(
                 "{} uses the rate, but the data pass each place of {} at one speed: at other speeds the model is \
                  arbitrary (--rate none leaves the rate out)",

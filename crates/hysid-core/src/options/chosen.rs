@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
-use crate::data::record::{Dataset, Speeds};
+use crate::data::record::{Dataset, SpeedEvidence};
 use crate::error::{Error, OptionError, Result};
 use crate::law::thresholds::MOST_THRESHOLDS;
 use crate::network::{Family, Sizes};
@@ -16,7 +16,7 @@ use crate::options::effort::Effort;
 use crate::options::fit_spec::AutoOptions;
 use crate::options::input_options::InputOptions;
 use crate::options::network::{FitOptions, Trainer};
-use crate::options::table::{FitOption, OPTIONS, Values, check};
+use crate::options::table::{FitOption, OPTIONS, OptionValues, check};
 use crate::options::{FitSpec, ModelName};
 
 /// Options of a fit, described in [`OPTIONS`]; `None` stands for the default of the model or its trainer.
@@ -111,7 +111,7 @@ impl NamedOptions {
         self.model.unwrap_or(ModelName::AUTO)
     }
 
-    /// The specification of the fit. `always_rate` is true if the user wants no model without the rate.
+    /// The specification of the fit. `always_rate` is true if only models with the rate are allowed.
     pub fn request(&self, rate: Option<RateMethod>, always_rate: bool) -> FitSpec {
         let used = self.used();
         let alone = match self.model() {
@@ -255,7 +255,7 @@ impl NamedOptions {
         // A flag that is not set asks for nothing.
         let is_asked = |option: &FitOption| match named.get(option.name) {
             None | Some(Value::Null) => false,
-            Some(Value::Bool(false)) => matches!(option.values, Values::Truth),
+            Some(Value::Bool(false)) => matches!(option.values, OptionValues::Truth),
             Some(_) => true,
         };
         let (model, trainer) = (self.model(), self.trainer());
@@ -286,14 +286,14 @@ pub enum RateChoice {
     Auto,
     /// No rate.
     None,
-    /// By this method.
+    /// A rate that is computed by this method.
     Method(RateMethod),
 }
 
 impl RateChoice {
     /// The rate of this model on these data.
     pub fn method(self, model: ModelName, data: &Dataset) -> Option<RateMethod> {
-        let is_shown = || model.uses_rate() && (model.needs_rate() || data.speeds() != Speeds::One);
+        let is_shown = || model.uses_rate() && (model.needs_rate() || data.speeds() != SpeedEvidence::One);
         match self {
             Self::Auto => (data.has_time() && is_shown()).then_some(RateMethod::Backward),
             Self::None => None,

@@ -35,7 +35,7 @@ macro_rules! classical_model {
             /// All of them.
             pub const ALL: &[Self] = &[$(Self::$law,)* Self::RandomStops];
 
-            /// What is true of it whatever its parameters.
+            /// Facts that hold for all parameters.
             pub fn facts(self) -> &'static Facts {
                 match self {
                     $(Self::$law => &<crate::law::$module::$law as Law>::FACTS,)*

@@ -19,7 +19,7 @@ impl Effort {
     /// All of them, the least first.
     pub const ALL: [Self; 3] = [Self::Quick, Self::Normal, Self::Thorough];
 
-    /// Its name.
+    /// Name of the effort as an option value.
     pub fn name(self) -> &'static str {
         match self {
             Self::Quick => "quick",

@@ -15,9 +15,9 @@ use crate::options::network::{ENSEMBLE_PENALTIES, FitOptions, SEED};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum FitSpec {
-    /// A network.
+    /// A network of a named family, and its options.
     Network(FitOptions),
-    /// Another model.
+    /// A classical law, and its options.
     Classical(ClassicalOptions),
     /// The best of many models, chosen by cross-validation.
     Auto(AutoOptions),

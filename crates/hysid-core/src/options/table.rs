@@ -18,26 +18,26 @@ use crate::options::network::{
 };
 use crate::options::preset::{Preset, count_of};
 
-/// An option of a fit.
+/// An option of a fit: name, meaning, valid values, defaults.
 #[derive(Debug, Clone, Copy)]
 pub struct FitOption {
     /// Its name, in words joined by underscores, as in Python; the command line joins them by hyphens.
     pub name: &'static str,
     /// The group in which it is listed.
-    pub group: Group,
+    pub group: OptionGroup,
     /// Its effect, in a sentence without a full stop.
     pub meaning: &'static str,
     /// Its valid values.
-    pub values: Values,
+    pub values: OptionValues,
     /// The default for a model, and for a network when it is trained by this trainer.
     default: fn(ModelName, Trainer) -> Preset,
     /// Whether a network, or `auto`, uses it. A classical model lists its options itself.
     used_by: fn(ModelName, Trainer) -> bool,
 }
 
-/// A group of options.
+/// Group under which options are listed in help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Group {
+pub enum OptionGroup {
     /// Options of most models.
     Model,
     /// Options of the training of networks and of searches.
@@ -46,11 +46,11 @@ pub enum Group {
     Classical,
 }
 
-impl Group {
+impl OptionGroup {
     /// All of them, in their order.
     pub const ALL: [Self; 3] = [Self::Model, Self::Training, Self::Classical];
 
-    /// Its heading.
+    /// Heading of the group in help.
     pub fn heading(self) -> &'static str {
         match self {
             Self::Model => "Model",
@@ -62,7 +62,7 @@ impl Group {
 
 /// The valid values of an option.
 #[derive(Debug, Clone, Copy)]
-pub enum Values {
+pub enum OptionValues {
     /// Whole numbers from the first to the second.
     Count(usize, usize),
     /// Whole numbers from 0 up.
@@ -83,14 +83,14 @@ pub enum Values {
     Names(fn() -> Vec<&'static str>),
 }
 
-use Group::{Classical, Model, Training};
+use OptionGroup::{Classical, Model, Training};
 
 /// Valid numbers of neurons or operators.
-const NEURONS: Values = Values::Count(1, 1000);
+const NEURONS: OptionValues = OptionValues::Count(1, 1000);
 
-const PENALTY: Values = Values::Number(*PENALTIES.start(), *PENALTIES.end());
+const PENALTY: OptionValues = OptionValues::Number(*PENALTIES.start(), *PENALTIES.end());
 
-const SHARE: Values = Values::ZeroOr(*SHARES.start(), *SHARES.end());
+const SHARE: OptionValues = OptionValues::ZeroOr(*SHARES.start(), *SHARES.end());
 
 /// Every option, in the order in which it is listed.
 pub const OPTIONS: [FitOption; 34] = [
@@ -98,7 +98,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "model",
         group: Model,
         meaning: "Model to fit. `auto` cross-validates networks and classical models and combines the best",
-        values: Values::Names(models),
+        values: OptionValues::Names(models),
         default: |_, _| Preset::Name(ModelName::AUTO.name()),
         used_by: |_, _| true,
     },
@@ -107,7 +107,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Model,
         meaning: "Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts \
                   that are combined",
-        values: Values::Count(1, MOST_MEMBERS),
+        values: OptionValues::Count(1, MOST_MEMBERS),
         default: |model, _| {
             Preset::Count(match model {
                 ModelName::Auto(_) => AutoOptions::default().members,
@@ -142,7 +142,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Model,
         meaning: "Relaxation neurons of each input of xpnn+, for data with time stamps, or relaxation elements of \
                   dynamic-prandtl-ishlinskii (at most 3); 0 for none",
-        values: Values::Count(0, 1000),
+        values: OptionValues::Count(0, 1000),
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::ByCandidate,
             _ => count_of(model, "relaxation", Sizes::default().relaxation),
@@ -153,7 +153,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "no_deterioration",
         group: Model,
         meaning: "Use stops that do not deteriorate",
-        values: Values::Flag,
+        values: OptionValues::Flag,
         default: |model, _| match model {
             ModelName::Network(_) => Preset::Off,
             _ => Preset::Chosen,
@@ -164,7 +164,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "history",
         group: Model,
         meaning: "Add the running peak and the travelled path of the input as inputs",
-        values: Values::Flag,
+        values: OptionValues::Flag,
         default: chosen_or_off,
         used_by: |model, _| network_or_auto(model, |family| family.takes_further_inputs()),
     },
@@ -191,7 +191,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Training,
         meaning: "Rows at the beginning of each record that drive the memory and are not trained on, for records that \
                   do not begin in the virgin state",
-        values: Values::Whole,
+        values: OptionValues::Whole,
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::Chosen,
             _ => Preset::Count(0),
@@ -204,7 +204,7 @@ pub const OPTIONS: [FitOption; 34] = [
         meaning: "State of the memory at the beginning of each record: without history, after a visit of the upper or \
                   the lower end of the input range, demagnetised, periodic (each record is a period of a steady state), \
                   or unknown and found for each record",
-        values: Values::Names(initial_states),
+        values: OptionValues::Names(initial_states),
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::Chosen,
             _ => Preset::Name(InitialState::default().name()),
@@ -216,7 +216,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Training,
         meaning: "Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic \
                   algorithm, or the paper's hybrid of the genetic algorithm and the sub-gradient method",
-        values: Values::Names(trainers),
+        values: OptionValues::Names(trainers),
         default: |_, _| Preset::Name(Trainer::default().name()),
         used_by: of_networks,
     },
@@ -225,7 +225,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Training,
         meaning: "How long `auto` searches: `quick` takes about half the normal time, `thorough` about five times as \
                   long",
-        values: Values::Names(efforts),
+        values: OptionValues::Names(efforts),
         default: |_, _| Preset::Name(Effort::default().name()),
         used_by: |model, _| matches!(model, ModelName::Auto(_)),
     },
@@ -233,7 +233,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "starts",
         group: Training,
         meaning: "Number of random starts: networks, populations or parameter sets from which the training begins",
-        values: Values::Count(1, MOST_STARTS),
+        values: OptionValues::Count(1, MOST_STARTS),
         default: |model, trainer| match model {
             ModelName::Auto(_) => Preset::Count(AutoOptions::default().starts),
             _ => count_of(model, "starts", trainer.default_starts()),
@@ -245,7 +245,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Training,
         meaning: "Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm, \
                   iterations of the sub-gradient method; the hybrid uses half of them for each",
-        values: Values::Count(0, MOST_EPOCHS),
+        values: OptionValues::Count(0, MOST_EPOCHS),
         default: |model, trainer| match model {
             ModelName::Auto(_) => Preset::ByCandidate,
             _ => count_of(model, "epochs", trainer.default_epochs()),
@@ -256,7 +256,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "population",
         group: Training,
         meaning: "Individuals of the genetic algorithm",
-        values: Values::Count(*POPULATIONS.start(), *POPULATIONS.end()),
+        values: OptionValues::Count(*POPULATIONS.start(), *POPULATIONS.end()),
         default: |_, trainer| Preset::Count(FitOptions::of(trainer).population),
         used_by: |model, trainer| of_networks(model, trainer) && trainer.is_genetic(),
     },
@@ -265,7 +265,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Training,
         meaning: "Epochs without a noticeable improvement after which the genetic algorithm or the sub-gradient method \
                   ends; 0 for never",
-        values: Values::Whole,
+        values: OptionValues::Whole,
         default: |_, trainer| Preset::Count(FitOptions::of(trainer).stall),
         used_by: |model, trainer| of_networks(model, trainer) && trainer != Trainer::LevenbergMarquardt,
     },
@@ -273,7 +273,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "seed",
         group: Training,
         meaning: "Seed of all random numbers; the same data, options and seed give the same model",
-        values: Values::Whole,
+        values: OptionValues::Whole,
         default: |_, _| Preset::Count(SEED as usize),
         used_by: |_, _| true,
     },
@@ -282,7 +282,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Training,
         meaning: "Share of the data held out to validate a network on, between 0 and 1; the final network is trained \
                   on all data",
-        values: Values::Fraction,
+        values: OptionValues::Fraction,
         default: |_, _| Preset::Folds,
         used_by: of_networks,
     },
@@ -314,7 +314,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Classical,
         meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of \
                   duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none)",
-        values: Values::Count(0, 1000),
+        values: OptionValues::Count(0, 1000),
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::ByCandidate,
             _ => count_of(model, "operators", 0),
@@ -327,7 +327,7 @@ pub const OPTIONS: [FitOption; 34] = [
         meaning: "States of duhem-nn, driven by the input and by time (1 to 20), or memory states of each hysteretic \
                   element, which change only when its displacement changes (0 to 10; an element without memory states \
                   and stops has no hysteresis)",
-        values: Values::Count(0, MOST_STATES),
+        values: OptionValues::Count(0, MOST_STATES),
         default: |model, _| count_of(model, "states", 0),
         used_by: of_none,
     },
@@ -335,7 +335,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "modes",
         group: Classical,
         meaning: "Modes of vibration of hysteretic-oscillator and hysteretic-state-space",
-        values: Values::Count(1, MOST_PARTS),
+        values: OptionValues::Count(1, MOST_PARTS),
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::ByCandidate,
             _ => count_of(model, "modes", 0),
@@ -347,7 +347,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Classical,
         meaning: "Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of \
                   the input",
-        values: Values::Positive,
+        values: OptionValues::Positive,
         default: |_, _| Preset::Chosen,
         used_by: of_none,
     },
@@ -355,7 +355,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "sign",
         group: Classical,
         meaning: "Sign of the weights of plays, or of the cells of a Preisach plane",
-        values: Values::Names(signs),
+        values: OptionValues::Names(signs),
         default: |_, _| Preset::Chosen,
         used_by: of_none,
     },
@@ -363,7 +363,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "dead_zones",
         group: Classical,
         meaning: "Dead zones on each side of modified-prandtl-ishlinskii or dynamic-prandtl-ishlinskii",
-        values: Values::Count(1, 100),
+        values: OptionValues::Count(1, 100),
         default: |model, _| count_of(model, "dead_zones", 0),
         used_by: of_none,
     },
@@ -372,7 +372,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Classical,
         meaning: "Give each play of generalized-prandtl-ishlinskii or rate-dependent-prandtl-ishlinskii a weight of its \
                   own, in place of an exponential law",
-        values: Values::Truth,
+        values: OptionValues::Truth,
         default: |_, _| Preset::On,
         used_by: of_none,
     },
@@ -380,7 +380,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "logarithmic_thresholds",
         group: Classical,
         meaning: "Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate",
-        values: Values::Flag,
+        values: OptionValues::Flag,
         default: |_, _| Preset::Off,
         used_by: of_none,
     },
@@ -389,7 +389,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Classical,
         meaning: "Use bouc-wen with the degradation and pinching of Baber and Noori, peak-oriented with softening \
                   and deterioration, or hysteretic-oscillator and hysteretic-state-space with stops that deteriorate",
-        values: Values::Flag,
+        values: OptionValues::Flag,
         default: |_, _| Preset::Off,
         used_by: of_none,
     },
@@ -397,7 +397,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "asymmetric",
         group: Classical,
         meaning: "Use peak-oriented or menegotto-pinto with different strengths upwards and downwards",
-        values: Values::Flag,
+        values: OptionValues::Flag,
         default: |_, _| Preset::Off,
         used_by: of_none,
     },
@@ -405,7 +405,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "differential_form",
         group: Classical,
         meaning: "Use jiles-atherton in its differential form of 1992 in place of that of 1986",
-        values: Values::Flag,
+        values: OptionValues::Flag,
         default: |_, _| Preset::Off,
         used_by: of_none,
     },
@@ -413,7 +413,7 @@ pub const OPTIONS: [FitOption; 34] = [
         name: "resonance",
         group: Classical,
         meaning: "Use dynamic-prandtl-ishlinskii with a resonance behind its plays",
-        values: Values::Flag,
+        values: OptionValues::Flag,
         default: |_, _| Preset::Off,
         used_by: of_none,
     },
@@ -422,7 +422,7 @@ pub const OPTIONS: [FitOption; 34] = [
         group: Classical,
         meaning: "Use dynamic-prandtl-ishlinskii with a lag before its plays and the input beside them, for an output that \
                   follows the integral of the input, as the voltage of a cell follows its charge",
-        values: Values::Flag,
+        values: OptionValues::Flag,
         default: |_, _| Preset::Off,
         used_by: of_none,
     },
@@ -555,8 +555,8 @@ impl FitOption {
     }
 }
 
-impl Values {
-    /// What is needed, in words.
+impl OptionValues {
+    /// Valid values, in words.
     pub fn needed(&self) -> String {
         match self {
             Self::Count(low, high) => format!("choose a whole number from {low} to {high}"),

@@ -9,7 +9,7 @@ use hysid_core::data::turning_points::turning_points;
 use crate::noise::{resolution, roughness};
 use crate::significance;
 
-/// What decides which reversals count.
+/// Rule by which reversals count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum ReversalRule {
     /// Reversals of at least this size, in the unit of the input.

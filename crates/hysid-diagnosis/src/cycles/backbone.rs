@@ -20,7 +20,7 @@ pub enum Direction {
     Down,
 }
 
-/// A point of the backbone.
+/// A turning point on the backbone.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BackbonePoint {
     /// Name of the record.

@@ -1,4 +1,4 @@
-//! What an instrument adds to loops, and its removal: a straight background, a drift over the record, an offset.
+//! Additions of an instrument to loops, and their removal: a straight background, a drift over the record, an offset.
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,12 +12,12 @@ use hysid_core::significant::Significant;
 use super::CLOSED;
 use super::path::range;
 
-/// What is removed from the outputs of each record before its loops are read.
+/// Part to be removed from the outputs of each record before its loops are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Correction {
     /// The slope that both branches have beyond 70 % of the largest input: the diamagnetism of a holder, a leakage.
     Slope,
-    /// What the output gains from the beginning of the record to its end, evenly over time or rows.
+    /// Change of the output from the beginning of the record to its end, evenly over time or rows.
     Drift,
     /// The middle of the outputs at both ends of the input.
     Offset,
@@ -97,7 +97,7 @@ impl Correction {
     }
 }
 
-/// What a correction takes from each row, and its size in words.
+/// Amount that a correction subtracts from each row, and its size in words.
 fn removed(record: &Record, correction: Correction, input_unit: &str) -> Option<(Vec<f64>, String)> {
     let (x, y) = (&*record.inputs()[0], record.output());
     let (low, high) = range(x);
@@ -157,8 +157,8 @@ fn removed(record: &Record, correction: Correction, input_unit: &str) -> Option<
     }
 }
 
-/// What the output gains from the beginning to the end of a part of a record whose input comes back, from lines through the
-/// rows near both.
+/// Change of the output from the beginning to the end of a part of a record whose input comes back, from lines through
+/// the rows near both.
 pub(super) fn gap(x: &[f64], y: &[f64]) -> Option<f64> {
     let (low, high) = range(x);
     let last = x.len().checked_sub(1)?;

@@ -33,7 +33,7 @@ const DECADE: f64 = 10.0;
 
 /// A hold of the input, and what the output does meanwhile.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Hold {
+pub(super) struct CycleHold {
     /// Its first row and its last.
     pub rows: (usize, usize),
     pub duration: f64,
@@ -44,7 +44,7 @@ pub(super) struct Hold {
 }
 
 /// The holds of a record with time; none of a record without.
-pub(super) fn holds(survey: &BranchSet, record: usize) -> Vec<Hold> {
+pub(super) fn holds(survey: &BranchSet, record: usize) -> Vec<CycleHold> {
     let data = &survey.data.records()[record];
     let Some(time) = data.time() else { return Vec::new() };
     let (x, y) = (&*data.inputs()[0], data.output());
@@ -85,7 +85,7 @@ fn settled(x: &[f64], first: usize, last: usize, band: f64) -> usize {
     (first..=last).find(is_there).unwrap_or(first)
 }
 
-fn hold(time: &[f64], y: &[f64], first: usize, last: usize) -> Option<Hold> {
+fn hold(time: &[f64], y: &[f64], first: usize, last: usize) -> Option<CycleHold> {
     let (begin, end) = (y[first], y[last]);
     if last <= first || begin.is_nan() || end.is_nan() {
         return None;
@@ -94,7 +94,7 @@ fn hold(time: &[f64], y: &[f64], first: usize, last: usize) -> Option<Hold> {
     let rows =
         (first + 1..=last).filter(|&row| time[row] - time[first] >= FROM_STEP * step && !y[row].is_nan());
     let points: Vec<(f64, f64)> = rows.map(|row| (time[row] - time[first], y[row])).collect();
-    Some(Hold {
+    Some(CycleHold {
         rows: (first, last),
         duration: time[last] - time[first],
         drift: end - begin,

@@ -184,14 +184,14 @@ pub(super) struct Span {
     pub branches: Range<usize>,
 }
 
-/// What a part of a record is.
+/// Role of a part of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SpanPart {
     /// A whole cycle.
     Cycle,
-    /// What comes before the first whole cycle.
+    /// Rows before the first whole cycle.
     Beginning,
-    /// What comes after the last whole cycle.
+    /// Rows after the last whole cycle.
     End,
     /// All of a record without any whole cycle.
     All,

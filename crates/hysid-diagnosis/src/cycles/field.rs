@@ -1,8 +1,8 @@
 //! The field of engineering that data come from.
 
-use hysid_core::data::part::{Domain, Part};
 use hysid_core::data::record::ColumnNames;
 use hysid_core::data::unit;
+use hysid_core::data::usual_role::{Domain, UsualRole};
 use hysid_core::named;
 use serde::Serialize;
 
@@ -32,14 +32,16 @@ impl Field {
         {
             return Self::Magnet;
         }
-        let input = names.inputs.first().and_then(|name| Part::of(name));
-        match (input, Part::of(&names.output)) {
-            (Some(Part::Drives(Domain::Mechanics)), Some(Part::Follows(Domain::Mechanics))) => {
+        let input = names.inputs.first().and_then(|name| UsualRole::of(name));
+        match (input, UsualRole::of(&names.output)) {
+            (Some(UsualRole::Drives(Domain::Mechanics)), Some(UsualRole::Follows(Domain::Mechanics))) => {
                 Self::Structure
             }
-            (Some(Part::Drives(one)), Some(Part::Follows(other))) if one == other => Self::Magnet,
-            (Some(Part::Drives(Domain::Mechanics) | Part::Follows(_) | Part::Excites), _) => Self::General,
-            (_, Some(Part::Drives(Domain::Mechanics))) => Self::Actuator,
+            (Some(UsualRole::Drives(one)), Some(UsualRole::Follows(other))) if one == other => Self::Magnet,
+            (Some(UsualRole::Drives(Domain::Mechanics) | UsualRole::Follows(_) | UsualRole::Excites), _) => {
+                Self::General
+            }
+            (_, Some(UsualRole::Drives(Domain::Mechanics))) => Self::Actuator,
             _ => Self::General,
         }
     }
@@ -59,7 +61,7 @@ impl Field {
         matches!(self, Self::Actuator | Self::General)
     }
 
-    /// What `∮ y dx` is multiplied by to be the energy lost. The work on a magnet is `∮ H dB = -∮ B dH`.
+    /// Factor that turns `∮ y dx` into the energy lost. The work on a magnet is `∮ H dB = -∮ B dH`.
     pub(super) fn sense_of_energy(self) -> f64 {
         if self == Self::Magnet { -1.0 } else { 1.0 }
     }

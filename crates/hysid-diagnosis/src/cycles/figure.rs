@@ -1,14 +1,14 @@
 //! The figures of a cycle: name, unit, fields and definition, declared once.
 
 use Field::{Actuator, General, Magnet, Structure};
-use Quantity::{Creep, Energy, Frequency, Input, Output, Percent, Power, Stiffness, Time};
+use FigureQuantity::{Creep, Energy, Frequency, Input, Output, Percent, Power, Stiffness, Time};
 
 use super::field::Field;
 use super::row::CycleRow;
 
-/// What the unit of a figure is made of.
+/// Quantity whose unit a figure has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
+pub enum FigureQuantity {
     /// In the unit of the input.
     Input,
     /// In the unit of the output.
@@ -34,10 +34,10 @@ pub enum Quantity {
 pub struct Figure {
     /// Its name in tables, in JSON and in Python.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// Name of the figure, in a few words.
     pub label: &'static str,
-    /// What its unit is made of.
-    pub quantity: Quantity,
+    /// Quantity whose unit it has.
+    pub quantity: FigureQuantity,
     /// The fields in whose tables it is; [`Field::General`] has all.
     pub fields: &'static [Field],
     /// Its value for a cycle.

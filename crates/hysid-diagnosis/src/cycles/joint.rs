@@ -16,7 +16,7 @@ const JUMP: (f64, f64) = (3.0, 0.02);
 /// More jumps of the input than this in a cycle are those of an input in steps.
 const MOST_JUMPS: usize = 2;
 
-/// A change of the input's pace is so many times those beside it.
+/// Ratio of a change of the input's pace to those beside it.
 const PACE: f64 = 3.0;
 
 /// More rows with a change of pace in a cycle are those of rows at uneven steps; a joint has up to three.
@@ -34,7 +34,7 @@ const SURE: f64 = 6.0 * SQRT_2;
 /// Rows on each side that a step is compared with.
 const BESIDE: usize = 4;
 
-/// What jumps, and by how much.
+/// Channel that jumps, and by how much.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Joint {
     /// The input, between two rows.

@@ -9,7 +9,7 @@
 
 use hysid_core::data::record::Record;
 
-/// What each row of a loop counts in its area.
+/// Weights of the outputs of a loop's rows in its area.
 pub(super) fn weights(x: &[f64]) -> Vec<f64> {
     let n = x.len();
     (0..n).map(|row| 0.5 * (x[(row + 1) % n] - x[(row + n - 1) % n])).collect()
@@ -23,7 +23,7 @@ pub(super) fn area(x: &[f64], y: &[f64]) -> f64 {
 
 /// Inputs and outputs along a part of a record. Its ends may lie between two rows.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Path {
+pub(super) struct CyclePath {
     /// The inputs.
     pub x: Vec<f64>,
     /// The outputs; NaN where the record has none.
@@ -32,7 +32,7 @@ pub(super) struct Path {
     turns: (usize, usize),
 }
 
-/// What of a path is its loop.
+/// Part of a path that is its loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Closure {
     /// All of it.
@@ -45,7 +45,7 @@ pub(super) enum Closure {
     BeginningCut,
 }
 
-impl Path {
+impl CyclePath {
     /// The part between two places, which are rows and shares of the step to the next row. `turns` are the rows where its
     /// first branch ends and its last one begins.
     pub fn between(record: &Record, (from, to): (f64, f64), turns: (usize, usize)) -> Self {
@@ -172,7 +172,11 @@ mod tests {
     fn a_path_that_does_not_close_is_cut_where_it_does() {
         let path = |x: &[f64], turns| {
             let y = x.iter().map(|x| 2.0 * x).collect();
-            Path::between(&Record::new("r", vec![x.to_vec()], y).unwrap(), (0.0, (x.len() - 1) as f64), turns)
+            CyclePath::between(
+                &Record::new("r", vec![x.to_vec()], y).unwrap(),
+                (0.0, (x.len() - 1) as f64),
+                turns,
+            )
         };
         // It ends above its beginning: from where it first had the input of its end.
         assert_eq!(path(&[0.0, 2.0, 4.0, 1.0], (2, 2)).closed().0.x, [1.0, 2.0, 4.0, 1.0]);
@@ -193,7 +197,7 @@ mod tests {
             let x = vec![0.0, 0.1, 5.0, 10.0, 5.0, 0.1];
             let mut y = x.clone();
             y[..blank].fill(f64::NAN);
-            let path = Path::between(&Record::new("r", vec![x], y).unwrap(), (0.0, 5.0), (3, 3));
+            let path = CyclePath::between(&Record::new("r", vec![x], y).unwrap(), (0.0, 5.0), (3, 3));
             path.without_blank_ends(0.02)
         };
         assert_eq!((path(1).blanks(), path(1).x.len()), (0, 5));
@@ -204,9 +208,9 @@ mod tests {
     fn the_ends_of_a_path_may_lie_between_rows() {
         let record =
             Record::new("r", vec![vec![0.0, 1.0, 2.0, 3.0]], vec![0.0, 10.0, f64::NAN, 30.0]).unwrap();
-        let path = Path::between(&record, (0.5, 1.0), (1, 1));
+        let path = CyclePath::between(&record, (0.5, 1.0), (1, 1));
         assert_eq!((path.x, path.y), (vec![0.5, 1.0], vec![5.0, 10.0]));
-        assert_eq!(Path::between(&record, (0.0, 3.0), (3, 0)).blanks(), 1);
-        assert_eq!(range(&Path::between(&record, (0.0, 3.0), (3, 0)).x), (0.0, 3.0));
+        assert_eq!(CyclePath::between(&record, (0.0, 3.0), (3, 0)).blanks(), 1);
+        assert_eq!(range(&CyclePath::between(&record, (0.0, 3.0), (3, 0)).x), (0.0, 3.0));
     }
 }

@@ -3,9 +3,9 @@
 use hysid_core::data::record::ColumnNames;
 use hysid_core::data::unit;
 
-use super::Quantity;
+use super::FigureQuantity;
 
-/// What the loops are loops of.
+/// Names of the columns that the loops are of.
 pub struct Quantities {
     /// Name of the input's column.
     pub input: String,
@@ -68,16 +68,16 @@ impl Quantities {
     }
 
     /// A figure of a cycle, named like a column.
-    pub fn as_figure(&self, name: &str, quantity: Quantity) -> String {
+    pub fn as_figure(&self, name: &str, quantity: FigureQuantity) -> String {
         match quantity {
-            Quantity::Input => self.as_input(name),
-            Quantity::Output | Quantity::Creep => self.as_output(name),
-            Quantity::Energy => self.as_energy(name),
-            Quantity::Power => self.as_power(name),
-            Quantity::Stiffness => self.as_stiffness(name),
-            Quantity::Time => named(name, self.time.clone()),
-            Quantity::Frequency => named(name, self.time.as_deref().map(frequency)),
-            Quantity::Percent => named(name, Some("%".into())),
+            FigureQuantity::Input => self.as_input(name),
+            FigureQuantity::Output | FigureQuantity::Creep => self.as_output(name),
+            FigureQuantity::Energy => self.as_energy(name),
+            FigureQuantity::Power => self.as_power(name),
+            FigureQuantity::Stiffness => self.as_stiffness(name),
+            FigureQuantity::Time => named(name, self.time.clone()),
+            FigureQuantity::Frequency => named(name, self.time.as_deref().map(frequency)),
+            FigureQuantity::Percent => named(name, Some("%".into())),
         }
     }
 

@@ -1,4 +1,4 @@
-//! What is read from the branches of a loop: where they pass a level, how far they are apart, the slope of a secant.
+//! Figures read from the branches of a loop: where they pass a level, how far they are apart, the slope of a secant.
 
 use hysid_core::elementary::hypot;
 

@@ -11,17 +11,17 @@ use serde::Serialize;
 use super::CLOSED;
 use super::backbone::{BackbonePoint, Direction, backbone};
 use super::correction::gap;
-use super::creep::{Hold, holds};
+use super::creep::{CycleHold, holds};
 use super::division::{Division, LAST_STEP, Span, SpanPart, choose, divide, level, output_closes};
 use super::field::Field;
 use super::joint::joint;
 use super::losses::{LossAtFrequency, losses};
-use super::path::{Closure, Path, area, at, range, weights, width};
+use super::path::{Closure, CyclePath, area, at, range, weights, width};
 use super::reading::{Widest, output_at_end, secant, widest};
 use super::row::CycleRow;
 use super::strand::Strand;
 use crate::branch::{Branch, BranchSet, JITTERS, ReversalRule};
-use crate::smoothing::{Parabola, Place};
+use crate::smoothing::{BranchRow, Parabola};
 use crate::{DiagnosisOptions, FEWEST_ROWS};
 
 /// A loop over less than this share of a cycle's swing is smaller than the cycle: either that is said, or there is none.
@@ -73,7 +73,7 @@ const UNEVEN: f64 = 1.5;
 /// Share of the way through a loop, before its middle, to which the input goes back on smaller loops.
 const BACK: f64 = 0.1;
 
-/// Deviations of the noise below which a figure is not told from noise.
+/// Deviations of the noise below which a figure is not distinguished from noise.
 const SURE: f64 = 3.0;
 
 /// How cycles are found and what is read from them.
@@ -141,7 +141,7 @@ pub struct CycleTable {
     pub backbone: Vec<BackbonePoint>,
     /// Losses by amplitude and frequency, for data with time.
     pub losses: Vec<LossAtFrequency>,
-    /// What concerns the whole table: why figures are missing in every row.
+    /// Notes on the whole table: why figures are missing in every row.
     pub notes: Vec<String>,
 }
 
@@ -187,7 +187,7 @@ fn rows_of(
     let (mut rows, mut unevenness) = (Vec::new(), Vec::new());
     for (place, span) in spans.iter().enumerate() {
         let reader =
-            Reader { survey, record: &survey.data.records()[record], branches, span, field, division };
+            CycleReader { survey, record: &survey.data.records()[record], branches, span, field, division };
         let mut row = reader.row(place + 1);
         mark_backbone(&mut row, backbone);
         if row.complete {
@@ -196,7 +196,7 @@ fn rows_of(
         }
         let next = spans.get(place + 1).map_or(f64::INFINITY, |next| next.from);
         let first = if place == 0 { 0.0 } else { span.from };
-        let is_within = |hold: &&Hold| (first..next).contains(&(hold.rows.0 as f64));
+        let is_within = |hold: &&CycleHold| (first..next).contains(&(hold.rows.0 as f64));
         let longest = holds.iter().filter(is_within).max_by(|a, b| a.duration.total_cmp(&b.duration));
         if let Some(hold) = longest {
             set_creep(&mut row, hold, survey.height());
@@ -230,7 +230,7 @@ fn mark_backbone(row: &mut CycleRow, backbone: &[BackbonePoint]) {
     (row.backbone_peak, row.backbone_valley) = (has(Direction::Up), has(Direction::Down));
 }
 
-fn set_creep(row: &mut CycleRow, hold: &Hold, height: f64) {
+fn set_creep(row: &mut CycleRow, hold: &CycleHold, height: f64) {
     row.hold_duration = Some(hold.duration);
     row.creep = Some(hold.drift);
     row.creep_percent = Some(100.0 * hold.drift / height);
@@ -241,7 +241,7 @@ fn set_creep(row: &mut CycleRow, hold: &Hold, height: f64) {
 }
 
 /// Reads one part of a record.
-struct Reader<'r> {
+struct CycleReader<'r> {
     survey: &'r BranchSet<'r>,
     record: &'r Record,
     branches: &'r [Branch],
@@ -250,12 +250,12 @@ struct Reader<'r> {
     division: Division,
 }
 
-impl Reader<'_> {
+impl CycleReader<'_> {
     fn row(&self, cycle: usize) -> CycleRow {
         let Span { from, to, part, ref branches } = *self.span;
         let (first, last) = (branches.start, branches.end - 1);
         let turns = (self.branches[first].rows.end - 1, self.branches[last].rows.start);
-        let path = Path::between(self.record, (from, to), turns);
+        let path = CyclePath::between(self.record, (from, to), turns);
         let (low, high) = range(&path.x);
         let outputs: Vec<f64> = path.y.iter().copied().filter(|y| !y.is_nan()).collect();
         let measured = (!outputs.is_empty()).then(|| range(&outputs));
@@ -309,7 +309,7 @@ impl Reader<'_> {
     }
 
     /// Everything that needs the whole loop.
-    fn read_loop(&self, row: &mut CycleRow, path: Path, tips: &Tips) {
+    fn read_loop(&self, row: &mut CycleRow, path: CyclePath, tips: &Tips) {
         let (lowest, highest) = range(&path.x);
         let (path, closure) = path.without_blank_ends(CLOSED).closed();
         let (low, high) = range(&path.x);
@@ -384,13 +384,13 @@ impl Reader<'_> {
     }
 
     /// Smallest and largest input of a noisy loop, as the smoothed branches have them.
-    fn without_noise(&self, path: &Path, tips: &Tips) -> Option<(f64, f64)> {
+    fn without_noise(&self, path: &CyclePath, tips: &Tips) -> Option<(f64, f64)> {
         if self.survey.input_noise.deviation() <= JITTERS * self.survey.width() {
             return None;
         }
         let x = &self.record.inputs()[0];
         // Both sides of a turning point, so that the row of its extreme, which noise chose, does not matter.
-        let end = |tip: Tip| {
+        let end = |tip: CycleTip| {
             let beside = [tip.leaves.checked_sub(1), Some(tip.leaves)];
             let ends: Vec<f64> = beside
                 .into_iter()
@@ -408,7 +408,7 @@ impl Reader<'_> {
     }
 
     /// Energy, loss per time and damping.
-    fn read_area(&self, row: &mut CycleRow, path: &Path, swing: f64, crosses: bool) {
+    fn read_area(&self, row: &mut CycleRow, path: &CyclePath, swing: f64, crosses: bool) {
         // A loop without area has no sign.
         let energy = self.field.sense_of_energy() * area(&path.x, &path.y) + 0.0;
         let deviation = self.survey.output_noise.of_sum(&weights(&path.x));
@@ -448,7 +448,7 @@ impl Reader<'_> {
 
     /// The way from a turning point on until the input reaches `target`, and no further than where it turns beyond
     /// `limit`. A loop that closes goes on where it began; one that does not, into the next cycle.
-    fn strand(&self, tip: &Tip, target: f64, limit: f64, closes: bool) -> Strand {
+    fn strand(&self, tip: &CycleTip, target: f64, limit: f64, closes: bool) -> Strand {
         let falls = target < tip.input;
         let is_past = |x: f64, level: f64| if falls { x <= level } else { x >= level };
         // A smaller loop that goes through the middle is not on the way.
@@ -484,7 +484,7 @@ impl Reader<'_> {
         strand
     }
 
-    /// What is read where both ways pass a level: residual inputs, coercive input, remanence.
+    /// Reads the figures where both ways pass a level: residual inputs, coercive input, remanence.
     fn read_levels(&self, row: &mut CycleRow, falling: &Strand, rising: &Strand) {
         if self.field.has_structures() {
             row.residual_after_peak = falling.crossings(0.0).first().copied();
@@ -548,7 +548,7 @@ impl Reader<'_> {
     }
 
     /// A loop whose output does not come back with the input.
-    fn note_open_loop(&self, row: &mut CycleRow, path: &Path) {
+    fn note_open_loop(&self, row: &mut CycleRow, path: &CyclePath) {
         let (Some(near), Some((first, last))) = (gap(&path.x, &path.y), path.y.first().zip(path.y.last()))
         else {
             return;
@@ -572,7 +572,7 @@ impl Reader<'_> {
     }
 
     /// The largest distance of the rising and the falling parts of the cycle, if they have outputs over its swing.
-    fn read_width(&self, row: &mut CycleRow, path: &Path, swing: f64) {
+    fn read_width(&self, row: &mut CycleRow, path: &CyclePath, swing: f64) {
         let numbers = self.span.branches.clone();
         let (rising, falling): (Vec<usize>, Vec<usize>) =
             numbers.partition(|&number| self.branches[number].rises());
@@ -626,11 +626,11 @@ impl Reader<'_> {
                 self.division == Division::Reversals && part == SpanPart::Cycle && start == from;
             if begins_here {
                 let (input, output) = self.end_of_loop(number);
-                tips.take(Tip { input, output, leaves: number }, !branch.rises());
+                tips.take(CycleTip { input, output, leaves: number }, !branch.rises());
             }
             if end > from && end < to {
                 let output = output_at_end(branch, branch.to);
-                tips.take(Tip { input: branch.to, output, leaves: number + 1 }, branch.rises());
+                tips.take(CycleTip { input: branch.to, output, leaves: number + 1 }, branch.rises());
             }
         }
         tips
@@ -666,7 +666,8 @@ fn end_without_noise(x: &[f64], branch: &Branch, is_last: bool) -> Option<f64> {
         false => branch.rows.start..branch.rows.start + count,
     };
     let end = if is_last { rows.end - 1 } else { rows.start } as f64;
-    let places: Vec<Place> = rows.map(|row| Place { station: row as f64, x: x[row], y: x[row] }).collect();
+    let places: Vec<BranchRow> =
+        rows.map(|row| BranchRow { station: row as f64, x: x[row], y: x[row] }).collect();
     let parabola = Parabola::over(&places, end);
     Some(places.iter().map(|place| parabola.weight(place) * place.x).sum())
 }
@@ -697,7 +698,7 @@ fn missed(after_peak: bool, after_valley: bool) -> Option<&'static str> {
 
 /// A turning point of a cycle.
 #[derive(Debug, Clone, Copy)]
-struct Tip {
+struct CycleTip {
     input: f64,
     output: Option<f64>,
     /// Number of the branch that begins there.
@@ -707,14 +708,15 @@ struct Tip {
 /// The highest peak and the deepest valley of a cycle.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tips {
-    peak: Option<Tip>,
-    valley: Option<Tip>,
+    peak: Option<CycleTip>,
+    valley: Option<CycleTip>,
 }
 
 impl Tips {
-    fn take(&mut self, tip: Tip, is_peak: bool) {
+    fn take(&mut self, tip: CycleTip, is_peak: bool) {
         let side = if is_peak { &mut self.peak } else { &mut self.valley };
-        let further = |known: &Tip| if is_peak { tip.input > known.input } else { tip.input < known.input };
+        let further =
+            |known: &CycleTip| if is_peak { tip.input > known.input } else { tip.input < known.input };
         if side.as_ref().is_none_or(further) {
             *side = Some(tip);
         }
@@ -732,7 +734,7 @@ fn damping(energy: f64, stiffness: f64, swing: f64) -> Option<f64> {
     (stored > 0.0 && energy >= 0.0).then(|| energy / (4.0 * PI * stored))
 }
 
-/// What every row lacks, and why.
+/// Figures that every row lacks, and why.
 fn notes(survey: &BranchSet, cycles: &[CycleRow], (field, division): (Field, Division)) -> Vec<String> {
     let mut notes = Vec::new();
     let complete = cycles.iter().filter(|row| row.complete).count();
@@ -762,7 +764,7 @@ fn notes(survey: &BranchSet, cycles: &[CycleRow], (field, division): (Field, Div
     notes
 }
 
-/// What in a table contradicts itself: rows that do not follow each other, amplitudes that are not those of the reversals.
+/// Contradictions in a table: rows that do not follow each other, amplitudes that are not those of the reversals.
 fn check(cycles: &[CycleRow], division: Division) -> Vec<String> {
     let mut notes = Vec::new();
     let follows = |pair: &[CycleRow]| {

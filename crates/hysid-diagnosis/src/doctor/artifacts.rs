@@ -5,7 +5,7 @@ use super::{DataIssue, DataIssueKind, Severity};
 use crate::artifact::{Artifact, Explanation};
 use crate::branch::BranchSet;
 
-/// The complaints of one kind, or where there are none, what explains verdicts.
+/// The issues of one kind, or where there are none, what explains verdicts.
 pub(super) fn added(
     survey: &BranchSet,
     complaints: Vec<DataIssue>,

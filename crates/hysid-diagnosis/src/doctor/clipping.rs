@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::Piece;
 use crate::branch::BranchSet;
 use hysid_core::data::record::{Dataset, Record};
@@ -42,11 +42,11 @@ pub(super) fn may_be(data: &Dataset) -> bool {
 }
 
 pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let mut found = Vec::new();
     for of_output in [true, false] {
         for sign in [1.0, -1.0] {
-            let Some(Clipped { runs, value }) = clipped(survey, of_output, sign) else {
+            let Some(ClippedEnd { runs, value }) = clipped(survey, of_output, sign) else {
                 continue;
             };
             let count: usize = runs.iter().map(|run| run.rows.len()).sum();
@@ -78,19 +78,19 @@ pub(crate) fn clipped_outputs(survey: &BranchSet) -> Vec<(usize, Range<usize>)> 
 }
 
 /// Rows of a record at the end of what was measured.
-struct Run {
+struct LimitRun {
     record: usize,
     rows: Range<usize>,
 }
 
-/// What is clipped at one end of a channel.
-struct Clipped {
-    runs: Vec<Run>,
+/// Clipped runs at one end of a channel, and their value.
+struct ClippedEnd {
+    runs: Vec<LimitRun>,
     value: f64,
 }
 
 /// Runs of rows at the largest value of a channel (or the smallest, for sign -1) that are clipped.
-fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<Clipped> {
+fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<ClippedEnd> {
     let range = if of_output { survey.output } else { survey.input };
     let extreme = if sign > 0.0 { range.1 } else { range.0 };
     let resolution = if of_output { resolution(survey) } else { 0.0 };
@@ -108,12 +108,12 @@ fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<Clipped> {
                     false => there_and_back(survey, y, (row, last)),
                 };
             if is_clipped {
-                runs.push(Run { record: number, rows: row..last + 1 });
+                runs.push(LimitRun { record: number, rows: row..last + 1 });
             }
             row += length.max(1);
         }
     }
-    (!runs.is_empty()).then_some(Clipped { runs, value: extreme })
+    (!runs.is_empty()).then_some(ClippedEnd { runs, value: extreme })
 }
 
 fn resolution(survey: &BranchSet) -> f64 {

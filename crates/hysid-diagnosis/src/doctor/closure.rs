@@ -1,4 +1,4 @@
-//! Loops of a periodic input that stay open, told as a trouble of the data.
+//! Loops of a periodic input that stay open, reported as an issue of the data.
 
 use super::{DataIssue, DataIssueKind, Severity};
 use crate::{Finding, Property, Verdict};

@@ -12,7 +12,7 @@ const THROUGHOUT: f64 = 0.95;
 /// Branches longer than this share of the range of the input are looked at.
 const LONG: f64 = 0.3;
 
-/// What a sine or a triangle leaves of a command, and of an answer, at least.
+/// Residual of a fitted sine or triangle: below `COMMAND` in a command, above `ANSWER` in a response.
 const COMMAND: f64 = 0.01;
 const ANSWER: f64 = 0.05;
 

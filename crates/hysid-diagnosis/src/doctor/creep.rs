@@ -1,9 +1,9 @@
 //! Creep: the output moves while the input stands still, theory.md (10.24).
 
-use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::branch::BranchSet;
 
-/// A hold has at least so many rows.
+/// Fewest rows of a hold.
 const FEWEST_ROWS: usize = 20;
 
 /// The input stands still within this share of its range.
@@ -12,7 +12,7 @@ const STILL: f64 = 1e-4;
 /// A movement of the output that matters, as a share of its range.
 const EFFECT: f64 = 0.01;
 
-/// What the input still moves explains no more than this many times as much, as shares of the ranges.
+/// Largest slope that residual input motion may explain, as shares of the ranges.
 const STEEPEST: f64 = 30.0;
 
 /// A creep goes on: no quarter of the hold has more than this share of it.
@@ -21,14 +21,14 @@ const GOES_ON: f64 = 0.8;
 const SHOWN: usize = 3;
 
 /// A hold of the input during which the output moves.
-struct Hold {
+struct InputHold {
     record: usize,
     rows: (usize, usize),
     movement: f64,
 }
 
 pub(super) fn complaint(survey: &BranchSet) -> Option<DataIssue> {
-    let mut holds: Vec<Hold> = Vec::new();
+    let mut holds: Vec<InputHold> = Vec::new();
     let still = (STILL * survey.width()).max(2.5 * survey.input_noise.deviation());
     for (number, record) in survey.data.records().iter().enumerate() {
         let x = &record.inputs()[0];
@@ -42,7 +42,7 @@ pub(super) fn complaint(survey: &BranchSet) -> Option<DataIssue> {
     }
     holds.sort_by(|a, b| b.movement.abs().total_cmp(&a.movement.abs()));
     let largest = holds.first()?;
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let (first, last) = largest.rows;
     let during = match survey.data.records()[largest.record].time() {
         Some(time) => units.time(time[last] - time[first]),
@@ -64,7 +64,7 @@ pub(super) fn complaint(survey: &BranchSet) -> Option<DataIssue> {
 }
 
 /// The hold, if the output creeps during it.
-fn creeping(survey: &BranchSet, record: usize, rows: (usize, usize)) -> Option<Hold> {
+fn creeping(survey: &BranchSet, record: usize, rows: (usize, usize)) -> Option<InputHold> {
     let count = rows.1 + 1 - rows.0;
     if count < FEWEST_ROWS {
         return None;
@@ -87,5 +87,5 @@ fn creeping(survey: &BranchSet, record: usize, rows: (usize, usize)) -> Option<H
         let share = step / movement;
         share > -0.5 * of_mean * survey.output_noise.deviation() / movement.abs() && share <= GOES_ON
     });
-    (movement.abs() > least && goes_on).then_some(Hold { record, rows, movement })
+    (movement.abs() > least && goes_on).then_some(InputHold { record, rows, movement })
 }

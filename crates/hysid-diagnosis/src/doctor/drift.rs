@@ -1,7 +1,7 @@
 //! Drift: both tips of a repeated loop move the same way, theory.md (10.23). Where a specimen deteriorates they
 //! move towards each other.
 
-use super::{DataIssue, DataIssueKind, Severity, Units};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity};
 use crate::branch::BranchSet;
 use crate::cycles::repeated;
 use crate::significance;
@@ -10,7 +10,7 @@ use crate::{Cycle, Piece};
 /// A drift that matters, over all cycles of a kind: share of the range of the output.
 const EFFECT: f64 = 0.01;
 
-/// Fewest cycles of a kind, after the first, which still remembers what was before.
+/// Fewest cycles of a kind, after the first, which still depends on what was before.
 const FEWEST: usize = 4;
 
 /// Cycles of a kind that are compared at most.
@@ -23,26 +23,26 @@ const TOGETHER: f64 = 0.4;
 const STEADY: f64 = 2.6;
 
 /// How the tips of loops between two inputs move.
-struct Trend<'c> {
+struct TipTrend<'c> {
     cycles: Vec<&'c Cycle>,
-    /// Over all cycles, both tips together; nought where they do not move together.
+    /// Over all cycles, both tips together; 0 where they do not move together.
     drift: f64,
 }
 
 pub(super) fn complaint(survey: &BranchSet, cycles: &[Cycle]) -> Option<DataIssue> {
     let groups = repeated(survey, cycles);
-    let trends: Vec<Trend> = groups.iter().filter_map(|group| trend(group)).collect();
+    let trends: Vec<TipTrend> = groups.iter().filter_map(|group| trend(group)).collect();
     // A tip is an extreme of many rows: its noise is a fraction of theirs.
     let limit = (EFFECT * survey.height()).max(3.0 * survey.output_noise.deviation());
-    let drifting = |trend: &&Trend| trend.drift.abs() > limit;
-    let count = |trend: &Trend| trend.cycles.len();
+    let drifting = |trend: &&TipTrend| trend.drift.abs() > limit;
+    let count = |trend: &TipTrend| trend.cycles.len();
     let longest = trends.iter().filter(drifting).max_by_key(|trend| count(trend))?;
     let same_way: usize =
         trends.iter().filter(drifting).filter(|t| t.drift * longest.drift > 0.0).map(count).sum();
     if 2 * same_way <= trends.iter().map(count).sum() {
         return None;
     }
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let (first, last) = (longest.cycles[0], longest.cycles[count(longest) - 1]);
     let statement = format!(
         "repeated loops move {} by {} over {} cycles, {:.1} % of the output's range: drift (of a sensor or \
@@ -57,7 +57,7 @@ pub(super) fn complaint(survey: &BranchSet, cycles: &[Cycle]) -> Option<DataIssu
     Some(issue.measured(longest.drift, &units.output))
 }
 
-fn trend<'c>(group: &[&'c Cycle]) -> Option<Trend<'c>> {
+fn trend<'c>(group: &[&'c Cycle]) -> Option<TipTrend<'c>> {
     let settled = &group[1..];
     let cycles: Vec<&Cycle> = settled.iter().copied().step_by(settled.len().div_ceil(MOST).max(1)).collect();
     if cycles.len() < FEWEST {
@@ -67,11 +67,11 @@ fn trend<'c>(group: &[&'c Cycle]) -> Option<Trend<'c>> {
         |tip: fn(&Cycle) -> f64| movement(&cycles.iter().map(|cycle| tip(cycle)).collect::<Vec<f64>>());
     let (low, high) = (tips(|cycle| cycle.output.0)?, tips(|cycle| cycle.output.1)?);
     let together = low * high > 0.0 && low.abs().min(high.abs()) >= TOGETHER * low.abs().max(high.abs());
-    Some(Trend { cycles, drift: if together { 0.5 * (low + high) } else { 0.0 } })
+    Some(TipTrend { cycles, drift: if together { 0.5 * (low + high) } else { 0.0 } })
 }
 
 /// How far values move from the first to the last along the median slope (Theil and Sen), if they do so steadily
-/// (Mann and Kendall); nought if not.
+/// (Mann and Kendall); 0 if not.
 fn movement(values: &[f64]) -> Option<f64> {
     let n = values.len();
     let mut slopes = Vec::with_capacity(n * (n - 1) / 2);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{DataIssue, DataIssueKind, Severity, Units};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity};
 use crate::branch::BranchSet;
 use hysid_core::data::record::Record;
 use hysid_core::elementary::{hypot, sin_cos};
@@ -28,7 +28,7 @@ pub(super) fn complaint(survey: &BranchSet) -> Option<DataIssue> {
     if amplitude < EFFECT * survey.height() || !survey.data.records().iter().any(is_line) {
         return None;
     }
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let step = survey.time_step();
     let period = if step > 0.0 { units.time(rows * step) } else { format!("{rows:.0} rows") };
     let statement = format!(

@@ -8,9 +8,9 @@
 mod turn;
 
 use hysid_core::elementary::{hypot, ln, powf, powi, square};
-use turn::{Beside, Turn, Window};
+use turn::{LagEffect, TurnBranches, TurnWindow};
 
-use super::{DataIssue, DataIssueKind, Severity, Units};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity};
 use crate::Delay;
 use crate::branch::BranchSet;
 use crate::minimum::lowest;
@@ -43,11 +43,11 @@ const PLACES: i32 = 4;
 /// Windows agree within this many deviations.
 const AGREE: f64 = 1.5;
 
-/// The narrowest window that knows of a lag is no wider than this: wider ones alone cannot be told from a law that
+/// Widest window that may be the narrowest with a lag: wider ones alone cannot be distinguished from a law that
 /// bends.
 const NARROW: f64 = 0.1;
 
-/// A window whose lag scatters by this share of what was searched knows nothing of it.
+/// Scatter of a window's lag, as a share of what was searched, from which on it shows nothing.
 const BLIND: f64 = 0.05;
 
 /// A lag is so many deviations from none, and this share of the time between rows.
@@ -57,7 +57,7 @@ const SHORTEST_STEP: f64 = 0.1;
 /// By how much the logarithm of the likelihood must be greater than without a lag.
 const LIKELIER: f64 = 12.0;
 
-/// A remainder up to this many times the noise is noise; beyond it is the law's, and tells as little as this
+/// A remainder up to this many times the noise is noise; beyond it is the law's, and shows as little as this
 /// many rows do.
 const NOISE: f64 = 1.1;
 const ROWS_OF_A_LAW: f64 = 10.0;
@@ -65,7 +65,7 @@ const ROWS_OF_A_LAW: f64 = 10.0;
 /// Numbers that are fitted for each turning point.
 const FREE: usize = 7;
 
-/// Lags of several speeds agree within this share; a speed that is to confirm a lag knows it within the other.
+/// Lags of several speeds agree within this share; a speed that is to confirm a lag determines it within the other.
 const SAME: f64 = 0.1;
 const CONFIRMS: f64 = 0.25;
 
@@ -95,8 +95,8 @@ impl Lag {
     }
 }
 
-/// What is said about a lag: of whole branches at several speeds, if a delay makes them agree, which know it better
-/// than their ends do; otherwise of turning points.
+/// Problems of a lag: from whole branches at several speeds, if a delay makes them agree, since that is more precise
+/// than their ends; otherwise from turning points.
 pub(super) fn complaints(survey: &BranchSet, delay: Option<&Delay>) -> Vec<DataIssue> {
     match delay {
         Some(delay) => vec![between_speeds(survey, delay)],
@@ -104,7 +104,7 @@ pub(super) fn complaints(survey: &BranchSet, delay: Option<&Delay>) -> Vec<DataI
     }
 }
 
-/// The longest lag that the slowest turning points allow, either way; `None` where they do not tell.
+/// The longest lag that the slowest turning points allow, either way; `None` where they do not show it.
 pub(super) fn longest(survey: &BranchSet) -> Option<f64> {
     const SURE: f64 = 3.0;
     let turns = turns(survey);
@@ -114,7 +114,7 @@ pub(super) fn longest(survey: &BranchSet) -> Option<f64> {
 
 /// A delay that makes all speeds agree, theory.md (10.14).
 fn between_speeds(survey: &BranchSet, delay: &Delay) -> DataIssue {
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let statement = format!(
         "the output is {}, the same at all speeds, which explains the apparent rate dependence; shift the \
          output by {} to {} time before fitting",
@@ -134,7 +134,7 @@ fn at_turning_points(survey: &BranchSet) -> Vec<DataIssue> {
     let Some(sharpest) = clear.iter().copied().min_by(|a, b| a.deviation.total_cmp(&b.deviation)) else {
         return Vec::new();
     };
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let time = |time: f64| units.time(time);
     if let Some(other) = lags.iter().find(|lag| !sharpest.agrees(lag, 3.0, SAME)) {
         let (slow, fast) = if sharpest.speed < other.speed { (sharpest, other) } else { (other, sharpest) };
@@ -182,23 +182,23 @@ fn at_turning_points(survey: &BranchSet) -> Vec<DataIssue> {
 
 /// Turning points whose lag is found together.
 struct Turns<'t, 'd> {
-    turns: Vec<&'t Turn<'d>>,
-    windows: Vec<Window>,
+    turns: Vec<&'t TurnBranches<'d>>,
+    windows: Vec<TurnWindow>,
 }
 
 impl<'t, 'd> Turns<'t, 'd> {
-    fn new(turns: &[&'t Turn<'d>], share: f64, lags: (f64, f64)) -> Self {
+    fn new(turns: &[&'t TurnBranches<'d>], share: f64, lags: (f64, f64)) -> Self {
         let (turns, windows) =
             turns.iter().filter_map(|turn| Some((*turn, turn.window(share, lags)?))).unzip();
         Self { turns, windows }
     }
 
-    fn remainder(&self, beside: Beside) -> f64 {
+    fn remainder(&self, beside: LagEffect) -> f64 {
         self.turns.iter().zip(&self.windows).map(|(turn, window)| turn.remainder(window, beside)).sum()
     }
 
     fn lag(&self, centre: f64, reach: f64) -> f64 {
-        lowest(&|lag| self.remainder(Beside::Lag(lag)), centre, reach, PLACES)
+        lowest(&|lag| self.remainder(LagEffect::Lag(lag)), centre, reach, PLACES)
     }
 
     /// The lag and its deviation, from that of parts of the turning points.
@@ -208,7 +208,7 @@ impl<'t, 'd> Turns<'t, 'd> {
         let part = |number: usize| {
             let of_part = |lag: f64| -> f64 {
                 let pairs = self.turns.iter().zip(&self.windows).skip(number).step_by(parts);
-                pairs.map(|(turn, window)| turn.remainder(window, Beside::Lag(lag))).sum()
+                pairs.map(|(turn, window)| turn.remainder(window, LagEffect::Lag(lag))).sum()
             };
             lowest(&of_part, time, 0.6 * reach, PLACES)
         };
@@ -231,27 +231,27 @@ impl<'t, 'd> Turns<'t, 'd> {
 
     /// Logarithm of the likelihood ratio of a lag, theory.md (10.22).
     fn margin(&self, lag: f64, noise: f64) -> f64 {
-        let left = self.remainder(Beside::Lag(lag));
+        let left = self.remainder(LagEffect::Lag(lag));
         let independent = if self.leaves_noise(left, noise) { self.rows() } else { ROWS_OF_A_LAW };
-        let without = self.remainder(Beside::Step).min(self.remainder(Beside::Rate));
+        let without = self.remainder(LagEffect::Step).min(self.remainder(LagEffect::Rate));
         0.5 * independent * ln((without / left.max(f64::MIN_POSITIVE)).max(f64::MIN_POSITIVE))
     }
 }
 
 /// All turning points between long branches, the slowest first.
-fn turns<'d>(survey: &BranchSet<'d>) -> Vec<Turn<'d>> {
-    let mut turns: Vec<Turn> = survey
+fn turns<'d>(survey: &BranchSet<'d>) -> Vec<TurnBranches<'d>> {
+    let mut turns: Vec<TurnBranches> = survey
         .branches
         .windows(2)
         .filter(|pair| pair[0].record == pair[1].record)
         .filter(|pair| pair[0].travel().min(pair[1].travel()) >= SHORTEST * survey.width())
-        .filter_map(|pair| Turn::between(survey, &pair[0], &pair[1]))
+        .filter_map(|pair| TurnBranches::between(survey, &pair[0], &pair[1]))
         .collect();
     turns.sort_by(|a, b| a.speed.total_cmp(&b.speed));
     turns
 }
 
-fn speeds<'t, 'd>(turns: &'t [Turn<'d>]) -> Vec<&'t [Turn<'d>]> {
+fn speeds<'t, 'd>(turns: &'t [TurnBranches<'d>]) -> Vec<&'t [TurnBranches<'d>]> {
     let mut speeds = Vec::new();
     let mut rest = turns;
     while let Some(slowest) = rest.first() {
@@ -266,8 +266,8 @@ fn speeds<'t, 'd>(turns: &'t [Turn<'d>]) -> Vec<&'t [Turn<'d>]> {
     speeds.into_iter().step_by(every).collect()
 }
 
-fn at_one_speed(survey: &BranchSet, turns: &[Turn]) -> Option<Lag> {
-    let turns: Vec<&Turn> = turns.iter().step_by(turns.len().div_ceil(MOST)).collect();
+fn at_one_speed(survey: &BranchSet, turns: &[TurnBranches]) -> Option<Lag> {
+    let turns: Vec<&TurnBranches> = turns.iter().step_by(turns.len().div_ceil(MOST)).collect();
     let shortest = turns.iter().map(|turn| turn.duration()).fold(f64::INFINITY, f64::min);
     let reach = LONGEST * shortest;
     let first = first_search(&turns, reach)?;
@@ -303,7 +303,7 @@ fn widest(found: &[(Lag, f64)]) -> usize {
 }
 
 /// The lag to begin with: of those found in wide and in narrow windows, and none, the one that leaves least.
-fn first_search(turns: &[&Turn], reach: f64) -> Option<f64> {
+fn first_search(turns: &[&TurnBranches], reach: f64) -> Option<f64> {
     let mut found = vec![0.0];
     let mut narrowest = None;
     for share in FIRST {
@@ -320,6 +320,6 @@ fn first_search(turns: &[&Turn], reach: f64) -> Option<f64> {
     }
     let ends = found.iter().fold((0.0, 0.0), |(a, b): (f64, f64), &lag| (a.min(lag), b.max(lag)));
     let near = Turns::new(turns, narrowest?, ends);
-    let left = |lag: &f64| near.remainder(Beside::Lag(*lag));
+    let left = |lag: &f64| near.remainder(LagEffect::Lag(*lag));
     found.into_iter().min_by(|a, b| left(a).total_cmp(&left(b)))
 }

@@ -1,7 +1,7 @@
 //! Signs in loops of magnets and of unknown columns that something lies under or beside them: a straight background, an
 //! offset, an end that is not the beginning.
 
-use super::{DataIssue, DataIssueKind, Severity, Units};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity};
 use crate::Piece;
 use crate::branch::BranchSet;
 use crate::cycles::{CycleRow, CycleTable, Field};
@@ -16,7 +16,7 @@ pub(super) fn complaints(survey: &BranchSet, table: &CycleTable) -> Vec<DataIssu
     if table.field != Field::Magnet {
         return Vec::new();
     }
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let rows: Vec<&CycleRow> = table.complete().collect();
     let piece = |row: &CycleRow| Piece { record: row.record.clone(), rows: row.rows };
     // A first loop from another state is open; most of them are where the instrument drifts.

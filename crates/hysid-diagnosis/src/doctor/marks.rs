@@ -37,7 +37,7 @@ const MARKS: [f64; 22] = [
 /// Marks are told by their powers too: at least this is no measured value beside small ones.
 const HUGE: f64 = 1e10;
 
-/// Fewer values tell nothing.
+/// Fewest values that are examined.
 const FEWEST: usize = 10;
 
 /// A mark stands apart by this share of the range of all other values, one value that is no known mark by so many
@@ -54,14 +54,14 @@ const MOST_SPIKES: f64 = 0.01;
 const JUMP_STEPS: f64 = 20.0;
 const JUMP_RANGE: f64 = 0.1;
 
-/// Different values of a column that are told.
+/// Most different values of a column that are listed.
 const MOST_TOLD: usize = 3;
 
 /// Rows that are shown of each value.
 const SHOWN: usize = 3;
 
 /// A column: its name, and its values in a record.
-struct Column<'d> {
+struct NamedColumn<'d> {
     name: &'d str,
     is_output: bool,
     of: Box<dyn Fn(&'d Record) -> &'d [f64] + 'd>,
@@ -69,23 +69,23 @@ struct Column<'d> {
 
 pub(super) fn complaints(data: &Dataset) -> Vec<DataIssue> {
     let names = data.names();
-    let inputs = names.inputs.iter().enumerate().map(|(input, name)| Column {
+    let inputs = names.inputs.iter().enumerate().map(|(input, name)| NamedColumn {
         name,
         is_output: false,
         of: Box::new(move |record: &Record| &*record.inputs()[input]),
     });
-    let output = Column { name: &names.output, is_output: true, of: Box::new(Record::output) };
+    let output = NamedColumn { name: &names.output, is_output: true, of: Box::new(Record::output) };
     inputs.chain([output]).flat_map(|column| column.complaints(data)).collect()
 }
 
-struct Apart {
+struct DistantValues {
     /// From this value on, away from the others.
     low: f64,
     high: f64,
     is_mark: bool,
 }
 
-impl<'d> Column<'d> {
+impl<'d> NamedColumn<'d> {
     fn complaints(&self, data: &'d Dataset) -> Vec<DataIssue> {
         let values = data.records().iter().flat_map(|record| (self.of)(record));
         let mut sorted: Vec<f64> = values.copied().filter(|value| !value.is_nan()).collect();
@@ -97,7 +97,7 @@ impl<'d> Column<'d> {
                 && (stands_apart(&others, mark) || self.is_jumped_to(data, mark, &others))
             {
                 sorted = others;
-                found.push(Apart { low: mark, high: mark, is_mark: true });
+                found.push(DistantValues { low: mark, high: mark, is_mark: true });
             }
         }
         while let Some(apart) = far_off(&sorted) {
@@ -129,7 +129,7 @@ impl<'d> Column<'d> {
         jumps.iter().filter(|jump| **jump >= least).count() as f64 >= 0.8 * jumps.len() as f64
     }
 
-    fn complaint(&self, data: &'d Dataset, apart: &Apart) -> DataIssue {
+    fn complaint(&self, data: &'d Dataset, apart: &DistantValues) -> DataIssue {
         let mut rows: Vec<Piece> = Vec::new();
         let (mut count, mut first) = (0, None);
         for record in data.records() {
@@ -197,7 +197,7 @@ fn stands_apart(others: &[f64], mark: f64) -> bool {
 }
 
 /// The values at one end that are far from all others, if there are some.
-fn far_off(sorted: &[f64]) -> Option<Apart> {
+fn far_off(sorted: &[f64]) -> Option<DistantValues> {
     let count = sorted.len();
     if count < FEWEST {
         return None;
@@ -220,5 +220,5 @@ fn far_off(sorted: &[f64]) -> Option<Apart> {
         })
     };
     let (low, high) = tail(true).or_else(|| tail(false))?;
-    Some(Apart { low, high, is_mark: false })
+    Some(DistantValues { low, high, is_mark: false })
 }

@@ -1,6 +1,6 @@
 //! Values that repeat: whole rows, values held for a fixed number of rows, and columns with few different values.
 
-use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::branch::BranchSet;
 use crate::significance;
 use hysid_core::data::record::Record;
@@ -64,7 +64,7 @@ fn repeated_rows(survey: &BranchSet) -> Option<DataIssue> {
     })
 }
 
-/// A column that changes every so many rows while the other changes with each.
+/// A column that changes only every few rows while the other changes with each.
 fn held_samples(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     let mut lengths: Vec<usize> = Vec::new();
     let (mut held, mut while_other_moves) = (0, 0);
@@ -142,7 +142,7 @@ fn coarse_resolution(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     if commonest * 10 > total * 9 && jumps[0] * 10 < total {
         return None;
     }
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let (name, shown) = if of_output { ("output", units.output(step)) } else { ("input", units.input(step)) };
     let statement = format!(
         "the {name} comes in steps of {shown}, {:.1} % of its range: smaller differences, and turning \

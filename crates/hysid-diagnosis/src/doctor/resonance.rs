@@ -1,17 +1,17 @@
 //! Resonance: a linear oscillator fits the output better than a law without inertia, theory.md (10.28).
 
-use super::{DataIssue, DataIssueKind, Severity, Units};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity};
 use crate::branch::BranchSet;
-use crate::resonance::{Compared, Resonance};
+use crate::resonance::{ComparedSignal, Resonance};
 use hysid_core::significant::Significant;
 
 const SHOWN: usize = 3;
 
 pub(super) fn complaint(survey: &BranchSet, found: &Resonance) -> DataIssue {
-    let seconds = Units::of(survey).time.as_deref() == Some("s");
+    let seconds = ColumnUnits::of(survey).time.as_deref() == Some("s");
     let (what, models) = match found.oscillator.compared {
-        Compared::Output => ("", "--model hysteretic-oscillator or hysteretic-state-space"),
-        Compared::Changes => (
+        ComparedSignal::Output => ("", "--model hysteretic-oscillator or hysteretic-state-space"),
+        ComparedSignal::Changes => (
             "for the changes of the output from row to row, ",
             "--model hysteretic-oscillator; add --degradation if the structure loses strength",
         ),

@@ -1,9 +1,9 @@
 //! How the data were sampled: gaps, changing time steps, too few rows for a cycle, too few turning points.
 
-use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::branch::BranchSet;
 
-/// A step so many times those on both sides of it is a gap.
+/// Ratio of a step to those on both sides of it from which on it is a gap.
 const GAP: f64 = 5.0;
 
 /// Of the steps, a tenth are shorter and a tenth longer than two that differ by this factor.
@@ -25,7 +25,7 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
 }
 
 fn time_steps(survey: &BranchSet) -> Vec<DataIssue> {
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let mut found = Vec::new();
     for record in survey.data.records() {
         let Some(time) = record.time() else {
@@ -91,7 +91,7 @@ fn rows_of_a_branch(survey: &BranchSet) -> Option<DataIssue> {
 }
 
 fn turning_points(survey: &BranchSet) -> Option<DataIssue> {
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let found = survey.branches.len().saturating_sub(survey.data.records().len());
     let times = match found {
         1 => "once".to_string(),

@@ -1,6 +1,6 @@
 //! Spikes of the output: single rows that jump away from their neighbours and back, as a disturbed sensor makes them.
 
-use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::Piece;
 use crate::branch::BranchSet;
 use crate::significance::{MEDIAN_OF_NORMAL, median};
@@ -49,7 +49,7 @@ pub(super) fn complaint(survey: &BranchSet) -> Option<DataIssue> {
     let &(number, row) = found.first()?;
     let records = survey.data.records();
     let value = records[number].output()[row];
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let statement = format!(
         "the output has spikes in {}; the first is {}, in row {} of record \"{}\": leave the output of these rows \
          blank; the tests omit them",

@@ -1,6 +1,6 @@
 //! Where records begin: a model starts from the virgin state, and a record that does not misleads it.
 
-use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use super::{ColumnUnits, DataIssue, DataIssueKind, Severity, piece};
 use crate::branch::{Branch, BranchSet};
 
 /// A first input within this share of the largest is at rest.
@@ -9,7 +9,7 @@ const AT_REST: f64 = 0.05;
 /// How far the first output may lie outside of what later loops have there, as a share of its range.
 const OUTSIDE: f64 = 0.05;
 
-/// Loops at least this high at the first input tell on which side of them a record begins.
+/// Least height of loops at the first input that shows on which side of them a record begins.
 const OPEN: f64 = 0.1;
 
 /// A virgin record begins in the middle of its loops; within this share of their height from one side it does not.
@@ -29,7 +29,7 @@ fn beginning(survey: &BranchSet, number: usize) -> Option<DataIssue> {
     if y.is_nan() {
         return None;
     }
-    let units = Units::of(survey);
+    let units = ColumnUnits::of(survey);
     let complaint = |kind, severity, statement: String| {
         Some(DataIssue::of_rows(kind, severity, statement, vec![piece(record, 0, 0)]))
     };

@@ -8,7 +8,7 @@ use hysid_core::model::Model;
 use super::spectra::mean;
 use super::stretches::{Stretch, stretches};
 use super::{FrequencyResponse, NoResponse, Segments, resolution};
-use crate::resonance::{Compared, LinearOscillator, Resonance};
+use crate::resonance::{ComparedSignal, LinearOscillator, Resonance};
 
 /// Factors by which the input is multiplied, about its mean. Larger ones than 1 would leave the trained range.
 const FACTORS: [f64; 2] = [0.3, 0.1];
@@ -41,8 +41,8 @@ pub struct AtAmplitude {
 
 impl ModelResponses {
     /// Whether the resonance is that of the output or, if only these show one, of its changes.
-    pub fn compared(&self) -> Compared {
-        self.oscillator.as_ref().map_or(Compared::Output, |(oscillator, _)| oscillator.compared)
+    pub fn compared(&self) -> ComparedSignal {
+        self.oscillator.as_ref().map_or(ComparedSignal::Output, |(oscillator, _)| oscillator.compared)
     }
 
     /// Responses of a model to the inputs of data, which it was simulated over: `simulated` has the output of each record.
@@ -66,9 +66,9 @@ impl ModelResponses {
         let begun = stretches.iter().map(|stretch| {
             (stretch.input(data).to_vec(), simulated[stretch.record][..stretch.rows].to_vec())
         });
-        let mut runs = vec![Run { factor: 1.0, columns: begun.collect(), resolution: of_data }];
+        let mut runs = vec![ScaledRun { factor: 1.0, columns: begun.collect(), resolution: of_data }];
         for factor in FACTORS {
-            runs.push(Run::scaled(model, data, &stretches, step, factor, of_data)?);
+            runs.push(ScaledRun::scaled(model, data, &stretches, step, factor, of_data)?);
         }
         let finest = runs.iter().map(|run| run.resolution).fold(f64::INFINITY, f64::min);
         let segments = match Segments::of(data, (finest > 0.0).then_some(finest)) {
@@ -85,7 +85,7 @@ impl ModelResponses {
     }
 }
 
-struct Run {
+struct ScaledRun {
     factor: f64,
     /// Input and output of each stretch.
     columns: Vec<(Vec<f64>, Vec<f64>)>,
@@ -93,7 +93,7 @@ struct Run {
     resolution: f64,
 }
 
-impl Run {
+impl ScaledRun {
     /// The runs over the inputs of data, multiplied about their means. If no oscillator fits them, the resolution is the
     /// given one.
     fn scaled(

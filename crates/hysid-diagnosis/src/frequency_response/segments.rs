@@ -4,7 +4,7 @@ use hysid_core::data::record::Dataset;
 use hysid_core::elementary::powf;
 
 use super::period::period;
-use super::spectra::{Line, Spectra, Window, mean};
+use super::spectra::{Spectra, SpectralLine, Window, mean};
 use super::stretches::{FEWEST_ROWS, Stretch, stretches};
 use super::{FrequencyResponse, NoResponse, ResponsePoint};
 use crate::resonance::LinearOscillator;
@@ -13,7 +13,7 @@ use crate::resonance::LinearOscillator;
 const LEAST_POWER: f64 = 1e-7;
 
 /// With a window, so are those with less than this share of the power of a line that is not further away than so many lines:
-/// a strong line leaks more than that to its next neighbours, and the edge of a band would have points that tell nothing.
+/// a strong line leaks more than that to its next neighbours, and the edge of a band would have useless points.
 const LEAST_OF_NEIGHBOURS: f64 = 1e-2;
 const NEIGHBOURS: usize = 3;
 
@@ -31,7 +31,7 @@ const FEWEST_SEGMENTS: usize = 8;
 /// A larger damping ratio does not make a resolution coarser.
 const MOST_DAMPING: f64 = 0.2;
 
-/// The distance of frequencies that must be told apart around the resonance of an oscillator: an eighth of its half-power
+/// The distance of frequencies that must be resolved around the resonance of an oscillator: an eighth of its half-power
 /// bandwidth `2 ζ f`.
 pub fn resolution(oscillator: &LinearOscillator) -> f64 {
     2.0 * oscillator.damping_ratio.min(MOST_DAMPING) * oscillator.natural_frequency / RESOLUTION
@@ -51,8 +51,8 @@ pub struct Segments {
 
 impl Segments {
     /// Divides data with one input and evenly spaced time (to 1/1000 of a step), so that frequencies at this distance, in
-    /// cycles per unit of time, can be told apart if there are enough rows; see [`resolution`]. Segments with a row without
-    /// output are left out.
+    /// cycles per unit of time, can be resolved if there are enough rows; see [`resolution`]. Segments with a row
+    /// without output are left out.
     ///
     /// # Errors
     /// Why the data have no frequency response.
@@ -137,14 +137,14 @@ impl Segments {
 
     /// The lines at which the input has power, neighbours within the resolution together. `scale` turns their quotients
     /// into the units of the data.
-    fn points(&self, lines: &[Line], scale: f64, resolution: f64) -> Vec<ResponsePoint> {
+    fn points(&self, lines: &[SpectralLine], scale: f64, resolution: f64) -> Vec<ResponsePoint> {
         let powered = (1..).zip(lines).zip(has_power(lines, self.window)).filter(|(_, has_power)| *has_power);
-        let mut groups: Vec<Group> = Vec::new();
+        let mut groups: Vec<FrequencyGroup> = Vec::new();
         for ((multiple, line), _) in powered {
             let frequency = f64::from(multiple) * self.distance();
             match groups.last_mut().filter(|group| frequency - group.lowest < resolution) {
                 Some(group) => group.add(frequency, line),
-                None => groups.push(Group::of(frequency, line)),
+                None => groups.push(FrequencyGroup::of(frequency, line)),
             }
         }
         let points = groups.into_iter().filter_map(|group| group.point(scale, self.count()));
@@ -152,20 +152,20 @@ impl Segments {
     }
 }
 
-struct Group {
+struct FrequencyGroup {
     lowest: f64,
     lines: usize,
-    sum: Line,
+    sum: SpectralLine,
     /// Distances from the lowest frequency, weighted with the power of the input.
     moment: f64,
 }
 
-impl Group {
-    fn of(frequency: f64, line: &Line) -> Self {
+impl FrequencyGroup {
+    fn of(frequency: f64, line: &SpectralLine) -> Self {
         Self { lowest: frequency, lines: 1, sum: *line, moment: 0.0 }
     }
 
-    fn add(&mut self, frequency: f64, line: &Line) {
+    fn add(&mut self, frequency: f64, line: &SpectralLine) {
         self.lines += 1;
         self.sum.add(line);
         self.moment += (frequency - self.lowest) * line.input;
@@ -173,7 +173,7 @@ impl Group {
 
     /// `None` if noise alone could give as much coherence.
     fn point(self, scale: f64, segments: usize) -> Option<ResponsePoint> {
-        let Line { input, output, product } = self.sum;
+        let SpectralLine { input, output, product } = self.sum;
         let averaged = self.lines * segments;
         let coherence =
             (averaged > 1 && output > 0.0).then(|| (product.norm_sqr() / (input * output)).min(1.0));
@@ -188,8 +188,8 @@ impl Group {
 }
 
 /// At which lines the input has power of its own.
-fn has_power(lines: &[Line], window: Window) -> impl Iterator<Item = bool> {
-    let largest = |lines: &[Line]| lines.iter().map(|line| line.input).fold(0.0, f64::max);
+fn has_power(lines: &[SpectralLine], window: Window) -> impl Iterator<Item = bool> {
+    let largest = |lines: &[SpectralLine]| lines.iter().map(|line| line.input).fold(0.0, f64::max);
     let least = LEAST_POWER * largest(lines);
     let neighbours = match window {
         Window::WholePeriods => 0,

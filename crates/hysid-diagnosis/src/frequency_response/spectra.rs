@@ -24,12 +24,12 @@ pub(super) struct Spectra {
     segment: Vec<Complex<f64>>,
     space: Vec<Complex<f64>>,
     /// Sums from the multiple 1 on.
-    pub lines: Vec<Line>,
+    pub lines: Vec<SpectralLine>,
 }
 
 /// Sums at a frequency.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Line {
+pub(super) struct SpectralLine {
     /// `Σ |U|²`
     pub input: f64,
     /// `Σ |Y|²`
@@ -38,7 +38,7 @@ pub(super) struct Line {
     pub product: Complex<f64>,
 }
 
-impl Line {
+impl SpectralLine {
     pub fn add(&mut self, other: &Self) {
         self.input += other.input;
         self.output += other.output;
@@ -58,7 +58,7 @@ impl Spectra {
             segment: Vec::with_capacity(length),
             space: vec![Complex::default(); transform.get_inplace_scratch_len()],
             window: (0..length).map(weight).collect(),
-            lines: vec![Line::default(); length.div_ceil(2).saturating_sub(1)],
+            lines: vec![SpectralLine::default(); length.div_ceil(2).saturating_sub(1)],
             transform,
         }
     }
@@ -78,7 +78,7 @@ impl Spectra {
             let mirrored = mirrored.conj();
             let u = 0.5 * (z + mirrored);
             let y = Complex::new(0.0, -0.5) * (z - mirrored);
-            line.add(&Line { input: u.norm_sqr(), output: y.norm_sqr(), product: y * u.conj() });
+            line.add(&SpectralLine { input: u.norm_sqr(), output: y.norm_sqr(), product: y * u.conj() });
         }
     }
 }

@@ -20,7 +20,7 @@ fn oscillator() -> LinearOscillator {
         gain: 3.0,
         direct: 0.2,
         offset: 1.5,
-        compared: Compared::Output,
+        compared: ComparedSignal::Output,
         residual: 0.0,
     }
 }
@@ -34,7 +34,7 @@ fn through(frequency: f64) -> (f64, f64) {
 }
 
 /// Magnitude and phase for samples with straight lines between them: sines of amplitude `sinc²(f T)` at the frequency, and
-/// at those that differ from it by multiples of the sampling rate, which samples cannot tell apart.
+/// at those that differ from it by multiples of the sampling rate, which samples cannot distinguish.
 fn exact(frequency: f64) -> (f64, f64) {
     let (mut real, mut imaginary) = (0.2, 0.0);
     for multiple in -30..=30 {
@@ -159,7 +159,7 @@ fn noise_gives_the_response_within_its_resolution() {
     // The bandwidth is 1.6 Hz, an eighth of it 0.2 Hz: 2500 rows, rounded up.
     assert_eq!((segments.window(), segments.length()), (Window::Hann, 4096));
     let response = segments.measured(&data, resolution(&oscillator()));
-    let peak = response.peak(Compared::Output).unwrap();
+    let peak = response.peak(ComparedSignal::Output).unwrap();
     assert!((peak.frequency - 20.0).abs() < 0.3, "{peak:?}");
     let mut compared = 0;
     for point in response.points.iter().filter(|point| (1.0..60.0).contains(&point.frequency)) {
@@ -275,7 +275,7 @@ fn frequencies_without_input_are_left_out() {
         found.len() == 2 && (found[0] - 25.0).abs() < 1e-9 && (found[1] - 50.0).abs() < 1e-9,
         "{found:?}"
     );
-    assert!(response.peak(Compared::Output).is_none());
+    assert!(response.peak(ComparedSignal::Output).is_none());
 }
 
 /// Steps such as those of a structure that yields, each much larger than the motion at the resonance.
@@ -291,7 +291,7 @@ fn the_resonance_of_an_output_that_drifts_is_that_of_its_changes() {
     let data = dataset(vec![(input, output)]);
     let response = Segments::of(&data, Some(resolution(&oscillator()))).unwrap().measured(&data, 0.2);
     let largest = response.points.iter().map(ResponsePoint::magnitude).fold(0.0, f64::max);
-    let peak = response.peak(Compared::Changes).unwrap();
+    let peak = response.peak(ComparedSignal::Changes).unwrap();
     assert!((peak.frequency - 20.0).abs() < 0.5 && peak.magnitude() < largest, "{peak:?} {largest}");
 }
 
@@ -327,7 +327,8 @@ fn large_and_small_values_have_a_response() {
     for scale in [1e90, 1e-90] {
         let of = |values: &[f64]| values.iter().map(|value| scale * value).collect::<Vec<f64>>();
         let data = dataset(vec![(of(&input), output.clone())]);
-        let peak = Segments::of(&data, None).unwrap().measured(&data, 0.0).peak(Compared::Output).unwrap();
+        let peak =
+            Segments::of(&data, None).unwrap().measured(&data, 0.0).peak(ComparedSignal::Output).unwrap();
         assert!(
             (peak.frequency - 20.0).abs() < 0.6 && (peak.magnitude() * scale / 37.0 - 1.0).abs() < 0.1,
             "{peak:?}"

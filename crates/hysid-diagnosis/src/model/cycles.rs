@@ -48,7 +48,7 @@ const SMALLEST_REVERSAL: f64 = 0.25 / AMPLITUDES as f64;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelCycles {
-    /// What the model was driven with.
+    /// Drives of the model.
     pub probing: Probing,
     /// The cycles: input, output and time.
     pub data: Dataset,

@@ -1,6 +1,6 @@
 //! Tests that only a model allows: the same way at other speeds, its mirror image, an excursion repeated.
 
-use super::probe::{Path, Probe, extent, path};
+use super::probe::{Probe, ProbePath, extent, path};
 use crate::odd_symmetry::EFFECT as ODD_EFFECT;
 use crate::rate_dependence::EFFECT as RATE_EFFECT;
 use crate::wiping_out::{EFFECT as GAP_EFFECT, loops};
@@ -80,7 +80,7 @@ pub(super) fn rate_dependence(probe: &Probe) -> Result<Finding> {
 }
 
 /// An output and that of the mirrored input, theory.md (10.32).
-struct Mirrored {
+struct MirroredOutput {
     index: f64,
     record: Record,
     curves: Vec<PictureCurve>,
@@ -96,7 +96,7 @@ pub(super) fn odd_symmetry(probe: &Probe) -> Result<Finding> {
     let off_centre = (origin - centre).abs();
     let at_origin =
         if about_origin(probe) { Some(mirrored(probe, origin, half - off_centre)?) } else { None };
-    let percent = |mirrored: &Mirrored| Significant(100.0 * mirrored.index);
+    let percent = |mirrored: &MirroredOutput| Significant(100.0 * mirrored.index);
     let middle_of_range = "the middle of the input's range";
     let x_origin = format!("x = {}", Significant(origin));
     let (about, further) = match &at_origin {
@@ -136,8 +136,8 @@ pub(super) fn about_origin(probe: &Probe) -> bool {
     probe.half - (probe.centre - probe.origin()).abs() >= EVENLY_ABOUT_ORIGIN * probe.half
 }
 
-fn mirrored(probe: &Probe, centre: f64, half: f64) -> Result<Mirrored> {
-    let there: Path = path(centre, half, &LOOPS, probe.steps);
+fn mirrored(probe: &Probe, centre: f64, half: f64) -> Result<MirroredOutput> {
+    let there: ProbePath = path(centre, half, &LOOPS, probe.steps);
     let back = path(centre, half, &LOOPS.map(|turning| -turning), probe.steps);
     let record = probe.run("path", &there.x, probe.speeds.vanishing)?;
     let other = probe.run("mirrored path", &back.x, probe.speeds.vanishing)?;
@@ -148,7 +148,7 @@ fn mirrored(probe: &Probe, centre: f64, half: f64) -> Result<Mirrored> {
         label: "mirrored, rotated back".into(),
         points: there.x[first..].iter().zip(&other.output()[first..]).map(|(&x, y)| (x, mean - y)).collect(),
     };
-    Ok(Mirrored {
+    Ok(MirroredOutput {
         index: rms(sums().map(|sum| sum - mean)) / extent(record.output()).max(f64::MIN_POSITIVE),
         curves: vec![drawn("path".into(), &record, first), turned],
         rows: (first, there.x.len() - 1),

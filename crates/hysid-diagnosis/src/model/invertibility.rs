@@ -5,8 +5,8 @@
 //! model with a rate, the rate belongs to the unknown input, so what is found depends on the time step; a scan then
 //! covers the inputs that the trained rates can reach.
 
+mod conclusions;
 mod examination;
-mod judgement;
 mod pasts;
 mod scan;
 mod words;
@@ -15,9 +15,9 @@ use serde::Serialize;
 
 use super::probe::Probe;
 use crate::Finding;
+use conclusions::ScanConclusions;
 use examination::Examination;
 use hysid_core::error::Result;
-use judgement::Judgement;
 
 /// A way back or a jump below this share of the output's range does not matter.
 const EFFECT: f64 = 1e-6;
@@ -25,14 +25,14 @@ const EFFECT: f64 = 1e-6;
 /// In which direction the output goes while the input rises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Direction {
+pub enum OutputDirection {
     /// Upwards.
     Rising,
     /// Downwards.
     Falling,
 }
 
-impl Direction {
+impl OutputDirection {
     fn sign(self) -> f64 {
         match self {
             Self::Rising => 1.0,
@@ -41,7 +41,7 @@ impl Direction {
     }
 }
 
-/// What prevents an inverse.
+/// Obstacle to an inverse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlaceKind {
@@ -53,8 +53,8 @@ pub enum PlaceKind {
 
 /// Where a model is not monotone.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Place {
-    /// What is there.
+pub struct NonMonotonePlace {
+    /// Obstacle at this place.
     pub kind: PlaceKind,
     /// Its size, as a share of the range of the output.
     pub size: f64,
@@ -76,7 +76,7 @@ pub struct Place {
     pub outputs: (f64, f64),
 }
 
-/// What a time step does.
+/// Lack of monotonicity at a time step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtTimeStep {
     /// Time to the next sample, in its unit.
@@ -101,7 +101,7 @@ pub struct Invertibility {
     #[serde(flatten)]
     pub finding: Finding,
     /// In which direction the output goes while the input rises, in most scans.
-    pub direction: Direction,
+    pub direction: OutputDirection,
     /// Outputs that can be reached in one step after each past; `None` if there are none. Of a model with a rate: in a
     /// step that is long enough for the whole trained range.
     pub always: Option<(f64, f64)>,
@@ -110,7 +110,7 @@ pub struct Invertibility {
     pub monotone_outputs: Option<(f64, f64)>,
     /// Shortest time step from which on all scans are monotone; `None` if there is none, or if time does not matter.
     pub shortest_time_step: Option<f64>,
-    /// What each time step does, the shortest first; empty if time does not matter.
+    /// Results of each time step, the shortest first; empty if time does not matter.
     pub time_steps: Vec<AtTimeStep>,
     /// Number of pasts.
     pub pasts: usize,
@@ -121,14 +121,14 @@ pub struct Invertibility {
     /// Number of jumps that were found.
     pub jumps: usize,
     /// The largest way back or jump; `None` for a verdict *yes*.
-    pub worst: Option<Place>,
-    /// A drawing.
+    pub worst: Option<NonMonotonePlace>,
+    /// Scans to be drawn.
     #[serde(skip)]
     pub drawing: Scans,
 }
 
 impl Invertibility {
     pub(super) fn of(probe: &Probe) -> Result<Self> {
-        Ok(Judgement::of(&Examination::of(probe)?).invertibility(probe))
+        Ok(ScanConclusions::of(&Examination::of(probe)?).invertibility(probe))
     }
 }

@@ -6,7 +6,7 @@
 
 use serde::Serialize;
 
-use super::probe::{Path, Probe, data};
+use super::probe::{Probe, ProbePath, data};
 use super::properties::survey;
 use crate::cycles::{Cycle, cycles};
 use hysid_core::error::Result;
@@ -69,7 +69,7 @@ impl LoopWidths {
 
 /// A path with a row more close before and after each turning point: the rate there is that of the branch, as
 /// far as a sampled path can have it, so that what it does to the width does not depend on the steps.
-fn with_sharp_turns(path: &Path) -> Vec<f64> {
+fn with_sharp_turns(path: &ProbePath) -> Vec<f64> {
     let mut x = Vec::with_capacity(path.x.len() + 2 * path.turns.len());
     for (row, &here) in path.x.iter().enumerate() {
         let beside = |neighbour: f64| here + SHARP * (neighbour - here);

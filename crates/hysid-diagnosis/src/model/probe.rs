@@ -8,7 +8,7 @@ use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::elementary::exp;
 use hysid_core::error::{Error, Result};
 use hysid_core::model::{Model, Predictor};
-use hysid_core::network::Layout;
+use hysid_core::network::ParameterLayout;
 
 /// Rows from the middle of the range to its end. Every tenth of the way falls on a row, and a branch over the
 /// whole range has few enough rows that none are averaged.
@@ -25,7 +25,7 @@ const ROWS: f64 = 60_000.0;
 /// A vanishing speed, as a share of the fastest.
 const VANISHING: f64 = 1e-6;
 
-/// The fastest speed is so many times the middle one.
+/// Ratio of the fastest speed to the middle one.
 const FASTEST: f64 = 3.0;
 
 /// Speeds that a model is driven at, as shares of the middle one.
@@ -43,11 +43,11 @@ pub enum TimeScale {
     /// The median of the relaxation times: the middle speed passes half the range in it. No rates are
     /// stored.
     RelaxationTimes,
-    /// None: the model sees neither rate nor time.
+    /// None: the model uses neither rate nor time.
     None,
 }
 
-/// What a model was driven with.
+/// Drives of a model: ranges, speeds and rows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Probing {
     /// Smallest and largest input, in its unit: the trained range.
@@ -56,18 +56,18 @@ pub struct Probing {
     pub held: Vec<f64>,
     /// Where the speeds come from.
     pub time_scale: TimeScale,
-    /// Speed of all probes that do not ask for the rate, next to 0, in the unit of the input over that of time.
+    /// Speed of all probes that do not test the rate, next to 0, in the unit of the input over that of time.
     pub vanishing_speed: f64,
     /// Speeds of those that do.
     pub speeds: Vec<f64>,
     /// Rows from the middle of the range to its end: 160, or fewer of a model whose rows need much work.
     pub steps: u32,
-    /// What was outside of what the model was trained on, in words, if anything had to be.
+    /// Excursions of the drives beyond the trained ranges, in words, if there had to be any.
     pub outside: Option<String>,
 }
 
 impl Probing {
-    /// What a reader must know of the rows, where they are fewer than usual.
+    /// Note on the rows, where they are fewer than usual.
     pub fn rows_in_words(&self) -> Option<String> {
         let steps = self.steps;
         (steps < STEPS).then(|| {
@@ -80,7 +80,7 @@ impl Probing {
 
 /// A way of the input through turning points.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Path {
+pub(super) struct ProbePath {
     pub x: Vec<f64>,
     /// Row of each turning point, the first row and the last with them.
     pub turns: Vec<usize>,
@@ -92,7 +92,7 @@ pub(super) struct Probe<'m> {
     pub model: &'m Model,
     pub centre: f64,
     pub half: f64,
-    pub speeds: Speeds,
+    pub speeds: ProbeSpeeds,
     /// Rows from the middle of the range to its end.
     pub steps: u32,
     held: Vec<f64>,
@@ -100,7 +100,7 @@ pub(super) struct Probe<'m> {
 
 /// Speeds, in the unit of the input over that of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Speeds {
+pub(super) struct ProbeSpeeds {
     pub scale: TimeScale,
     pub vanishing: f64,
     pub middle: f64,
@@ -108,7 +108,7 @@ pub(super) struct Speeds {
     one_sided: bool,
 }
 
-impl Speeds {
+impl ProbeSpeeds {
     fn of(model: &Model, half: f64) -> Self {
         let rate = model.trained_ranges().rate.map(|(low, high)| {
             let (most, least) = (high.abs().max(low.abs()), high.min(-low));
@@ -128,7 +128,7 @@ impl Speeds {
         TRIED.map(|share| share * self.middle)
     }
 
-    /// True if the model sees how fast the input goes.
+    /// True if the model depends on the speed of the input.
     pub fn matter(&self) -> bool {
         self.scale != TimeScale::None
     }
@@ -140,7 +140,7 @@ fn median_relaxation_time(model: &Model) -> Option<f64> {
         return ensemble.members().iter().find_map(median_relaxation_time);
     }
     let Predictor::Network { network, .. } = model.predictor() else { return None };
-    let ln_tau = &network.parameters()[Layout::new(*network.architecture()).ln_tau];
+    let ln_tau = &network.parameters()[ParameterLayout::new(*network.architecture()).ln_tau];
     if ln_tau.is_empty() {
         return None;
     }
@@ -160,7 +160,7 @@ impl<'m> Probe<'m> {
                 "the model was trained on inputs from {low} to {high}: there is no range to probe"
             )));
         }
-        let speeds = Speeds::of(model, half);
+        let speeds = ProbeSpeeds::of(model, half);
         Ok(Self {
             model,
             centre: middle(&ranges[0]),
@@ -197,7 +197,7 @@ impl<'m> Probe<'m> {
     }
 
     /// A path over the trained range: turning points from -1, its lower end, to 1, its upper end.
-    pub fn path(&self, turning: &[f64]) -> Path {
+    pub fn path(&self, turning: &[f64]) -> ProbePath {
         path(self.centre, self.half, turning, self.steps)
     }
 
@@ -216,7 +216,7 @@ impl<'m> Probe<'m> {
         Record::new(name, vec![x.to_vec()], record.output().to_vec())
     }
 
-    /// What the model is driven with: all inputs, time, the rate where it has to be given. No output.
+    /// Record that drives the model: all inputs, time, the rate where it has to be given. No output.
     pub fn record(&self, name: &str, x: &[f64], time: &[f64]) -> Result<Record> {
         let mut inputs = vec![x.to_vec()];
         inputs.extend(self.held.iter().map(|&value| vec![value; x.len()]));
@@ -251,11 +251,11 @@ fn origin(model: &Model) -> f64 {
 }
 
 /// A path in equal steps, `steps` to each half of the range: equal places on different ways are equal numbers.
-pub(super) fn path(centre: f64, half: f64, turning: &[f64], steps: u32) -> Path {
+pub(super) fn path(centre: f64, half: f64, turning: &[f64], steps: u32) -> ProbePath {
     let place = |turning: f64| (turning * f64::from(steps)).round() as i64;
     let input = |place: i64| centre + half * (place as f64 / f64::from(steps));
     let mut here = place(turning[0]);
-    let mut path = Path { x: vec![input(here)], turns: vec![0] };
+    let mut path = ProbePath { x: vec![input(here)], turns: vec![0] };
     for end in turning[1..].iter().map(|&turning| place(turning)) {
         while here != end {
             here += (end - here).signum();

@@ -1,4 +1,4 @@
-//! The ten properties of a model: probes chosen for each, judged by the tests of data, or directly where
+//! The ten properties of a model: probes chosen for each, evaluated by the tests of data, or directly where
 //! that is stronger.
 
 use super::direct;
@@ -79,15 +79,15 @@ pub(super) fn findings(probe: &Probe) -> Result<Vec<Finding>> {
     Ok(findings)
 }
 
-/// What a model remembers, at a vanishing speed.
+/// Findings on the memory of a model, at a vanishing speed.
 fn of_memory(probe: &Probe, memory: &Dataset) -> Result<Vec<Finding>> {
     let survey = survey(memory);
     let mut findings = vec![
-        orientation::test(&survey),
-        direct::with_accumulated_gap(probe, wiping_out::test(&survey, false), survey.height())?,
-        congruency::test(&survey, false, false),
-        masing::test(&survey, false),
-        saturation::test(&survey),
+        orientation::verdict(&survey),
+        direct::with_accumulated_gap(probe, wiping_out::verdict(&survey, false), survey.height())?,
+        congruency::verdict(&survey, false, false),
+        masing::verdict(&survey, false),
+        saturation::verdict(&survey),
         closure(probe)?,
     ];
     if probe.speeds.matter() {
@@ -119,20 +119,20 @@ fn static_loops(probe: &Probe) -> Result<Finding> {
         probe.run("three times as fast", &path.x, 3.0 * slowest)?,
     ])?;
     let survey = survey(&data);
-    Ok(static_hysteresis::test(&survey, Verdict::NotTestable, || None))
+    Ok(static_hysteresis::verdict(&survey, Verdict::NotTestable, || None))
 }
 
 fn orientation_at_speed(probe: &Probe, loops: Record) -> Result<Finding> {
     let data = data(vec![loops])?;
     let survey = survey(&data);
-    let mut finding = orientation::test(&survey);
+    let mut finding = orientation::verdict(&survey);
     if probe.speeds.matter() {
         finding.statement += " (at the middle of the trained speeds)";
     }
     Ok(finding)
 }
 
-/// Repeated loops, slow, and at speed for a model that knows it: what wears may do so at speed only.
+/// Repeated loops, slow, and at speed for a model with the rate: what wears may do so at speed only.
 fn wear(probe: &Probe) -> Result<Finding> {
     let path = probe.path(&repeated_loops());
     let test = |speed: f64| -> Result<Finding> {
@@ -143,7 +143,7 @@ fn wear(probe: &Probe) -> Result<Finding> {
             let statement = "there is no loop large enough to shrink";
             return Ok(Finding::not_testable(Property::Deterioration, statement, LARGER));
         }
-        let mut finding = deterioration::test(&survey, &cycles);
+        let mut finding = deterioration::verdict(&survey, &cycles);
         finding.statement += &format!(" ({REPEATS} loops over the whole range)");
         Ok(finding)
     };

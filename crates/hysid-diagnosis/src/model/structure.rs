@@ -1,4 +1,4 @@
-//! What the equations of a model promise whatever its parameters, theory.md (10.35), and whether probing
+//! Properties that the equations of a model guarantee whatever its parameters, theory.md (10.35), and whether probing
 //! agrees.
 
 use serde::Serialize;
@@ -20,7 +20,7 @@ pub struct StructuralProperty {
     /// Whether every model with these equations has it or none has; at a vanishing speed, for what is a
     /// property of memory.
     pub verdict: Verdict,
-    /// Whether probing says the same; `None` where it could not tell.
+    /// Whether probing agrees; `None` where it does not decide.
     pub agrees: Option<bool>,
 }
 
@@ -52,8 +52,8 @@ fn of_model(model: &Model, about_origin: bool) -> Vec<(Property, bool)> {
     all
 }
 
-/// What every member promises, as far as a median keeps it: it does not keep the shape of increments, which
-/// congruency and Masing's rule are about. An ensemble with other weights outside remembers that it was there.
+/// Properties that every member guarantees, as far as a median keeps them: it does not keep the shape of increments,
+/// which congruency and Masing's rule are about. An ensemble with other weights outside depends on having been there.
 fn of_ensemble(ensemble: &Ensemble, about_origin: bool) -> Vec<(Property, bool)> {
     let mut members = ensemble.members().iter().map(|member| of_model(member, about_origin));
     let mut all = members.next().unwrap_or_default();

@@ -12,7 +12,7 @@ use hysid_core::law::rate_dependent_prandtl_ishlinskii::{
     PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
 };
 use hysid_core::model::input_transform::InputTransform;
-use hysid_core::model::{Found, Predictor};
+use hysid_core::model::{Predictor, ProvenanceDraft};
 use hysid_core::network::scaling::Scaling;
 use hysid_core::network::{Architecture, Family, Network, Sizes};
 use hysid_core::options::FitSpec;
@@ -30,7 +30,7 @@ fn model(body: Predictor, request: FitSpec, rate: Option<RateMethod>) -> Model {
     let time = (0..x.len()).map(|k| k as f64 * X / RATE).collect();
     let record = Record::new("r", vec![x.clone()], x).unwrap().with_time(time).unwrap();
     let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
-    let found = Found::of(request, Termination::Converged);
+    let found = ProvenanceDraft::of(request, Termination::Converged);
     Model::new(body, InputTransform::default(), rate, &data, found).unwrap()
 }
 

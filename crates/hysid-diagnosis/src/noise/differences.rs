@@ -54,7 +54,7 @@ const SMALLEST: f64 = 1e-3;
 
 /// Successive values of a channel.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Run<'a> {
+pub(crate) struct ChannelRun<'a> {
     pub values: &'a [f64],
     /// Those of the channel that they follow, row by row: where they move together, and not evenly, neither of them is
     /// noise. Empty if it is not known.
@@ -62,32 +62,33 @@ pub(crate) struct Run<'a> {
 }
 
 /// The variance of a normalised difference.
-struct Difference {
+struct DifferenceVariance {
     order: usize,
     distance: usize,
     variance: f64,
 }
 
-/// Fewest values that tell anything about their noise.
+/// Fewest values that show anything about their noise.
 const FEWEST: usize = 8;
 
 /// Deviation of white noise by which neighbouring rows differ as much; 0 for hardly any values.
 pub(crate) fn roughness<'a>(columns: impl Iterator<Item = &'a [f64]>) -> f64 {
-    let columns: Vec<Rows> = columns.map(|values| Rows::new(Run { values, beside: &[] })).collect();
+    let columns: Vec<DistinctRows> =
+        columns.map(|values| DistinctRows::new(ChannelRun { values, beside: &[] })).collect();
     let rows: usize = columns.iter().map(|column| column.values.len()).sum();
-    let runs = columns.iter().map(Rows::run);
+    let runs = columns.iter().map(DistinctRows::run);
     if rows < FEWEST { 0.0 } else { least(&differences(runs, rows, 0), 1).sqrt() }
 }
 
 /// The rows of a run without those that repeat the one before: a logger that is faster than its sensor makes them, and they
-/// tell nothing of noise.
-struct Rows<'a> {
+/// contain no information about noise.
+struct DistinctRows<'a> {
     values: Cow<'a, [f64]>,
     beside: Cow<'a, [f64]>,
 }
 
-impl<'a> Rows<'a> {
-    fn new(Run { values, beside }: Run<'a>) -> Self {
+impl<'a> DistinctRows<'a> {
+    fn new(ChannelRun { values, beside }: ChannelRun<'a>) -> Self {
         let is_new = |row: &usize| {
             let before = row.wrapping_sub(1);
             *row == 0 || values[*row] != values[before] || beside.get(*row) != beside.get(before)
@@ -102,22 +103,22 @@ impl<'a> Rows<'a> {
         Self { values: of(values), beside: of(beside) }
     }
 
-    fn run(&self) -> Run<'_> {
-        Run { values: &self.values, beside: &self.beside }
+    fn run(&self) -> ChannelRun<'_> {
+        ChannelRun { values: &self.values, beside: &self.beside }
     }
 }
 
 /// The least variance of all orders at a distance: the course of the values adds to each. 0 where none was measured.
-fn least(differences: &[Difference], distance: usize) -> f64 {
+fn least(differences: &[DifferenceVariance], distance: usize) -> f64 {
     let alike = differences.iter().filter(|difference| difference.distance == distance);
     let least = alike.map(|difference| difference.variance).fold(f64::INFINITY, f64::min);
     if least.is_finite() { least } else { 0.0 }
 }
 
 /// The noise of a channel; none for hardly any values.
-pub(super) fn noise<'a>(runs: impl Iterator<Item = Run<'a>>) -> Noise {
-    let runs: Vec<Rows> = runs.map(Rows::new).collect();
-    let runs = runs.iter().map(Rows::run);
+pub(super) fn noise<'a>(runs: impl Iterator<Item = ChannelRun<'a>>) -> Noise {
+    let runs: Vec<DistinctRows> = runs.map(DistinctRows::new).collect();
+    let runs = runs.iter().map(DistinctRows::run);
     let rows: usize = runs.clone().map(|run| run.values.len()).sum();
     if rows < FEWEST {
         return Noise::default();
@@ -151,13 +152,13 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = Run<'a>>) -> Noise {
 
 /// The largest variance of the steps of a walk that no difference contradicts. Branches do not show how slow the slowest noise is, so the largest possible walk is
 /// assumed.
-fn largest_walk(differences: &[Difference]) -> f64 {
+fn largest_walk(differences: &[DifferenceVariance]) -> f64 {
     let bounds = differences.iter().map(|d| d.variance / in_difference(Correlation::Walking, d));
     bounds.fold(f64::INFINITY, f64::min)
 }
 
 /// Half of all rows are in runs at least so long.
-fn typical_length<'a>(runs: impl Iterator<Item = Run<'a>>, rows: usize) -> usize {
+fn typical_length<'a>(runs: impl Iterator<Item = ChannelRun<'a>>, rows: usize) -> usize {
     let mut lengths: Vec<usize> = runs.map(|run| run.values.len()).collect();
     lengths.sort_unstable_by(|a, b| b.cmp(a));
     let mut before = 0;
@@ -196,10 +197,10 @@ fn coefficients(order: usize) -> Vec<f64> {
 /// The differences of each order and distance: of the values, or of what they are away from following the channel beside
 /// them along a straight line, whichever is less.
 fn differences<'a>(
-    runs: impl Iterator<Item = Run<'a>> + Clone,
+    runs: impl Iterator<Item = ChannelRun<'a>> + Clone,
     rows: usize,
     length: usize,
-) -> Vec<Difference> {
+) -> Vec<DifferenceVariance> {
     let stride = rows.div_ceil(MOST);
     let longest = SPAN * length as f64;
     let pairs = ORDERS.iter().flat_map(|&order| DISTANCES.map(|distance| (order, distance)));
@@ -211,7 +212,7 @@ fn differences<'a>(
             coefficients.iter().enumerate().map(|(k, c)| c * values[row + k * distance]).sum()
         };
         let (mut sizes, mut sizes_apart) = (Vec::with_capacity(rows / stride), Vec::new());
-        for Run { values, beside } in runs.clone() {
+        for ChannelRun { values, beside } in runs.clone() {
             for row in (0..values.len().saturating_sub(span)).step_by(stride) {
                 let own = of(values, row);
                 sizes.push(own.abs());
@@ -224,7 +225,11 @@ fn differences<'a>(
         }
         let apart = if sizes_apart.is_empty() { f64::INFINITY } else { median(&mut sizes_apart) };
         let deviation = median(&mut sizes).min(apart) / MEDIAN_OF_NORMAL;
-        deviation.is_finite().then_some(Difference { order, distance, variance: deviation * deviation })
+        deviation.is_finite().then_some(DifferenceVariance {
+            order,
+            distance,
+            variance: deviation * deviation,
+        })
     };
     measured.filter_map(variance).collect()
 }
@@ -232,8 +237,8 @@ fn differences<'a>(
 /// Variances of noise of each correlation that add up to the differences, together with a course of the values that
 /// adds to those of order `p` and distance `d` by multiples of `d^{2p}` and, for its kinks, of `d^3`: least squares of the relative errors with
 /// shares that are not negative, by multiplicative updates (Lee and Seung 1999).
-fn shares(differences: &[Difference], correlations: &[Correlation]) -> Vec<f64> {
-    let relative = |of: &dyn Fn(&Difference) -> f64| -> Vec<f64> {
+fn shares(differences: &[DifferenceVariance], correlations: &[Correlation]) -> Vec<f64> {
+    let relative = |of: &dyn Fn(&DifferenceVariance) -> f64| -> Vec<f64> {
         differences.iter().map(|d| of(d) / floor(d, differences)).collect()
     };
     let of_noise = correlations.iter().map(|&correlation| relative(&|d| in_difference(correlation, d)));
@@ -262,15 +267,15 @@ fn shares(differences: &[Difference], correlations: &[Correlation]) -> Vec<f64> 
     shares
 }
 
-/// What a difference is measured by: itself, but not less than rounding.
-fn floor(difference: &Difference, all: &[Difference]) -> f64 {
+/// Scale of a difference: its own size, but not less than rounding.
+fn floor(difference: &DifferenceVariance, all: &[DifferenceVariance]) -> f64 {
     const ROUNDING: f64 = 1e-24;
     let largest = all.iter().map(|d| d.variance).fold(0.0, f64::max);
     difference.variance.max(ROUNDING * largest).max(f64::MIN_POSITIVE)
 }
 
 /// Variance of a difference of noise of variance 1.
-fn in_difference(correlation: Correlation, difference: &Difference) -> f64 {
+fn in_difference(correlation: Correlation, difference: &DifferenceVariance) -> f64 {
     let coefficients = coefficients(difference.order);
     let pairs = coefficients
         .iter()
@@ -283,7 +288,7 @@ fn in_difference(correlation: Correlation, difference: &Difference) -> f64 {
 
 /// A course of the values that is as large as the largest difference of its order, and grows with a power of the
 /// distance.
-fn course(difference: &Difference, power: i32, all: &[Difference]) -> f64 {
+fn course(difference: &DifferenceVariance, power: i32, all: &[DifferenceVariance]) -> f64 {
     let alike = || all.iter().filter(|d| d.order == difference.order);
     let furthest = alike().map(|d| d.distance).max().unwrap_or(1) as f64;
     let largest = alike().map(|d| d.variance).fold(0.0, f64::max);
@@ -317,7 +322,7 @@ mod tests {
     }
 
     fn noise_of(branches: &[Vec<f64>]) -> Noise {
-        Noise::of(branches.iter().map(|values| Run { values, beside: &[] }))
+        Noise::of(branches.iter().map(|values| ChannelRun { values, beside: &[] }))
     }
 
     #[test]
@@ -372,7 +377,7 @@ mod tests {
     #[test]
     fn smooth_branches_have_hardly_any() {
         assert!(noise_of(&branches(|_| 0.0)).deviation() < 1e-4);
-        let two = Run { values: &[1.0, 2.0], beside: &[] };
+        let two = ChannelRun { values: &[1.0, 2.0], beside: &[] };
         assert_eq!(Noise::of(std::iter::once(two)), Noise::default());
     }
 
@@ -392,7 +397,7 @@ mod tests {
             inputs.iter().map(|x| x.iter().map(|x| 3.0 * x - 0.5 * x * x).collect()).collect();
         let alone = noise_of(&outputs).deviation();
         let beside = |own: &[Vec<f64>], other: &[Vec<f64>]| {
-            Noise::of(own.iter().zip(other).map(|(values, beside)| Run { values, beside })).deviation()
+            Noise::of(own.iter().zip(other).map(|(values, beside)| ChannelRun { values, beside })).deviation()
         };
         assert!(beside(&outputs, &inputs) < 0.05 * alone, "{} of {alone}", beside(&outputs, &inputs));
         let alone = noise_of(&inputs).deviation();

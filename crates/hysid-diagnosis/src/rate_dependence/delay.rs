@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::branch::{Branch, BranchSet};
 use crate::interpolation::at_place;
 use crate::minimum::lowest;
-use crate::rate_dependence::Speeds;
+use crate::rate_dependence::SpeedPair;
 use hysid_core::data::record::Record;
 use hysid_core::elementary::square;
 
@@ -24,14 +24,14 @@ const MOST: usize = 40;
 pub struct Delay {
     /// By which the output lags behind the input, in the unit of time; negative if it leads.
     pub time: f64,
-    /// What of the difference between speeds is left after the shift, as a share of the output's range.
+    /// Difference between speeds that is left after the shift, as a share of the output's range.
     pub remains: f64,
 }
 
 /// The delay that makes the outputs of all speeds agree best.
-pub(crate) fn between_speeds(survey: &BranchSet, courses: &[Speeds]) -> Option<Delay> {
+pub(crate) fn between_speeds(survey: &BranchSet, courses: &[SpeedPair]) -> Option<Delay> {
     let step = courses.len().div_ceil(MOST).max(1);
-    let courses: Vec<&Speeds> = courses.iter().step_by(step).collect();
+    let courses: Vec<&SpeedPair> = courses.iter().step_by(step).collect();
     let all = || courses.iter().flat_map(|speeds| speeds.slow.iter().chain(&speeds.fast));
     let shortest = all().filter_map(|branch| branch.duration()).fold(f64::INFINITY, f64::min);
     if !shortest.is_finite() {
@@ -47,7 +47,7 @@ pub(crate) fn between_speeds(survey: &BranchSet, courses: &[Speeds]) -> Option<D
 
 /// Mean square of the difference between slow and fast branches whose outputs are taken `delay` later. The rows
 /// of the fast branches, which lie far apart, are taken as they are; between the many of the slow ones is read.
-fn mean_square(survey: &BranchSet, speeds: &Speeds, delay: f64) -> Option<f64> {
+fn mean_square(survey: &BranchSet, speeds: &SpeedPair, delay: f64) -> Option<f64> {
     let records = survey.data.records();
     let shifted = |set: &[&Branch]| -> Vec<Vec<(f64, f64)>> {
         set.iter().map(|branch| later(&records[branch.record], branch, delay)).collect()

@@ -53,7 +53,7 @@ const SLOWEST: f64 = 0.01;
 /// Ridge for nearly collinear columns.
 const RIDGE: f64 = 1e-7;
 
-/// What laws leave of branches that they were not fitted to: root mean squares as shares of the output's range.
+/// Residuals of laws on branches that they were not fitted to: root mean squares as shares of the output's range.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Remainders {
     /// Ratio of the speed of the fast branches to that of the slow ones.
@@ -77,8 +77,8 @@ pub(super) fn remainders(survey: &BranchSet) -> Option<Remainders> {
     let records = survey.data.records();
     let stride = survey.data.rows().div_ceil(MOST_ROWS);
     let fastest = fastest(survey);
-    let products = |lag: f64| -> Vec<Products> {
-        let mut products = vec![Products::new(); PARTS];
+    let products = |lag: f64| -> Vec<SpeedProducts> {
+        let mut products = vec![SpeedProducts::new(); PARTS];
         for (record, parts) in records.iter().zip(&parts) {
             add(survey, record, parts, stride, lag, fastest, &mut products);
         }
@@ -131,12 +131,12 @@ fn parts(survey: &BranchSet) -> Vec<Vec<Option<usize>>> {
 
 /// Sums of the products of all columns and the output.
 #[derive(Debug, Clone)]
-struct Products {
+struct SpeedProducts {
     sums: Vec<[f64; COLUMNS + 1]>,
     rows: f64,
 }
 
-impl Products {
+impl SpeedProducts {
     fn new() -> Self {
         Self { sums: vec![[0.0; COLUMNS + 1]; COLUMNS + 1], rows: 0.0 }
     }
@@ -179,9 +179,9 @@ impl Products {
 }
 
 /// Mean square of each part that a fit to the others leaves; `None` where a part is empty.
-fn held_out(parts: &[Products], chosen: &[usize]) -> Option<Vec<f64>> {
+fn held_out(parts: &[SpeedProducts], chosen: &[usize]) -> Option<Vec<f64>> {
     let of_part = |part: usize| -> Option<f64> {
-        let mut others = Products::new();
+        let mut others = SpeedProducts::new();
         parts
             .iter()
             .enumerate()
@@ -193,7 +193,7 @@ fn held_out(parts: &[Products], chosen: &[usize]) -> Option<Vec<f64>> {
     (0..parts.len()).map(of_part).collect()
 }
 
-/// Adds the rows of a record, with its output taken so many rows earlier.
+/// Adds the rows of a record, with its output taken some rows earlier.
 fn add(
     survey: &BranchSet,
     record: &Record,
@@ -201,7 +201,7 @@ fn add(
     stride: usize,
     lag: f64,
     fastest: f64,
-    products: &mut [Products],
+    products: &mut [SpeedProducts],
 ) {
     let Some(time) = record.time() else {
         return;

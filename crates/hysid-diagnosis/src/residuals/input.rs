@@ -19,11 +19,11 @@ use hysid_core::linear_algebra::Symmetric;
 use hysid_core::random::mix;
 use serde::Serialize;
 
-use super::rows::Rows;
+use super::rows::ResidualRows;
 use crate::distribution::{t_quantile, t_tail};
 use crate::serial::{SerialSum, correlation_lag};
 
-/// Lags in rows. They grow as the Fibonacci numbers: neighbouring lags of a smooth input tell the same.
+/// Lags in rows. They grow as the Fibonacci numbers: neighbouring lags of a smooth input contain the same information.
 const LAGS: [usize; 15] = [0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610];
 
 /// Lags are at most this share of the rows.
@@ -56,7 +56,11 @@ pub struct InputCorrelation {
 }
 
 /// Correlations with each input that varies, and with the rate of the first.
-pub(super) fn correlations(rows: &Rows, residual: &[Vec<f64>], names: &ColumnNames) -> Vec<InputCorrelation> {
+pub(super) fn correlations(
+    rows: &ResidualRows,
+    residual: &[Vec<f64>],
+    names: &ColumnNames,
+) -> Vec<InputCorrelation> {
     let input =
         |index: usize| -> Vec<&[f64]> { rows.inputs.iter().map(|inputs| inputs[index].as_slice()).collect() };
     let rate: Vec<Vec<f64>> =
@@ -135,7 +139,7 @@ fn correlation(
     })
 }
 
-/// The residual without what is proportional to a column so many rows before.
+/// The residual without what is proportional to a column some rows before.
 fn without(residual: &[Vec<f64>], column: &[&[f64]], mean: f64, lag: usize) -> Vec<Vec<f64>> {
     let past = |x: &[f64], row: usize| if row < lag { 0.0 } else { x[row - lag] - mean };
     let (mut product, mut square) = (0.0, 0.0);

@@ -11,7 +11,7 @@ pub(super) const AFTER_A_TURN: f64 = 0.25;
 const STRETCH: usize = 20_000;
 
 #[derive(Debug, Clone)]
-pub(super) struct Row {
+pub(super) struct ResidualRow {
     /// Measured less simulated output.
     pub residual: f64,
     /// Rate of the first input: by time, or by row where there is no time.
@@ -30,15 +30,15 @@ pub(super) struct Row {
 
 /// The scored rows of records.
 #[derive(Debug, Clone)]
-pub(super) struct Rows {
-    pub records: Vec<Vec<Row>>,
+pub(super) struct ResidualRows {
+    pub records: Vec<Vec<ResidualRow>>,
     /// Of each record, the inputs at the scored rows.
     pub inputs: Vec<Vec<Vec<f64>>>,
     /// Mean magnitude of the rate of each half cycle with a scored row.
     pub speeds: Vec<f64>,
 }
 
-impl Rows {
+impl ResidualRows {
     pub fn of(data: &Dataset, simulated: &[Vec<f64>], smallest_reversal: f64) -> Self {
         let (low, high) = data.input_range(0);
         let smallest = smallest_reversal * (high - low);
@@ -101,7 +101,7 @@ fn rows(
     smallest: f64,
     mean: f64,
     speeds: &mut Vec<f64>,
-) -> Vec<Row> {
+) -> Vec<ResidualRow> {
     let (x, rate) = (&record.inputs()[0], rates(record));
     let turns = turning_points(x, smallest);
     let ends: Vec<usize> =
@@ -117,7 +117,7 @@ fn rows(
         while let Some(row) = at.next_if(|&row| row < last || is_last) {
             speed += rate[row].abs();
             let share = if way == 0.0 { 0.0 } else { (x[row] - x[first]) / way };
-            found.push(Row {
+            found.push(ResidualRow {
                 residual: record.output()[row] - simulated[row],
                 rate: rate[row],
                 after_a_turn: (half_cycle > 0).then_some(share <= AFTER_A_TURN),
@@ -161,7 +161,7 @@ mod tests {
         let mut y = x.to_vec();
         y[1] = f64::NAN;
         let data = Dataset::from_slices(&x, &y).unwrap();
-        let rows = Rows::of(&data, &[vec![0.5; 9]], 0.02);
+        let rows = ResidualRows::of(&data, &[vec![0.5; 9]], 0.02);
         let rows = &rows.records[0];
         assert_eq!(rows.len(), 8);
         let after: Vec<Option<bool>> = rows.iter().map(|row| row.after_a_turn).collect();
@@ -181,7 +181,7 @@ mod tests {
         let x: Vec<f64> = (0..90_000).map(|k| sin(0.01 * f64::from(k))).collect();
         let y: Vec<f64> = (0..90_000).map(f64::from).collect();
         let data = Dataset::from_slices(&x, &y).unwrap();
-        let rows = Rows::of(&data, &[vec![0.0; 90_000]], 0.02).stretches(30_000);
+        let rows = ResidualRows::of(&data, &[vec![0.0; 90_000]], 0.02).stretches(30_000);
         assert_eq!(rows.len(), 30_000);
         assert_eq!(rows.records[0][0].residual, 0.0);
         assert_eq!(rows.records.last().unwrap().last().unwrap().residual, 89_999.0);

@@ -120,8 +120,8 @@ fn known_structure_is_found_and_named() {
     assert!(found_share(ResidualTest::Distance, |row, x| grows(row, x, 2.5)) > 0.9);
 }
 
-/// What follows from the input is found however small the noise beside it, also in four cycles of one sine; it is found
-/// by the test of its name only where the drive tells both apart.
+/// Structure that follows from the input is found however small the noise beside it, also in four cycles of one sine;
+/// it is found by the test of its name only where the drive distinguishes both.
 #[test]
 fn structure_without_noise_is_found_too() {
     let sine: Vec<f64> = (0..1200).map(|row| sin(std::f64::consts::TAU * row as f64 / 300.0)).collect();

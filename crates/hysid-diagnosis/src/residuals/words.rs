@@ -1,11 +1,12 @@
-//! What the tests say, in sentences.
+//! Results of the tests, in sentences.
 
 use hysid_core::data::unit::suffix;
 use hysid_core::elementary::square;
 use hysid_core::significant::Significant;
 
 use super::{
-    Group, LEVEL, Place, ResidualFinding, ResidualOptions, ResidualTest, ResidualVerdict, Residuals,
+    GroupedResiduals, LEVEL, ResidualFinding, ResidualGroup, ResidualOptions, ResidualTest, ResidualVerdict,
+    Residuals,
 };
 use crate::distribution::t_tail;
 use crate::serial::SerialSum;
@@ -21,7 +22,7 @@ const OTHER_RATE_DEPENDENCE: &str = "The rate dependence of the model is not tha
     another form. Compare it on held-out data with a model without the rate and with one with relaxation neurons (xpnn+), \
     and check for a delay between the channels (diagnose the data).";
 
-/// What limits all tests.
+/// Limitation of all tests.
 pub(super) fn caution(residuals: &Residuals, options: &ResidualOptions) -> Option<String> {
     let Residuals { rows, effective_rows, .. } = *residuals;
     let few = (effective_rows < FEW_ROWS).then(|| {
@@ -51,7 +52,7 @@ pub(super) fn findings(
     p_values.extend(residuals.inputs.iter().map(|input| Some(input.p_value)));
     p_values.extend(residuals.places.iter().map(of_place));
     let adjusted = holm(&p_values);
-    let teller = Teller { residuals, unit, options };
+    let teller = FindingWriter { residuals, unit, options };
     let mut told = vec![teller.bias(adjusted[0]), teller.whiteness(adjusted[1])];
     let (of_inputs, of_places) = adjusted[2..].split_at(residuals.inputs.len());
     told.extend((0..of_inputs.len()).map(|at| teller.input(at, of_inputs[at])));
@@ -61,7 +62,7 @@ pub(super) fn findings(
 }
 
 /// The smaller of both p-values of a place, for two tests.
-fn of_place(place: &Place) -> Option<f64> {
+fn of_place(place: &GroupedResiduals) -> Option<f64> {
     let smaller = place.size_p_value?.min(place.bias_p_value?);
     Some((2.0 * smaller).min(1.0))
 }
@@ -88,14 +89,14 @@ fn holm(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
 }
 
 /// A finding without its p-values.
-struct Told {
+struct PlainFinding {
     test: ResidualTest,
     input: Option<String>,
     statement: String,
     advice: Option<&'static str>,
 }
 
-impl Told {
+impl PlainFinding {
     fn finding(self, p_value: Option<f64>, adjusted_p_value: Option<f64>) -> ResidualFinding {
         let verdict = match adjusted_p_value {
             None => ResidualVerdict::NotTestable,
@@ -109,18 +110,18 @@ impl Told {
 }
 
 /// Tells what was found.
-struct Teller<'a> {
+struct FindingWriter<'a> {
     residuals: &'a Residuals,
     unit: Option<&'a str>,
     options: &'a ResidualOptions,
 }
 
-impl Teller<'_> {
+impl FindingWriter<'_> {
     fn value(&self, value: f64) -> String {
         format!("{:.3}{}", Significant(value), suffix(self.unit))
     }
 
-    fn bias(&self, p: Option<f64>) -> Told {
+    fn bias(&self, p: Option<f64>) -> PlainFinding {
         let Residuals { bias, rms, .. } = *self.residuals;
         let share = if rms > 0.0 { 100.0 * bias.abs() / rms } else { 0.0 };
         let amount =
@@ -131,10 +132,10 @@ impl Teller<'_> {
         };
         let advice = "The output is offset against that of the training data: check the zero of the sensor and the \
                       initial state of the records.";
-        Told { test: ResidualTest::Bias, input: None, statement, advice: Some(advice) }
+        PlainFinding { test: ResidualTest::Bias, input: None, statement, advice: Some(advice) }
     }
 
-    fn whiteness(&self, p: Option<f64>) -> Told {
+    fn whiteness(&self, p: Option<f64>) -> PlainFinding {
         let Residuals { whiteness, rows, effective_rows, .. } = self.residuals;
         let lags = whiteness.degrees_of_freedom;
         let share = 100.0 * whiteness.predictable_share;
@@ -157,10 +158,10 @@ impl Teller<'_> {
                  none, it is slow noise of the sensor, or a memory that the model does not have."
             }
         };
-        Told { test: ResidualTest::Whiteness, input: None, statement, advice: Some(advice) }
+        PlainFinding { test: ResidualTest::Whiteness, input: None, statement, advice: Some(advice) }
     }
 
-    fn input(&self, at: usize, p: Option<f64>) -> Told {
+    fn input(&self, at: usize, p: Option<f64>) -> PlainFinding {
         let input = &self.residuals.inputs[at];
         let (name, _) = hysid_core::data::unit::split(&input.input);
         let what = if input.of_rate { format!("the rate of {name}") } else { name.to_string() };
@@ -191,10 +192,10 @@ impl Teller<'_> {
         };
         let test = if input.of_rate { ResidualTest::Rate } else { ResidualTest::Input };
         let input = (test == ResidualTest::Input).then(|| input.input.clone());
-        Told { test, input, statement, advice: Some(advice) }
+        PlainFinding { test, input, statement, advice: Some(advice) }
     }
 
-    /// What helps against a correlation `r` with the rate in the same row.
+    /// Remedy for a correlation `r` with the rate in the same row.
     fn advice_of_rate(&self, r: f64) -> &'static str {
         if self.is_of_one_speed() {
             return "All half cycles have about the same speed, so that a dependence on the rate, loops of a wrong width and a \
@@ -212,11 +213,11 @@ impl Teller<'_> {
          check for a delay between the channels (diagnose the data)."
     }
 
-    fn place_of(&self, test: ResidualTest) -> Option<&Place> {
+    fn place_of(&self, test: ResidualTest) -> Option<&GroupedResiduals> {
         self.residuals.places.iter().find(|place| place.test == test)
     }
 
-    /// True if speed and place in the half cycle cannot be told apart.
+    /// True if speed and place in the half cycle cannot be distinguished.
     fn is_of_one_speed(&self) -> bool {
         self.place_of(ResidualTest::Speed)
             .is_none_or(|place| place.caution.is_some() || place.not_testable.is_some())
@@ -230,10 +231,15 @@ impl Teller<'_> {
         explained / (rows as f64 * (rms * rms - bias * bias)).max(f64::MIN_POSITIVE)
     }
 
-    fn place(&self, place: &Place, p: Option<f64>) -> Told {
+    fn place(&self, place: &GroupedResiduals, p: Option<f64>) -> PlainFinding {
         let test = place.test;
         if let Some(why) = &place.not_testable {
-            return Told { test, input: None, statement: format!("Not testable: {why}."), advice: None };
+            return PlainFinding {
+                test,
+                input: None,
+                statement: format!("Not testable: {why}."),
+                advice: None,
+            };
         }
         let mut statements = Vec::new();
         if is_found(p) {
@@ -252,16 +258,16 @@ impl Teller<'_> {
         if let (true, Some(caution)) = (is_found(p), &place.caution) {
             statements.push(format!("Note: {caution}."));
         }
-        Told { test, input: None, statement: statements.join(" "), advice: Some(self.advice(test)) }
+        PlainFinding { test, input: None, statement: statements.join(" "), advice: Some(self.advice(test)) }
     }
 
-    fn size_in_words(&self, group: &Group) -> String {
+    fn size_in_words(&self, group: &ResidualGroup) -> String {
         format!("{} ({})", self.value(group.rms), group.name)
     }
 
     /// The largest and the smallest size.
-    fn size(&self, place: &Place, p: Option<f64>) -> String {
-        let by_size = |a: &&Group, b: &&Group| a.rms.total_cmp(&b.rms);
+    fn size(&self, place: &GroupedResiduals, p: Option<f64>) -> String {
+        let by_size = |a: &&ResidualGroup, b: &&ResidualGroup| a.rms.total_cmp(&b.rms);
         let largest = place.groups.iter().max_by(by_size).expect("there are groups");
         let smallest = place.groups.iter().min_by(by_size).expect("there are groups");
         let ratio = match smallest.rms > 0.0 {
@@ -288,8 +294,8 @@ impl Teller<'_> {
         format!("The residual is {where_} {ratio} (RMS {after} against {elsewhere}; {}).", words(p))
     }
 
-    fn bias_of(&self, place: &Place, p: Option<f64>) -> String {
-        let of_group = |group: &Group| {
+    fn bias_of(&self, place: &GroupedResiduals, p: Option<f64>) -> String {
+        let of_group = |group: &ResidualGroup| {
             let sign = if group.bias > 0.0 { "+" } else { "" };
             format!("{sign}{} ({})", self.value(group.bias), group.name)
         };
@@ -297,7 +303,7 @@ impl Teller<'_> {
         format!("Its mean is {} ({}).", all.join(", "), words(p))
     }
 
-    /// What helps against structure by a place.
+    /// Remedy for structure by a place.
     fn advice(&self, test: ResidualTest) -> &'static str {
         match test {
             ResidualTest::TurningPoints => {

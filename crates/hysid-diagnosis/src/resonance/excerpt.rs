@@ -15,14 +15,14 @@ pub(crate) const JITTER: f64 = 1e-3;
 
 /// Whether the output or its changes are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Compared {
+pub enum ComparedSignal {
     /// The output itself.
     Output,
     /// Its changes from row to row, in which a permanent deformation is small.
     Changes,
 }
 
-impl Compared {
+impl ComparedSignal {
     /// Turns a column into what is compared: its values, or their changes, in rows with an output, and 0 elsewhere.
     fn apply(self, column: &mut [f64], scored: &[f64]) {
         match self {
@@ -49,7 +49,7 @@ pub(super) struct Excerpt {
     pub input: Vec<f64>,
     /// 1 in a row with an output, otherwise 0.
     scored: Vec<f64>,
-    /// What is compared of the scaled output, of the scaled input, and of the constant 1.
+    /// Signal compared, from the scaled output, from the scaled input, and from the constant 1.
     pub output_column: Vec<f64>,
     pub input_column: Vec<f64>,
     pub constant_column: Vec<f64>,
@@ -85,7 +85,7 @@ impl Scale {
 /// Excerpts of all records, and how they are scaled.
 #[derive(Debug)]
 pub(super) struct Excerpts {
-    pub compared: Compared,
+    pub compared: ComparedSignal,
     pub parts: Vec<Excerpt>,
     pub input: Scale,
     pub output: Scale,
@@ -96,7 +96,7 @@ pub(super) struct Excerpts {
 impl Excerpts {
     /// Of data with one input and evenly spaced time; `None` for other data, for too few rows, and where input or output
     /// are constant.
-    pub fn of(data: &Dataset, compared: Compared) -> Option<Self> {
+    pub fn of(data: &Dataset, compared: ComparedSignal) -> Option<Self> {
         if data.names().inputs.len() != 1 {
             return None;
         }
@@ -202,12 +202,12 @@ mod tests {
     #[test]
     fn changes_are_compared_where_both_rows_have_an_output() {
         let scored = [1.0, 1.0, 0.0, 1.0, 1.0];
-        let compared = |compared: Compared| {
+        let compared = |compared: ComparedSignal| {
             let mut column = [3.0, 5.0, 6.0, 7.0, 11.0];
             compared.apply(&mut column, &scored);
             column
         };
-        assert_eq!(compared(Compared::Output), [3.0, 5.0, 0.0, 7.0, 11.0]);
-        assert_eq!(compared(Compared::Changes), [0.0, 2.0, 0.0, 0.0, 4.0]);
+        assert_eq!(compared(ComparedSignal::Output), [3.0, 5.0, 0.0, 7.0, 11.0]);
+        assert_eq!(compared(ComparedSignal::Changes), [0.0, 2.0, 0.0, 0.0, 4.0]);
     }
 }

@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 use hysid_core::elementary::{exp, sin_cos};
 
-use super::excerpt::Compared;
+use super::excerpt::ComparedSignal;
 
 /// A linear oscillator as fitted to data.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,8 +26,8 @@ pub struct LinearOscillator {
     pub direct: f64,
     /// Output at rest under zero input, `c`. Not determined if changes were compared; do not use it then.
     pub offset: f64,
-    /// What was compared with the oscillator: the output or its changes from row to row.
-    pub compared: Compared,
+    /// Signal compared with the oscillator: the output or its changes from row to row.
+    pub compared: ComparedSignal,
     /// Root mean square error of a free run, in the unit of the output: of the output or of its changes, see `compared`.
     pub residual: f64,
 }
@@ -35,14 +35,14 @@ pub struct LinearOscillator {
 /// One time step of an oscillator whose gain is 1. Its state is its distance `z - u` from where it would rest, and its
 /// speed `z'/ω`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step {
+pub(super) struct OscillatorStep {
     matrix: [[f64; 2]; 2],
     /// `ω` times the time step.
     angle: f64,
     damping_ratio: f64,
 }
 
-impl Step {
+impl OscillatorStep {
     /// Of a frequency in cycles per unit of time, a damping ratio below 1, and a duration in units of time.
     pub fn new(natural_frequency: f64, damping_ratio: f64, duration: f64) -> Self {
         let angle = TAU * natural_frequency * duration;
@@ -83,7 +83,7 @@ impl Step {
         }));
     }
 
-    /// Free motion in so many rows, from a distance and a speed.
+    /// Free motion over a number of rows, from a distance and a speed.
     pub fn decay(&self, mut state: [f64; 2], rows: usize, decay: &mut Vec<f64>) {
         decay.clear();
         decay.extend((0..rows).map(|_| {
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn free_motion_is_the_damped_cosine() {
         let mut decay = Vec::new();
-        Step::new(F, ZETA, STEP).decay([1.0, 0.0], 60, &mut decay);
+        OscillatorStep::new(F, ZETA, STEP).decay([1.0, 0.0], 60, &mut decay);
         for (t, value) in times().zip(decay) {
             let (sine, cosine) = damped(t);
             let exact = cosine + ZETA / (1.0 - ZETA * ZETA).sqrt() * sine;
@@ -132,7 +132,7 @@ mod tests {
         // u = t from rest: z = t - 2ζ/ω + (2ζ/ω) cosine + (2ζ² - 1)/ω_d sine, damped.
         let input: Vec<f64> = times().collect();
         let mut response = Vec::new();
-        Step::new(F, ZETA, STEP).response(&input, &mut response);
+        OscillatorStep::new(F, ZETA, STEP).response(&input, &mut response);
         let omega = TAU * F;
         for (t, value) in times().zip(response) {
             let (sine, cosine) = damped(t);
@@ -147,7 +147,7 @@ mod tests {
         let step = 1.0 / (F * 200.0);
         let input: Vec<f64> = (0..8000).map(|row| sin(TAU * F * f64::from(row) * step)).collect();
         let mut response = Vec::new();
-        Step::new(F, ZETA, step).response(&input, &mut response);
+        OscillatorStep::new(F, ZETA, step).response(&input, &mut response);
         let largest =
             response[7000..].iter().zip(&input[7000..]).map(|(z, u)| (z + u).abs()).fold(0.0, f64::max);
         // Straight lines between rows make the input smaller by 8e-5.

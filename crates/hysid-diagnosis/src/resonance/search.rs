@@ -4,7 +4,7 @@
 use hysid_core::elementary::{ln, powi};
 
 use super::excerpt::Excerpts;
-use super::linear_oscillator::{LinearOscillator, Step};
+use super::linear_oscillator::{LinearOscillator, OscillatorStep};
 use super::normal_equations::NormalEquations;
 
 /// Cycles in the longest excerpt, at least.
@@ -24,7 +24,7 @@ const MOST_DAMPING: f64 = 0.95;
 /// Valleys of the grid that are followed to their bottom.
 const VALLEYS: usize = 3;
 
-/// Steps to the bottom are halved so many times, and there are at most so many of them.
+/// Halvings of the steps to the bottom, and the most steps there.
 const HALVINGS: usize = 12;
 const MOST_STEPS: usize = 100;
 
@@ -35,7 +35,7 @@ const COLUMNS: usize = 6;
 pub(super) fn best(excerpts: &Excerpts) -> Option<LinearOscillator> {
     let longest = excerpts.parts.iter().map(|part| part.duration()).fold(0.0, f64::max);
     let coarsest = excerpts.parts.iter().map(|part| part.step).fold(0.0, f64::max);
-    let mut search = Search {
+    let mut search = ResonanceSearch {
         excerpts,
         frequencies: (FEWEST_CYCLES / longest, MOST_CYCLES / coarsest),
         columns: std::array::from_fn(|_| Vec::new()),
@@ -46,13 +46,13 @@ pub(super) fn best(excerpts: &Excerpts) -> Option<LinearOscillator> {
 
 /// A frequency and a damping ratio, and the sum of squares that such an oscillator leaves of the scaled output.
 #[derive(Debug, Clone, Copy)]
-struct Point {
+struct OscillatorPoint {
     frequency: f64,
     damping_ratio: f64,
     remainder: f64,
 }
 
-struct Search<'e> {
+struct ResonanceSearch<'e> {
     excerpts: &'e Excerpts,
     /// Lowest and highest frequency.
     frequencies: (f64, f64),
@@ -60,12 +60,12 @@ struct Search<'e> {
     columns: [Vec<f64>; 3],
 }
 
-impl Search<'_> {
+impl ResonanceSearch<'_> {
     /// The products of a free run, with all columns but the output eliminated.
     fn equations(&mut self, frequency: f64, damping_ratio: f64) -> NormalEquations<COLUMNS> {
         let mut sum = NormalEquations::empty();
         for part in &self.excerpts.parts {
-            let step = Step::new(frequency, damping_ratio, part.step);
+            let step = OscillatorStep::new(frequency, damping_ratio, part.step);
             let [distance, speed, response] = &mut self.columns;
             step.decay([1.0, 0.0], part.rows.len(), distance);
             step.decay([0.0, 1.0], part.rows.len(), speed);
@@ -88,18 +88,18 @@ impl Search<'_> {
         sum
     }
 
-    fn point(&mut self, frequency: f64, damping_ratio: f64) -> Point {
+    fn point(&mut self, frequency: f64, damping_ratio: f64) -> OscillatorPoint {
         let frequency = frequency.clamp(self.frequencies.0, self.frequencies.1);
         let damping_ratio = damping_ratio.clamp(LEAST_DAMPING, MOST_DAMPING);
         let remainder = self.equations(frequency, damping_ratio).remainder();
-        Point { frequency, damping_ratio, remainder }
+        OscillatorPoint { frequency, damping_ratio, remainder }
     }
 
     /// The best damping ratio at each frequency of the grid, where it is better than at those beside it.
-    fn valleys(&mut self) -> Vec<Point> {
+    fn valleys(&mut self) -> Vec<OscillatorPoint> {
         let (low, high) = self.frequencies;
         let count = (ln(high / low) / ln(FACTOR)).max(0.0) as i32;
-        let mut grid: Vec<Point> = Vec::new();
+        let mut grid: Vec<OscillatorPoint> = Vec::new();
         for k in 0..=count {
             let points = DAMPING_RATIOS.map(|damping_ratio| self.point(low * powi(FACTOR, k), damping_ratio));
             grid.extend(points.into_iter().min_by(|a, b| a.remainder.total_cmp(&b.remainder)));
@@ -107,18 +107,18 @@ impl Search<'_> {
         let remainder = |k: usize| grid.get(k).map_or(f64::INFINITY, |point| point.remainder);
         let is_valley =
             |k: &usize| remainder(*k) <= remainder(k.wrapping_sub(1)) && remainder(*k) < remainder(k + 1);
-        let mut valleys: Vec<Point> = (0..grid.len()).filter(is_valley).map(|k| grid[k]).collect();
+        let mut valleys: Vec<OscillatorPoint> = (0..grid.len()).filter(is_valley).map(|k| grid[k]).collect();
         valleys.sort_by(|a, b| a.remainder.total_cmp(&b.remainder));
         valleys.truncate(VALLEYS);
         valleys
     }
 
     /// Where steps in all four directions lead no deeper.
-    fn bottom(&mut self, mut best: Point) -> LinearOscillator {
+    fn bottom(&mut self, mut best: OscillatorPoint) -> LinearOscillator {
         let (mut in_frequency, mut in_damping) = (FACTOR.sqrt(), 2.0_f64);
         let (mut halvings, mut steps) = (0, 0);
         while halvings < HALVINGS && steps < MOST_STEPS {
-            let Point { frequency, damping_ratio, .. } = best;
+            let OscillatorPoint { frequency, damping_ratio, .. } = best;
             let around = [
                 (frequency * in_frequency, damping_ratio),
                 (frequency / in_frequency, damping_ratio),
@@ -139,7 +139,7 @@ impl Search<'_> {
     }
 
     /// The oscillator in the units of the data.
-    fn oscillator(&mut self, point: Point) -> LinearOscillator {
+    fn oscillator(&mut self, point: OscillatorPoint) -> LinearOscillator {
         let equations = self.equations(point.frequency, point.damping_ratio);
         let weights = equations.weights(2);
         let Excerpts { input, output, .. } = *self.excerpts;

@@ -1,10 +1,10 @@
-//! What a law without inertia leaves of the output: powers of the input, its rate, and stops.
+//! Residual of the output after a law without inertia: powers of the input, its rate, and stops.
 
 use hysid_core::data::record::Dataset;
 use hysid_core::operator::{Operator, Stop};
 
 use super::excerpt::{Excerpt, Excerpts};
-use super::linear_oscillator::Step;
+use super::linear_oscillator::OscillatorStep;
 use super::normal_equations::NormalEquations;
 
 /// Columns of two free motions, which belong to one excerpt alone.
@@ -16,12 +16,12 @@ const STOPS: usize = 10;
 const COLUMNS: usize = FREE + 5 + STOPS + 1;
 
 /// Sum of squares that the law leaves of the scaled output. Each excerpt may begin with a free motion at a frequency and a
-/// damping ratio, as that of an oscillator may: what swings by itself is no answer to the input.
+/// damping ratio, as that of an oscillator may: what swings by itself is no response to the input.
 pub(super) fn remainder(data: &Dataset, excerpts: &Excerpts, frequency: f64, damping_ratio: f64) -> f64 {
     let mut sum = NormalEquations::<COLUMNS>::empty();
     let mut free = [Vec::new(), Vec::new()];
     for part in &excerpts.parts {
-        let step = Step::new(frequency, damping_ratio, part.step);
+        let step = OscillatorStep::new(frequency, damping_ratio, part.step);
         step.decay([1.0, 0.0], part.rows.len(), &mut free[0]);
         step.decay([0.0, 1.0], part.rows.len(), &mut free[1]);
         free.iter_mut().for_each(|column| excerpts.compare(part, column));

@@ -13,9 +13,9 @@ const RATE: f64 = 750.0;
 
 /// A sum of sines of 5 to 150 Hz, one each Hertz, of phases without order: a force of 50 N root mean square, in
 /// halves of a step of the integration.
-struct Multisine(Vec<f64>);
+struct ForceMultisine(Vec<f64>);
 
-impl Multisine {
+impl ForceMultisine {
     fn new() -> Self {
         let halves = RATE as usize * 2 * STEPS;
         let sine =
@@ -38,7 +38,7 @@ fn oscillator(
     holds: impl Fn(f64, f64) -> f64,
     evolution: impl Fn(f64, f64) -> f64,
 ) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    let force = Multisine::new();
+    let force = ForceMultisine::new();
     let step = 1.0 / (RATE * STEPS as f64);
     let rates = |[y, v, r]: [f64; 3], u: f64| [v, (u - damper * v - holds(y, r)) / 2.0, evolution(v, r)];
     let ahead = |s: [f64; 3], k: [f64; 3], h: f64| [s[0] + h * k[0], s[1] + h * k[1], s[2] + h * k[2]];
@@ -160,7 +160,7 @@ fn a_building_that_yields_is_a_resonance_in_the_changes() {
     for seed in 1..=4 {
         let data = building.train_with_seed(seed);
         let found = Resonance::of(&data).unwrap();
-        assert!(found.is_found() && found.oscillator.compared == Compared::Changes, "{found:?}");
+        assert!(found.is_found() && found.oscillator.compared == ComparedSignal::Changes, "{found:?}");
         // The elastic building has its first mode at 2 Hz; a building that yields and degrades is softer.
         assert!((0.7..2.0).contains(&found.oscillator.natural_frequency), "{found:?}");
         assert!(complaint(&data).unwrap().statement.contains("for the changes of the output"));

@@ -5,7 +5,7 @@ use hysid_core::elementary::square;
 use hysid_core::linear_algebra::Symmetric;
 use hysid_core::stop_check::StopCheck;
 
-use super::recognition::Candidate;
+use super::recognition::CurveSet;
 use crate::branch::BranchSet;
 
 /// The deviation of the density by noise, as a share of its largest magnitude, that a chosen smoothing factor accepts.
@@ -35,7 +35,7 @@ pub(super) struct Density {
 
 /// Rows of a curve taken together.
 #[derive(Debug, Clone, Copy)]
-struct Cell {
+struct DensityCell {
     x: f64,
     y: f64,
     rows: f64,
@@ -48,31 +48,34 @@ pub(super) struct Smoothing {
     noise: f64,
     reversals: Vec<f64>,
     /// The cells of each curve, in the order of the input.
-    curves: Vec<Vec<Cell>>,
+    curves: Vec<Vec<DensityCell>>,
 }
 
 impl Smoothing {
-    pub fn new(survey: &BranchSet, found: &Candidate, step: f64) -> Self {
+    pub fn new(survey: &BranchSet, found: &CurveSet, step: f64) -> Self {
         let sign = if found.rising { 1.0 } else { -1.0 };
         let end = sign * found.end;
         let curve = |&number: &usize| {
             let branch = &survey.branches[number];
             let record = &survey.data.records()[branch.record];
             let (x, y) = (&record.inputs()[0][branch.rows.clone()], &record.output()[branch.rows.clone()]);
-            let mut cells: Vec<(i64, Cell)> = Vec::new();
+            let mut cells: Vec<(i64, DensityCell)> = Vec::new();
             for (x, y) in x.iter().zip(y).filter(|(_, y)| !y.is_nan()) {
                 let (x, y) = (sign * x, sign * y);
                 let place = ((end - x) * CELLS / step).round() as i64;
                 match cells.last_mut().filter(|(last, _)| *last == place) {
                     Some((_, cell)) => {
-                        *cell = Cell { x: cell.x + x, y: cell.y + y, rows: cell.rows + 1.0 };
+                        *cell = DensityCell { x: cell.x + x, y: cell.y + y, rows: cell.rows + 1.0 };
                     }
-                    None => cells.push((place, Cell { x, y, rows: 1.0 })),
+                    None => cells.push((place, DensityCell { x, y, rows: 1.0 })),
                 }
             }
-            let mean =
-                |(_, cell): &(i64, Cell)| Cell { x: cell.x / cell.rows, y: cell.y / cell.rows, ..*cell };
-            let mut cells: Vec<Cell> = cells.iter().map(mean).collect();
+            let mean = |(_, cell): &(i64, DensityCell)| DensityCell {
+                x: cell.x / cell.rows,
+                y: cell.y / cell.rows,
+                ..*cell
+            };
+            let mut cells: Vec<DensityCell> = cells.iter().map(mean).collect();
             cells.sort_by(|a, b| a.x.total_cmp(&b.x));
             cells
         };

@@ -13,7 +13,7 @@ const SAME: f64 = 0.002;
 
 /// The curves that were found.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Candidate {
+pub(super) struct CurveSet {
     /// True if the input rises along them.
     pub rising: bool,
     pub end: f64,
@@ -24,13 +24,13 @@ pub(super) struct Candidate {
 }
 
 /// The first-order reversal curves of the direction with more of them.
-pub(super) fn recognised(survey: &BranchSet) -> Option<Candidate> {
+pub(super) fn recognised(survey: &BranchSet) -> Option<CurveSet> {
     let (rising, falling) = (of_direction(survey, true), of_direction(survey, false));
-    let count = |found: &Option<Candidate>| found.as_ref().map_or(0, |found| found.branches.len());
+    let count = |found: &Option<CurveSet>| found.as_ref().map_or(0, |found| found.branches.len());
     if count(&falling) > count(&rising) { falling } else { rising }
 }
 
-fn of_direction(survey: &BranchSet, rising: bool) -> Option<Candidate> {
+fn of_direction(survey: &BranchSet, rising: bool) -> Option<CurveSet> {
     let sign = if rising { 1.0 } else { -1.0 };
     let end = if rising { survey.input.1 } else { survey.input.0 };
     let reaches = |x: f64| (x - end).abs() <= survey.same_input();
@@ -52,7 +52,7 @@ fn of_direction(survey: &BranchSet, rising: bool) -> Option<Candidate> {
     let same = SAME * survey.width() + 2.0 * survey.input_noise.deviation();
     branches.dedup_by(|next, kept| from(*kept) - from(*next) <= same);
     let is_most = all as f64 >= MOST * in_direction().count() as f64;
-    (branches.len() >= FEWEST && is_most).then(|| Candidate {
+    (branches.len() >= FEWEST && is_most).then(|| CurveSet {
         rising,
         // The mean of the ends, which noise moves.
         end: branches.iter().map(|&number| survey.branches[number].to).sum::<f64>() / branches.len() as f64,

@@ -41,7 +41,7 @@ pub(super) fn closes(survey: &BranchSet, loops: &[&Opening], rows: f64, small: f
     !looked.is_empty() && (-count..=count).any(|number| number != 0 && is_closed_by(step * number as f64))
 }
 
-/// Area between the two branches of a loop as a share of its box, of the output so many rows later.
+/// Area between the two branches of a loop as a share of its box, of the output a number of rows later.
 fn fullness(survey: &BranchSet, opening: &Opening, shift: f64) -> Option<f64> {
     let curve = |branch: &Branch| {
         let record = &survey.data.records()[branch.record];

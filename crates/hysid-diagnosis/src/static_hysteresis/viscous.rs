@@ -25,7 +25,7 @@ const RELAXED: usize = CURVE + 2;
 /// Remainders below this share of what a curve of the input leaves are explained.
 const EXPLAINED: f64 = 0.1;
 
-/// Remainders are noise up to so many times its deviation.
+/// Multiple of its deviation up to which remainders are noise.
 const NOISE: f64 = 1.3;
 
 /// So many rows around a turning point are left out: an output that is late by as many is that of the branch before.
@@ -55,7 +55,7 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     }
     let factor = powf(0.5 * longest / step, f64::from(TIMES - 1).recip());
     let products = |time: f64| {
-        let mut products = Products::new();
+        let mut products = ColumnProducts::new();
         for (record, on_branches) in records.iter().zip(&on_branches) {
             products.add(survey, record, on_branches, beside, time);
         }
@@ -66,7 +66,7 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     let output_noise = survey.output_noise.deviation() / survey.height();
     let input_noise = 2.0 * survey.input_noise.deviation() / survey.width();
     let rate_noise = input_noise / (SQRT_2 * beside as f64);
-    let explains = |products: &Products| {
+    let explains = |products: &ColumnProducts| {
         let (left, weights) = products.fit(COLUMNS);
         let through_input = products.mean_square_slope(&weights).sqrt() * input_noise;
         let noise = hypot(hypot(output_noise, through_input), weights[RATE] * rate_noise);
@@ -94,14 +94,14 @@ fn between_turns(survey: &BranchSet, record: usize, near: usize) -> Vec<bool> {
 }
 
 /// Products of all columns and the output, and the number of rows.
-struct Products {
+struct ColumnProducts {
     sums: [[f64; COLUMNS + 1]; COLUMNS + 1],
     /// Sums of the scaled input and its powers.
     powers: [f64; 4],
     rows: f64,
 }
 
-impl Products {
+impl ColumnProducts {
     fn new() -> Self {
         Self { sums: [[0.0; COLUMNS + 1]; COLUMNS + 1], powers: [0.0; 4], rows: 0.0 }
     }

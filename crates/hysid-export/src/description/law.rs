@@ -21,12 +21,12 @@ mod yield_curve;
 
 use hysid_core::law::Classical;
 
-use crate::description::Sample;
+use crate::description::PartInputs;
 use crate::program::Builder;
 use crate::program::expression::Real;
 
 /// Writes a step of a law. The sample is in the user's units; the result is the output in its unit.
-pub(super) fn step(builder: &mut Builder, name: &str, law: &Classical, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &Classical, sample: &PartInputs) -> Real {
     match law {
         Classical::BoucWen(law) => bouc_wen::step(builder, name, law, sample),
         Classical::DuhemNn(law) => duhem_nn::step(builder, name, law, sample),

@@ -4,9 +4,9 @@ use hysid_core::elementary::exp;
 use hysid_core::network::decay::{LN_2, SQUARE_AND_UP};
 use hysid_core::network::scaling::Scaling;
 use hysid_core::network::tanh::CUBIC_AND_UP;
-use hysid_core::network::{Layout, Network};
+use hysid_core::network::{Network, ParameterLayout};
 
-use crate::description::Sample;
+use crate::description::PartInputs;
 use crate::program::expression::{Real, fused};
 use crate::program::{Array, Builder, Precision};
 
@@ -24,10 +24,10 @@ pub(super) fn step(
     name: &str,
     network: &Network,
     scaling: &Scaling,
-    sample: &Sample,
+    sample: &PartInputs,
 ) -> Real {
     let a = *network.architecture();
-    let layout = Layout::new(a);
+    let layout = ParameterLayout::new(a);
     let parameters = network.parameters();
     let mut u = Vec::with_capacity(a.channels());
     for (input, (x, scale)) in sample.inputs.iter().zip(&scaling.inputs).enumerate() {
@@ -68,9 +68,9 @@ fn stops(
     builder: &mut Builder,
     name: &str,
     network: &Network,
-    layout: &Layout,
+    layout: &ParameterLayout,
     u: &[Real],
-    sample: &Sample,
+    sample: &PartInputs,
     z: Array,
 ) {
     let a = network.architecture();
@@ -133,9 +133,9 @@ fn relaxation(
     builder: &mut Builder,
     name: &str,
     network: &Network,
-    layout: &Layout,
+    layout: &ParameterLayout,
     u: &[Real],
-    sample: &Sample,
+    sample: &PartInputs,
     z: Array,
 ) {
     let a = network.architecture();
@@ -218,7 +218,7 @@ fn readout(builder: &mut Builder, name: &str, network: &Network, z: Array) -> Re
     let (of_hidden, direct) = rest.split_at(a.hidden);
     let y = builder.variable(constant.first().copied().unwrap_or(0.0));
     if a.hidden > 0 {
-        let hidden = &network.parameters()[Layout::new(*a).hidden];
+        let hidden = &network.parameters()[ParameterLayout::new(*a).hidden];
         let memory = a.memory_neurons();
         let bias = (0..a.hidden).map(|i| hidden[i * (1 + memory)]).collect();
         let bias = builder.constants(&format!("{name}_bias"), bias);

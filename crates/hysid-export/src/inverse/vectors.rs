@@ -18,7 +18,7 @@ const STEPS: f64 = 20.0;
 const SAVED: usize = 90;
 const REPEATED: usize = 20;
 
-/// What is done with an inverse: reset, step, save or restore.
+/// Call to an inverse: reset, step, save or restore.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct InverseVector {
     pub action: Action,
@@ -37,7 +37,7 @@ pub(super) fn vectors(model: &Model, initial: Inverse<'_>, arguments: &[Argument
         match action {
             Action::Step => {
                 let (inverse, time) = &mut now;
-                let row = Row::of(model, row);
+                let row = VectorRow::of(model, row);
                 *time += row.time_step;
                 // Bounds were checked, and rows are finite.
                 vector.given = inverse.step(row.wanted, &row.others, *time).ok();
@@ -51,7 +51,7 @@ pub(super) fn vectors(model: &Model, initial: Inverse<'_>, arguments: &[Argument
         all.push(vector);
     };
     let (low, high) = model.trained_ranges().inputs[0];
-    let work = STEPS * model.work_of_row(high - low, Row::of(model, 0).time_step);
+    let work = STEPS * model.work_of_row(high - low, VectorRow::of(model, 0).time_step);
     let rows = ((MOST_WORK / work) as usize).clamp(FEWEST_ROWS, ROWS);
     let (saved, repeated) = (SAVED * rows / ROWS, REPEATED * rows / ROWS);
     act(Action::Reset, 0);
@@ -71,13 +71,13 @@ pub(super) fn vectors(model: &Model, initial: Inverse<'_>, arguments: &[Argument
 }
 
 /// A row of a path through the trained range of the output and a little beyond.
-struct Row {
+struct VectorRow {
     wanted: f64,
     others: Vec<f64>,
     time_step: f64,
 }
 
-impl Row {
+impl VectorRow {
     fn of(model: &Model, row: usize) -> Self {
         let ranges = model.trained_ranges();
         let t = row as f64;

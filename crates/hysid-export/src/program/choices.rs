@@ -6,17 +6,17 @@ use crate::program::{Program, Statement};
 /// The program without [`Real::Choice`].
 pub fn without_choices(program: &Program) -> Program {
     let mut lowered = program.clone();
-    let mut next = Next { reals: program.reals };
+    let mut next = FreeVariables { reals: program.reals };
     lowered.body = next.block(&program.body);
     lowered.reals = next.reals;
     lowered
 }
 
-struct Next {
+struct FreeVariables {
     reals: usize,
 }
 
-impl Next {
+impl FreeVariables {
     fn block(&mut self, statements: &[Statement]) -> Vec<Statement> {
         let mut block = Vec::with_capacity(statements.len());
         for statement in statements {

@@ -52,13 +52,13 @@ pub enum Binary {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Comparison {
+pub enum Relation {
     Below,
     AtMost,
     Equal,
 }
 
-impl Comparison {
+impl Relation {
     pub fn holds<T: PartialOrd>(self, a: T, b: T) -> bool {
         match self {
             Self::Below => a < b,
@@ -98,8 +98,8 @@ pub(crate) enum Whole {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Truth {
     /// A comparison of real numbers, false for NaN.
-    Real(Comparison, Box<Real>, Box<Real>),
-    Whole(Comparison, Box<Whole>, Box<Whole>),
+    Real(Relation, Box<Real>, Box<Real>),
+    Whole(Relation, Box<Whole>, Box<Whole>),
     /// Both; the second is computed only where the first holds.
     And(Box<Truth>, Box<Truth>),
     /// One or both; the second is computed only where the first does not hold.
@@ -109,15 +109,15 @@ pub(crate) enum Truth {
 
 /// An expression of any kind.
 #[derive(Clone, Copy)]
-pub(crate) enum Part<'e> {
+pub(crate) enum AnyExpression<'e> {
     Real(&'e Real),
     Whole(&'e Whole),
     Truth(&'e Truth),
 }
 
-impl<'e> Part<'e> {
+impl<'e> AnyExpression<'e> {
     /// The expressions that it is made of, without those in them.
-    pub fn parts(self) -> Vec<Part<'e>> {
+    pub fn parts(self) -> Vec<AnyExpression<'e>> {
         match self {
             Self::Real(Real::Constant(_) | Real::Variable(_)) => Vec::new(),
             Self::Whole(Whole::Constant(_) | Whole::Variable(_)) => Vec::new(),
@@ -266,11 +266,11 @@ of_two! {
     Real::powf = Real::Binary(Binary::Power);
     Real::copysign = Real::Binary(Binary::CopySign);
     Real::hypot = Real::Binary(Binary::Hypotenuse);
-    Real::below = Truth::Real(Comparison::Below);
-    Real::at_most = Truth::Real(Comparison::AtMost);
-    Real::equals = Truth::Real(Comparison::Equal);
-    Whole::below = Truth::Whole(Comparison::Below);
-    Whole::equals = Truth::Whole(Comparison::Equal);
+    Real::below = Truth::Real(Relation::Below);
+    Real::at_most = Truth::Real(Relation::AtMost);
+    Real::equals = Truth::Real(Relation::Equal);
+    Whole::below = Truth::Whole(Relation::Below);
+    Whole::equals = Truth::Whole(Relation::Equal);
 }
 
 impl Real {

@@ -18,7 +18,7 @@ pub fn with_tangent(program: &Program) -> Program {
     let outputs = program.declaration(program.outputs).storage.len();
     tangent.arrays[program.outputs.0].storage = Storage::Output(outputs + 1);
     let mut derivative =
-        Derivative { variables: BTreeMap::new(), arrays: BTreeMap::new(), reals: program.reals };
+        TangentNames { variables: BTreeMap::new(), arrays: BTreeMap::new(), reals: program.reals };
     for &Array(index) in &active.arrays {
         let Declaration { name, storage } = &program.arrays[index];
         if Array(index) == program.arguments {
@@ -52,7 +52,7 @@ pub fn with_tangent(program: &Program) -> Program {
     tangent
 }
 
-/// What depends on the first argument.
+/// Variables and arrays that depend on the first argument.
 #[derive(Default)]
 struct Active {
     variables: BTreeSet<RealVariable>,
@@ -113,13 +113,13 @@ impl Active {
 }
 
 /// The variables and arrays that have the derivatives.
-struct Derivative {
+struct TangentNames {
     variables: BTreeMap<RealVariable, RealVariable>,
     arrays: BTreeMap<Array, Array>,
     reals: usize,
 }
 
-impl Derivative {
+impl TangentNames {
     /// A block with the derivatives; each stands before what it is the derivative of, whose old values it needs.
     fn block(&self, program: &Program, statements: &[Statement]) -> Vec<Statement> {
         let mut block = Vec::new();

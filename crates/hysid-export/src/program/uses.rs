@@ -1,11 +1,11 @@
-//! What programs read, and the functions that they use.
+//! Variables, arrays and functions that programs use.
 
 use std::collections::BTreeSet;
 
-use crate::program::expression::{Binary, Part, Real, RealVariable, Unary, Whole, WholeVariable};
+use crate::program::expression::{AnyExpression, Binary, Real, RealVariable, Unary, Whole, WholeVariable};
 use crate::program::{Array, Program, Statement, every};
 
-/// What the expressions of programs contain.
+/// Variables, arrays and operations in the expressions of programs.
 #[derive(Default)]
 pub(crate) struct Uses {
     pub reals: BTreeSet<RealVariable>,
@@ -30,38 +30,40 @@ impl Uses {
 
     pub fn of_real(value: &Real) -> Self {
         let mut uses = Self::default();
-        uses.take(Part::Real(value));
+        uses.take(AnyExpression::Real(value));
         uses
     }
 
     fn statement(&mut self, statement: &Statement) {
         match statement {
             Statement::Remark(_) | Statement::ForSlope(_) => {}
-            Statement::Let(_, value) | Statement::Assign(_, value) => self.take(Part::Real(value)),
-            Statement::LetWhole(_, value) | Statement::AssignWhole(_, value) => self.take(Part::Whole(value)),
+            Statement::Let(_, value) | Statement::Assign(_, value) => self.take(AnyExpression::Real(value)),
+            Statement::LetWhole(_, value) | Statement::AssignWhole(_, value) => {
+                self.take(AnyExpression::Whole(value))
+            }
             Statement::Set(_, index, value) => {
-                self.take(Part::Whole(index));
-                self.take(Part::Real(value));
+                self.take(AnyExpression::Whole(index));
+                self.take(AnyExpression::Real(value));
             }
             Statement::Each(_, first, last, _) => {
-                self.take(Part::Whole(first));
-                self.take(Part::Whole(last));
+                self.take(AnyExpression::Whole(first));
+                self.take(AnyExpression::Whole(last));
             }
             Statement::While(condition, _) | Statement::If(condition, ..) => {
-                self.take(Part::Truth(condition));
+                self.take(AnyExpression::Truth(condition));
             }
         }
     }
 
-    fn take(&mut self, part: Part<'_>) {
+    fn take(&mut self, part: AnyExpression<'_>) {
         match part {
-            Part::Real(Real::Constant(value)) => self.infinity |= value.is_infinite(),
-            Part::Real(Real::Variable(variable)) => drop(self.reals.insert(*variable)),
-            Part::Real(Real::Element(array, _)) => drop(self.arrays.insert(*array)),
-            Part::Real(Real::Unary(function, _)) => drop(self.unary.insert(*function)),
-            Part::Real(Real::Binary(function, ..)) => drop(self.binary.insert(*function)),
-            Part::Real(Real::Fused(..)) => self.fused = true,
-            Part::Whole(Whole::Variable(variable)) => drop(self.wholes.insert(*variable)),
+            AnyExpression::Real(Real::Constant(value)) => self.infinity |= value.is_infinite(),
+            AnyExpression::Real(Real::Variable(variable)) => drop(self.reals.insert(*variable)),
+            AnyExpression::Real(Real::Element(array, _)) => drop(self.arrays.insert(*array)),
+            AnyExpression::Real(Real::Unary(function, _)) => drop(self.unary.insert(*function)),
+            AnyExpression::Real(Real::Binary(function, ..)) => drop(self.binary.insert(*function)),
+            AnyExpression::Real(Real::Fused(..)) => self.fused = true,
+            AnyExpression::Whole(Whole::Variable(variable)) => drop(self.wholes.insert(*variable)),
             _ => {}
         }
         part.parts().into_iter().for_each(|part| self.take(part));

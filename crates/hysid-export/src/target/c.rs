@@ -9,9 +9,9 @@ mod source;
 
 use crate::error::Error;
 use crate::reserved;
-use crate::subject::{File, Subject};
+use crate::subject::{ExportFile, ExportSubject};
 use crate::target::template::filled;
-use crate::target::{BackEnd, Written};
+use crate::target::{BackEnd, TargetFiles};
 
 pub(super) const BACK_END: BackEnd = BackEnd {
     name: "c",
@@ -22,32 +22,32 @@ pub(super) const BACK_END: BackEnd = BackEnd {
     usage,
 };
 
-fn write(subject: &Subject<'_>) -> Result<Written, Error> {
+fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
     let mut files = sources(subject);
     files.push(test(subject));
     Ok(files.into())
 }
 
 /// The program that runs the test vectors.
-pub(super) fn test(subject: &Subject<'_>) -> File {
-    File::new(format!("{}_test.c", subject.name()), self_test::self_test(subject))
+pub(super) fn test(subject: &ExportSubject<'_>) -> ExportFile {
+    ExportFile::new(format!("{}_test.c", subject.name()), self_test::self_test(subject))
 }
 
-pub(super) fn sources(subject: &Subject<'_>) -> Vec<File> {
+pub(super) fn sources(subject: &ExportSubject<'_>) -> Vec<ExportFile> {
     let name = subject.name();
     let mut files = vec![
-        File::new(format!("{name}.h"), header::header(subject)),
-        File::new(format!("{name}.c"), source::source(subject)),
+        ExportFile::new(format!("{name}.h"), header::header(subject)),
+        ExportFile::new(format!("{name}.c"), source::source(subject)),
     ];
     if let Some(inverse) = subject.inverse() {
         let [header, source] = inverse::header_and_source(subject, inverse);
-        files.push(File::new(format!("{name}_inverse.h"), header));
-        files.push(File::new(format!("{name}_inverse.c"), source));
+        files.push(ExportFile::new(format!("{name}_inverse.h"), header));
+        files.push(ExportFile::new(format!("{name}_inverse.c"), source));
     }
     files
 }
 
-fn usage(subject: &Subject<'_>) -> String {
+fn usage(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let (inverse, more) = match subject.inverse() {
         Some(inverse) => (inverse::usage(name, inverse), format!(" {name}_inverse.c")),

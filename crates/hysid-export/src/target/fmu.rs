@@ -14,9 +14,9 @@ use crate::error::Error;
 use crate::manifest::checksum;
 use crate::options::FmiVersion;
 use crate::reserved;
-use crate::subject::{File, Subject};
+use crate::subject::{ExportFile, ExportSubject};
 use crate::target::template::filled;
-use crate::target::{BackEnd, Written, c};
+use crate::target::{BackEnd, TargetFiles, c};
 use crate::text::in_markdown;
 
 pub(super) const BACK_END: BackEnd = BackEnd {
@@ -28,12 +28,12 @@ pub(super) const BACK_END: BackEnd = BackEnd {
     usage,
 };
 
-fn write(subject: &Subject<'_>) -> Result<Written, Error> {
+fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
     let (name, version) = (subject.name(), subject.fmi());
     let mut sources = c::sources(subject);
     // Files that differ have tokens that differ.
     let token = checksum(&sources.iter().flat_map(|file| file.content.clone()).collect::<Vec<_>>());
-    sources.push(File::new(version.source(), wrapper::wrapper(subject, version, &token)));
+    sources.push(ExportFile::new(version.source(), wrapper::wrapper(subject, version, &token)));
     let binary = binary::binary(name, version, &sources)?;
     let note = match binary {
         Some(_) => None,
@@ -42,24 +42,32 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
              variable CC names another)"
         )),
     };
-    let mut content =
-        vec![File::new("modelDescription.xml", description::model_description(subject, version, &token))];
+    let mut content = vec![ExportFile::new(
+        "modelDescription.xml",
+        description::model_description(subject, version, &token),
+    )];
     content.extend(binary);
     if version == FmiVersion::Three {
-        content.push(File::new("sources/buildDescription.xml", description::build_description(subject)));
+        content
+            .push(ExportFile::new("sources/buildDescription.xml", description::build_description(subject)));
     }
-    content.extend(sources.into_iter().map(|file| File::new(format!("sources/{}", file.path), file.content)));
+    content.extend(
+        sources.into_iter().map(|file| ExportFile::new(format!("sources/{}", file.path), file.content)),
+    );
     let archive = zipped(&content).map_err(|error| Error::Archive(error.to_string()))?;
     let test = match subject.inverse() {
         None => self_test::self_test(subject),
         Some(inverse) => self_test::of_inverse(subject, inverse),
     };
-    let files = vec![File::new(format!("{name}.fmu"), archive), File::new(format!("{name}_test.py"), test)];
-    Ok(Written { files, note })
+    let files = vec![
+        ExportFile::new(format!("{name}.fmu"), archive),
+        ExportFile::new(format!("{name}_test.py"), test),
+    ];
+    Ok(TargetFiles { files, note })
 }
 
 /// An archive of files. It has no dates, so that the same model gives the same archive.
-fn zipped(files: &[File]) -> zip::result::ZipResult<Vec<u8>> {
+fn zipped(files: &[ExportFile]) -> zip::result::ZipResult<Vec<u8>> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default()
         .compression_method(zip::CompressionMethod::Stored)
@@ -71,7 +79,7 @@ fn zipped(files: &[File]) -> zip::result::ZipResult<Vec<u8>> {
     Ok(archive.finish()?.into_inner())
 }
 
-fn usage(subject: &Subject<'_>) -> String {
+fn usage(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let (inputs, outputs) = description::variable_names(subject);
     let listed = |names: &[String]| names.iter().map(|name| in_markdown(name)).collect::<Vec<_>>().join(", ");

@@ -8,10 +8,10 @@ use crate::program::expression::{Binary, Unary};
 use crate::program::unused::used_arrays;
 use crate::program::{Declaration, Program, Storage};
 use crate::reserved;
-use crate::subject::{File, Subject};
+use crate::subject::{ExportFile, ExportSubject};
 use crate::target::printer::{Binding, Language, Printer, Syntax};
 use crate::target::template::filled;
-use crate::target::{BackEnd, Written};
+use crate::target::{BackEnd, TargetFiles};
 
 pub(super) const BACK_END: BackEnd = BackEnd {
     name: "matlab",
@@ -22,23 +22,23 @@ pub(super) const BACK_END: BackEnd = BackEnd {
     usage,
 };
 
-fn write(subject: &Subject<'_>) -> Result<Written, Error> {
+fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
     let name = subject.name();
     Ok(vec![
-        File::new(format!("{name}.m"), function_file(subject)),
-        File::new(format!("{name}_system.m"), system_object(subject)),
-        File::new(format!("{name}_test.m"), self_test(subject)),
+        ExportFile::new(format!("{name}.m"), function_file(subject)),
+        ExportFile::new(format!("{name}_system.m"), system_object(subject)),
+        ExportFile::new(format!("{name}_test.m"), self_test(subject)),
     ]
     .into())
 }
 
-fn usage(subject: &Subject<'_>) -> String {
+fn usage(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let arguments = subject.argument_names().join(", ");
     filled(include_str!("matlab/usage.md.txt"), &[("NAME", name), ("@arguments@", &arguments)])
 }
 
-fn function_file(subject: &Subject<'_>) -> String {
+fn function_file(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let matlab = Matlab { arguments: subject.argument_names() };
     let arguments = matlab.arguments.join(", ");
@@ -107,7 +107,7 @@ fn function(matlab: &Matlab, program: &Program, name: &str, with_tangent: bool) 
     text
 }
 
-fn system_object(subject: &Subject<'_>) -> String {
+fn system_object(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let arguments = subject.argument_names().join(", ");
     let count = subject.argument_names().len();
@@ -127,7 +127,7 @@ fn system_object(subject: &Subject<'_>) -> String {
     )
 }
 
-fn self_test(subject: &Subject<'_>) -> String {
+fn self_test(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let count = subject.argument_names().len();
     let number = |value: f64| format!("{value:?}");

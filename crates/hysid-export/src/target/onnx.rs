@@ -8,11 +8,11 @@ use prost::Message;
 
 use crate::error::Error;
 use crate::program::Program;
-use crate::subject::{File, Subject};
+use crate::subject::{ExportFile, ExportSubject};
 use crate::target::template::filled;
-use crate::target::{BackEnd, Written};
+use crate::target::{BackEnd, TargetFiles};
 use graph::{NEXT_STATE, OUTPUT, STATE, row};
-use messages::{Attribute, Entry, Graph, Model, Node, OperatorSet, ValueInfo};
+use messages::{Attribute, Graph, OnnxEntry, OnnxModel, OnnxNode, OperatorSet, ValueInfo};
 
 pub(super) const BACK_END: BackEnd =
     BackEnd { name: "onnx", has_single_precision: false, has_inverse: false, reserved: &[], write, usage };
@@ -21,25 +21,25 @@ pub(super) const BACK_END: BackEnd =
 const FORMAT: i64 = 8;
 const OPERATORS: i64 = 17;
 
-fn write(subject: &Subject<'_>) -> Result<Written, Error> {
+fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
     let name = subject.name();
     let arguments = subject.argument_names();
     let step = graph::step(subject.program(), &arguments, false);
     let tangent = graph::step(subject.tangent(), &arguments, true);
     let record = record(subject.program(), &arguments, step.clone());
     let file = |ending: &str, graph: Graph| {
-        File::new(format!("{name}{ending}.onnx"), model(subject, graph).encode_to_vec())
+        ExportFile::new(format!("{name}{ending}.onnx"), model(subject, graph).encode_to_vec())
     };
     Ok(vec![
         file("", record),
         file("_step", step),
         file("_tangent", tangent),
-        File::new(format!("{name}_test.py"), self_test(subject)),
+        ExportFile::new(format!("{name}_test.py"), self_test(subject)),
     ]
     .into())
 }
 
-fn usage(subject: &Subject<'_>) -> String {
+fn usage(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let arguments = subject.argument_names();
     let columns: Vec<String> = arguments.iter().map(|name| format!("\"{name}\": {name}")).collect();
@@ -72,7 +72,7 @@ fn record(program: &Program, arguments: &[String], mut step: Graph) -> Graph {
         (arguments.contains(name) || [STATE, NEXT_STATE, OUTPUT].contains(&name.as_str()))
             .then(|| renamed(name))
     });
-    let scan = Node {
+    let scan = OnnxNode {
         inputs,
         outputs: vec![NEXT_STATE.into(), OUTPUT.into()],
         operation: "Scan".into(),
@@ -106,16 +106,16 @@ fn rename(graph: &mut Graph, new: &impl Fn(&String) -> Option<String>) {
     }
 }
 
-fn model(subject: &Subject<'_>, graph: Graph) -> Model {
+fn model(subject: &ExportSubject<'_>, graph: Graph) -> OnnxModel {
     let initial: Vec<String> = subject
         .program()
         .states()
         .flat_map(|(_, _, values)| values.iter().map(|value| format!("{value:?}")))
         .collect();
     let mut metadata =
-        vec![Entry { key: "initial_state".into(), value: format!("[{}]", initial.join(", ")) }];
-    metadata.extend(subject.facts().into_iter().map(|(key, value)| Entry { key, value }));
-    Model {
+        vec![OnnxEntry { key: "initial_state".into(), value: format!("[{}]", initial.join(", ")) }];
+    metadata.extend(subject.facts().into_iter().map(|(key, value)| OnnxEntry { key, value }));
+    OnnxModel {
         ir_version: FORMAT,
         producer_name: "Hysid".into(),
         producer_version: env!("CARGO_PKG_VERSION").into(),
@@ -126,7 +126,7 @@ fn model(subject: &Subject<'_>, graph: Graph) -> Model {
     }
 }
 
-fn self_test(subject: &Subject<'_>) -> String {
+fn self_test(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let arguments = subject.argument_names();
     let names: Vec<String> = arguments.iter().map(|name| format!("\"{name}\"")).collect();

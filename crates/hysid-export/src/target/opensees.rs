@@ -5,9 +5,9 @@ mod native;
 
 use crate::error::Error;
 use crate::reserved;
-use crate::subject::{File, Subject};
+use crate::subject::{ExportFile, ExportSubject};
 use crate::target::template::filled;
-use crate::target::{BackEnd, Written, c};
+use crate::target::{BackEnd, TargetFiles, c};
 use crate::text::in_markdown;
 
 pub(super) const BACK_END: BackEnd = BackEnd {
@@ -19,10 +19,10 @@ pub(super) const BACK_END: BackEnd = BackEnd {
     usage,
 };
 
-/// What a model becomes.
+/// Kind of thing that a model is exported as.
 const MATERIAL: &str = "a uniaxialMaterial of OpenSees";
 
-fn write(subject: &Subject<'_>) -> Result<Written, Error> {
+fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
     let inputs = subject.names().inputs.len();
     if inputs > 1 {
         return Err(Error::Inputs { target: MATERIAL, inputs });
@@ -33,16 +33,16 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let name = subject.name();
     let mut files = c::sources(subject);
     files.push(c::test(subject));
-    files.push(File::new(format!("{name}Material.h"), material::header(subject)));
-    files.push(File::new(format!("{name}Material.cpp"), material::source(subject)));
+    files.push(ExportFile::new(format!("{name}Material.h"), material::header(subject)));
+    files.push(ExportFile::new(format!("{name}Material.cpp"), material::source(subject)));
     if let Ok(native) = native::Native::of(subject.model()) {
-        files.push(File::new(format!("{name}.tcl"), native.tcl()));
-        files.push(File::new(format!("{name}.py"), native.python()));
+        files.push(ExportFile::new(format!("{name}.tcl"), native.tcl()));
+        files.push(ExportFile::new(format!("{name}.py"), native.python()));
     }
     Ok(files.into())
 }
 
-fn usage(subject: &Subject<'_>) -> String {
+fn usage(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let model = subject.model();
     let names = subject.names();

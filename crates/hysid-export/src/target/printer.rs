@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::program::expression::{Binary, Comparison, Real, RealVariable, Truth, Unary, Whole};
+use crate::program::expression::{Binary, Real, RealVariable, Relation, Truth, Unary, Whole};
 use crate::program::{Array, Declaration, Program, Statement, every};
 
 /// How strongly the outermost operation of an expression binds.
@@ -76,7 +76,7 @@ impl<'a, L: Language> Printer<'a, L> {
         Self { language, program, assigned }
     }
 
-    /// The body of the program, indented so many times.
+    /// The body of the program, indented by a number of levels.
     pub fn body(&self, depth: usize) -> String {
         let mut text = String::new();
         self.block(&self.program.body, depth, &mut text);
@@ -244,11 +244,11 @@ impl<'a, L: Language> Printer<'a, L> {
     }
 }
 
-fn sign(comparison: Comparison) -> &'static str {
+fn sign(comparison: Relation) -> &'static str {
     match comparison {
-        Comparison::Below => "<",
-        Comparison::AtMost => "<=",
-        Comparison::Equal => "==",
+        Relation::Below => "<",
+        Relation::AtMost => "<=",
+        Relation::Equal => "==",
     }
 }
 

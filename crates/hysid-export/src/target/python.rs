@@ -10,10 +10,10 @@ use crate::program::expression::{Binary, Unary};
 use crate::program::unused::used_arrays;
 use crate::program::{Array, Declaration, Program, Storage};
 use crate::reserved;
-use crate::subject::{File, Subject};
+use crate::subject::{ExportFile, ExportSubject};
 use crate::target::printer::{Binding, Language, Printer, Syntax, rows_of_numbers};
 use crate::target::template::filled;
-use crate::target::{BackEnd, Written};
+use crate::target::{BackEnd, TargetFiles};
 
 pub(super) const BACK_END: BackEnd = BackEnd {
     name: "python",
@@ -24,16 +24,16 @@ pub(super) const BACK_END: BackEnd = BackEnd {
     usage,
 };
 
-fn write(subject: &Subject<'_>) -> Result<Written, Error> {
+fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
     let name = subject.name();
     Ok(vec![
-        File::new(format!("{name}.py"), module(subject)),
-        File::new(format!("{name}_test.py"), self_test(subject)),
+        ExportFile::new(format!("{name}.py"), module(subject)),
+        ExportFile::new(format!("{name}_test.py"), self_test(subject)),
     ]
     .into())
 }
 
-fn usage(subject: &Subject<'_>) -> String {
+fn usage(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let columns = whole_record(subject).join(", ");
     let arguments = subject.argument_names().join(", ");
@@ -44,7 +44,7 @@ fn usage(subject: &Subject<'_>) -> String {
 }
 
 /// The parameters of `simulate`.
-fn whole_record(subject: &Subject<'_>) -> Vec<&'static str> {
+fn whole_record(subject: &ExportSubject<'_>) -> Vec<&'static str> {
     let of = |argument: &Argument| match argument {
         Argument::Input(0) => Some("x"),
         Argument::Input(_) => None,
@@ -54,7 +54,7 @@ fn whole_record(subject: &Subject<'_>) -> Vec<&'static str> {
     subject.description().arguments.iter().filter_map(of).collect()
 }
 
-fn module(subject: &Subject<'_>) -> String {
+fn module(subject: &ExportSubject<'_>) -> String {
     let python = Python { arguments: subject.argument_names() };
     let (step, tangent) = (subject.program(), subject.tangent());
     let facts: String =
@@ -138,7 +138,7 @@ fn function(python: &Python, program: &Program, name: &str, with_tangent: bool) 
     text
 }
 
-fn class(subject: &Subject<'_>) -> String {
+fn class(subject: &ExportSubject<'_>) -> String {
     let parameters: String = subject.argument_names().iter().map(|name| format!(", {name}")).collect();
     let arguments = subject
         .argument_names()
@@ -198,7 +198,7 @@ fn class(subject: &Subject<'_>) -> String {
     )
 }
 
-fn self_test(subject: &Subject<'_>) -> String {
+fn self_test(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let count = subject.argument_names().len();
     let (low, high) = subject.model().trained_ranges().output;

@@ -31,7 +31,7 @@ fn first_visit_of_both_ends(record: &Record) -> usize {
     first(|a, b| a < b).max(first(|a, b| a > b))
 }
 
-/// What was done, and why.
+/// Explains which rows were blanked, and why.
 pub fn words(rows: usize) -> String {
     format!(
         "The outputs of the first {rows} rows are blank for all models but the last: hysid diagnose warns that the \

@@ -2,7 +2,7 @@
 
 use hysid::network::Family;
 
-use crate::chapter::Source;
+use crate::chapter::TargetSource;
 use crate::fitting::FoldKind;
 
 /// An example of the paper.
@@ -10,19 +10,19 @@ use crate::fitting::FoldKind;
 pub struct Example {
     /// Name on the command line.
     pub name: &'static str,
-    /// What it is about.
+    /// Title of the example.
     pub title: &'static str,
-    /// What the paper reports, on measured data that are not public.
+    /// Result that the paper reports, on measured data that are not public.
     pub paper: &'static str,
-    /// What stands in for these.
-    pub cases: &'static [Case],
+    /// Specimens that stand in for these data.
+    pub cases: &'static [ExampleCase],
     /// Why targets are missed, as far as the cases show it: a paragraph each.
     pub causes: &'static [&'static str],
 }
 
 /// A specimen and who is fitted to it beside the XPNN.
 #[derive(Debug)]
-pub struct Case {
+pub struct ExampleCase {
     /// Name in the catalogue of specimens.
     pub specimen: &'static str,
     /// Why it is there.
@@ -31,8 +31,8 @@ pub struct Case {
     pub folds: FoldKind,
     /// Fitted to the same data; ratios are to the first of them.
     pub opponents: &'static [Opponent],
-    /// What is to be reached.
-    pub wanted: &'static [Wanted],
+    /// Figures with their limits.
+    pub wanted: &'static [FigureLimit],
 }
 
 /// Who is compared with the XPNN.
@@ -52,17 +52,17 @@ pub enum Opponent {
 
 /// A figure and its limit.
 #[derive(Debug)]
-pub struct Wanted {
-    pub figure: Figure,
+pub struct FigureLimit {
+    pub figure: CaseFigure,
     /// At most this for an error, at least this for a ratio.
     pub limit: f64,
     /// Whose target it is.
-    pub source: Source,
+    pub source: TargetSource,
 }
 
 /// A figure of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Figure {
+pub enum CaseFigure {
     /// NRMSE of the training data in % of std.
     Training,
     /// NRMSE of the unseen data in % of std.
@@ -81,7 +81,7 @@ pub enum Figure {
     TimesBelowUnseen,
 }
 
-impl Figure {
+impl CaseFigure {
     /// True if more is better.
     pub fn is_ratio(self) -> bool {
         matches!(self, Self::TimesBelowTraining | Self::TimesBelowUnseen)
@@ -103,7 +103,7 @@ impl Figure {
     }
 }
 
-impl Wanted {
+impl FigureLimit {
     /// The limit in words.
     pub fn words(&self) -> String {
         format!("{} {}", if self.figure.is_ratio() { "at least" } else { "at most" }, self.limit)
@@ -115,27 +115,27 @@ impl Wanted {
     }
 }
 
-const fn paper(figure: Figure, limit: f64) -> Wanted {
-    Wanted { figure, limit, source: Source::Paper }
+const fn paper(figure: CaseFigure, limit: f64) -> FigureLimit {
+    FigureLimit { figure, limit, source: TargetSource::Paper }
 }
 
-const fn words(figure: Figure, limit: f64) -> Wanted {
-    Wanted { figure, limit, source: Source::Words }
+const fn words(figure: CaseFigure, limit: f64) -> FigureLimit {
+    FigureLimit { figure, limit, source: TargetSource::Words }
 }
 
-const fn ours(figure: Figure, limit: f64) -> Wanted {
-    Wanted { figure, limit, source: Source::Ours }
+const fn ours(figure: CaseFigure, limit: f64) -> FigureLimit {
+    FigureLimit { figure, limit, source: TargetSource::Ours }
 }
 
 const GPNN: Opponent = Opponent::Network(Family::Gpnn);
 const GPIM: Opponent = Opponent::GeneralizedPrandtlIshlinskii;
 
 /// Agreement, which the paper claims in words: at most 0.5 % in training and 2 % on unseen data.
-const CLOSE: &[Wanted] = &[words(Figure::Training, 0.5), words(Figure::Unseen, 2.0)];
+const CLOSE: &[FigureLimit] = &[words(CaseFigure::Training, 0.5), words(CaseFigure::Unseen, 2.0)];
 
 /// A model of fewer errors than a specimen's own law: the paper claims that the XPNN beats the GPIM.
-const BETTER_THAN_ITS_LAW: &[Wanted] =
-    &[words(Figure::TimesBelowTraining, 1.0), words(Figure::TimesBelowUnseen, 1.0)];
+const BETTER_THAN_ITS_LAW: &[FigureLimit] =
+    &[words(CaseFigure::TimesBelowTraining, 1.0), words(CaseFigure::TimesBelowUnseen, 1.0)];
 
 /// The seven examples.
 pub static EXAMPLES: [Example; 7] = [
@@ -143,7 +143,7 @@ pub static EXAMPLES: [Example; 7] = [
         name: "example1",
         title: "ferromagnetic material",
         paper: "excellent agreement with measured data (its abstract); no number for this example is known to us.",
-        cases: &[Case {
+        cases: &[ExampleCase {
             specimen: "ferromagnet",
             shows: "minor loops within minor loops",
             folds: FoldKind::After,
@@ -157,31 +157,31 @@ pub static EXAMPLES: [Example; 7] = [
         title: "beam-column joint of reinforced concrete",
         paper: "prediction errors up to 3.2 % of the load (printed without the sign); training MSE from 41 to 0.004 by the genetic algorithm and 0.0001 by the gradient; GPNN 99.47 and 140.13. These MSE cannot all be in one unit: with the output weights by least squares none can begin above the output's variance. Which data were unseen is not known to us.",
         cases: &[
-            Case {
+            ExampleCase {
                 specimen: "reinforced-concrete-joint-cycles",
                 shows: "unseen cycles between training cycles, except the last one, which comes after all training \
                         rows and has more damage than any of them",
                 folds: FoldKind::Between,
                 opponents: &[GPNN, Opponent::DegradingBoucWen, Opponent::WithUnseen],
                 wanted: &[
-                    paper(Figure::LargestUnseen, 3.2),
-                    words(Figure::TimesBelowTraining, 1.0),
-                    words(Figure::TimesBelowUnseen, 1.0),
-                    ours(Figure::LargestUnseenBetween, 3.2),
-                    ours(Figure::TimesBelowTraining, 10.0),
-                    ours(Figure::TimesBelowUnseen, 10.0),
+                    paper(CaseFigure::LargestUnseen, 3.2),
+                    words(CaseFigure::TimesBelowTraining, 1.0),
+                    words(CaseFigure::TimesBelowUnseen, 1.0),
+                    ours(CaseFigure::LargestUnseenBetween, 3.2),
+                    ours(CaseFigure::TimesBelowTraining, 10.0),
+                    ours(CaseFigure::TimesBelowUnseen, 10.0),
                 ],
             },
-            Case {
+            ExampleCase {
                 specimen: "reinforced-concrete-joint",
                 shows: "the last 30 % of the time unseen: drift and damage exceed those in training, so \
                         this is an extrapolation",
                 folds: FoldKind::After,
                 opponents: &[GPNN, Opponent::DegradingBoucWen],
                 wanted: &[
-                    ours(Figure::LargestUnseen, 3.2),
-                    ours(Figure::TimesBelowTraining, 10.0),
-                    ours(Figure::TimesBelowUnseen, 10.0),
+                    ours(CaseFigure::LargestUnseen, 3.2),
+                    ours(CaseFigure::TimesBelowTraining, 10.0),
+                    ours(CaseFigure::TimesBelowUnseen, 10.0),
                 ],
             },
         ],
@@ -192,14 +192,17 @@ pub static EXAMPLES: [Example; 7] = [
         title: "Terfenol-D actuator at low speed",
         paper: "MSE 0.016 against 0.654 of the GPIM, a ratio of 41; that this holds on unseen data it does not say.",
         cases: &[
-            Case {
+            ExampleCase {
                 specimen: "terfenol-rod",
                 shows: "asymmetric loops of a specimen that is not a GPIM",
                 folds: FoldKind::After,
                 opponents: &[GPIM],
-                wanted: &[paper(Figure::TimesBelowTraining, 40.0), ours(Figure::TimesBelowUnseen, 40.0)],
+                wanted: &[
+                    paper(CaseFigure::TimesBelowTraining, 40.0),
+                    ours(CaseFigure::TimesBelowUnseen, 40.0),
+                ],
             },
-            Case {
+            ExampleCase {
                 specimen: "terfenol-actuator",
                 shows: "a specimen that is a GPIM, which favours the GPIM",
                 folds: FoldKind::After,
@@ -215,19 +218,19 @@ pub static EXAMPLES: [Example; 7] = [
         paper: "a comparison with the GPIM for two wires between -1 and 1 A; no number for this example is \
                 known to us.",
         cases: &[
-            Case {
+            ExampleCase {
                 specimen: "two-wire-actuator",
                 shows: "asymmetric loops of a specimen that is not a GPIM",
                 folds: FoldKind::After,
                 opponents: &[GPIM],
                 wanted: &[
-                    words(Figure::TimesBelowTraining, 1.0),
-                    words(Figure::TimesBelowUnseen, 1.0),
-                    ours(Figure::TimesBelowTraining, 40.0),
-                    ours(Figure::TimesBelowUnseen, 40.0),
+                    words(CaseFigure::TimesBelowTraining, 1.0),
+                    words(CaseFigure::TimesBelowUnseen, 1.0),
+                    ours(CaseFigure::TimesBelowTraining, 40.0),
+                    ours(CaseFigure::TimesBelowUnseen, 40.0),
                 ],
             },
-            Case {
+            ExampleCase {
                 specimen: "shape-memory-actuator",
                 shows: "a specimen that is a GPIM, which favours the GPIM",
                 folds: FoldKind::After,
@@ -241,12 +244,16 @@ pub static EXAMPLES: [Example; 7] = [
         name: "example5",
         title: "concrete in cyclic compression",
         paper: "MSE 2.79, its unit not stated.",
-        cases: &[Case {
+        cases: &[ExampleCase {
             specimen: "concrete",
             shows: "softening and permanent strain",
             folds: FoldKind::After,
             opponents: &[],
-            wanted: &[paper(Figure::UnseenMse, 2.79), ours(Figure::Training, 0.5), ours(Figure::Unseen, 2.0)],
+            wanted: &[
+                paper(CaseFigure::UnseenMse, 2.79),
+                ours(CaseFigure::Training, 0.5),
+                ours(CaseFigure::Unseen, 2.0),
+            ],
         }],
         causes: &[PENALTY],
     },
@@ -257,32 +264,32 @@ pub static EXAMPLES: [Example; 7] = [
                 the rate; for the piezo set, in which 50 and 200 Hz were not trained on, no number is known to us. At \
                 an output variance above 778 these are at most 0.03 % and 0.16 % of std.",
         cases: &[
-            Case {
+            ExampleCase {
                 specimen: "rate-dependent-actuator",
                 shows: "the synthetic set, of a rate-dependent Prandtl-Ishlinskii law, trained on pure sines",
                 folds: FoldKind::After,
                 opponents: &[Opponent::WithoutRate],
                 wanted: &[
-                    paper(Figure::Training, 0.03),
-                    paper(Figure::UnseenRecords(&["three tones"]), 0.16),
-                    words(Figure::TimesBelowTraining, 50.0),
-                    ours(Figure::UnseenRecords(&["25 Hz", "75 Hz"]), 0.5),
+                    paper(CaseFigure::Training, 0.03),
+                    paper(CaseFigure::UnseenRecords(&["three tones"]), 0.16),
+                    words(CaseFigure::TimesBelowTraining, 50.0),
+                    ours(CaseFigure::UnseenRecords(&["25 Hz", "75 Hz"]), 0.5),
                 ],
             },
-            Case {
+            ExampleCase {
                 specimen: "rate-dependent-actuator-tones",
                 shows: "the same, trained on sums of tones too",
                 folds: FoldKind::After,
                 opponents: &[Opponent::WithoutRate],
                 // The paper's figures, for a training set that is not the paper's.
                 wanted: &[
-                    ours(Figure::Training, 0.03),
-                    ours(Figure::UnseenRecords(&["three tones"]), 0.16),
-                    ours(Figure::TimesBelowTraining, 50.0),
-                    ours(Figure::UnseenRecords(&["25 Hz", "75 Hz"]), 0.5),
+                    ours(CaseFigure::Training, 0.03),
+                    ours(CaseFigure::UnseenRecords(&["three tones"]), 0.16),
+                    ours(CaseFigure::TimesBelowTraining, 50.0),
+                    ours(CaseFigure::UnseenRecords(&["25 Hz", "75 Hz"]), 0.5),
                 ],
             },
-            Case {
+            ExampleCase {
                 specimen: "piezo-actuator",
                 shows: "the piezo set: 50 and 200 Hz unseen",
                 folds: FoldKind::After,
@@ -297,7 +304,7 @@ pub static EXAMPLES: [Example; 7] = [
         title: "magnetostrictive actuator from 10 to 300 Hz",
         paper: "excellent agreement with measured data (its abstract) at eight frequencies; no number for \
                 this example is known to us.",
-        cases: &[Case {
+        cases: &[ExampleCase {
             specimen: "magnetostrictive-actuator",
             shows: "hysteresis between a lag and a resonance; 50 and 200 Hz unseen",
             folds: FoldKind::After,

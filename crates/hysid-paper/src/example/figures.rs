@@ -18,8 +18,8 @@ const LONGEST_HISTORY: usize = 1200;
 /// Smallest error on the logarithmic axis, in percent.
 const LOWEST_PERCENT: f64 = 1e-4;
 
-/// What a model makes of a set of data.
-pub struct Line<'a> {
+/// Outputs of a model for a set of data.
+pub struct FigureLine<'a> {
     /// The model.
     pub name: &'a str,
     /// Its outputs, record by record.
@@ -30,7 +30,7 @@ fn colour(index: usize) -> Colour {
     if index == 0 { Colour::Simulated } else { Colour::Error }
 }
 
-fn legend(lines: &[Line]) -> Vec<(Colour, String)> {
+fn legend(lines: &[FigureLine]) -> Vec<(Colour, String)> {
     let measured = (Colour::Measured, "specimen".to_string());
     let models = lines.iter().enumerate().map(|(index, line)| (colour(index), line.name.to_string()));
     std::iter::once(measured).chain(models).collect()
@@ -47,7 +47,7 @@ struct Scored {
 }
 
 impl Scored {
-    fn of(data: &Dataset, lines: &[Line]) -> Self {
+    fn of(data: &Dataset, lines: &[FigureLine]) -> Self {
         let mut scored = Self { simulated: vec![Vec::new(); lines.len()], ..Self::default() };
         for (index, record) in data.records().iter().enumerate() {
             let mut after_blank = true;
@@ -76,7 +76,7 @@ impl Scored {
 }
 
 /// Loops of the specimen and of the models.
-pub fn loops(set: &str, data: &Dataset, lines: &[Line]) -> Chart {
+pub fn loops(set: &str, data: &Dataset, lines: &[FigureLine]) -> Chart {
     let scored = Scored::of(data, lines);
     let names = data.names();
     let most = (LOOP_POINTS.0 / scored.begins.len().max(1)).max(LOOP_POINTS.1);
@@ -103,7 +103,7 @@ pub fn loops(set: &str, data: &Dataset, lines: &[Line]) -> Chart {
 }
 
 /// Outputs over the samples of the unseen data.
-pub fn history(data: &Dataset, lines: &[Line]) -> Chart {
+pub fn history(data: &Dataset, lines: &[FigureLine]) -> Chart {
     let scored = Scored::of(data, lines);
     let curve = |values: &[f64], colour: Colour, width: f64| {
         let shown = values.iter().take(LONGEST_HISTORY).enumerate();
@@ -123,7 +123,7 @@ pub fn history(data: &Dataset, lines: &[Line]) -> Chart {
 }
 
 /// Magnitude of the error in percent of the largest output, as one curve for training and one for unseen.
-pub fn relative_errors(sets: &[(&Dataset, Vec<Line>); 2]) -> Chart {
+pub fn relative_errors(sets: &[(&Dataset, Vec<FigureLine>); 2]) -> Chart {
     let mut curves: Vec<Curve> = Vec::new();
     let mut begun = 0;
     for (data, lines) in sets {

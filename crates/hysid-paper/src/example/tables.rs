@@ -3,18 +3,18 @@
 use hysid_document::{Cell, Table, unit};
 
 use super::catalogue::Example;
-use super::{Contestant, Played, Run, Trained, errors, largest, spaced};
+use super::{Contestant, PlayedCase, SeedRun, TrainedModels, errors, largest, spaced};
 use crate::chapter::stands_in;
 use crate::spread::Spread;
 
-impl Played<'_> {
+impl PlayedCase<'_> {
     pub(super) fn heading(&self, example: &Example, of: &str) -> String {
         format!("{}: {of}", stands_in(self.specimen.name, &spaced(example.name)))
     }
 
     /// Every model by itself, and the medians of several.
     fn all(&self) -> impl Iterator<Item = &Contestant> {
-        self.contestants.iter().flat_map(|Trained { one, several }| std::iter::once(one).chain(several))
+        self.contestants.iter().flat_map(|TrainedModels { one, several }| std::iter::once(one).chain(several))
     }
 
     pub(super) fn errors_table(&self, example: &Example) -> Table {
@@ -35,7 +35,7 @@ impl Played<'_> {
             for (set, data, runs) in
                 [("training", &self.train, &contestant.train), ("unseen", &self.unseen, &contestant.unseen)]
             {
-                let spread = |value: &dyn Fn(&Run) -> f64| Spread::of(runs.iter().map(value));
+                let spread = |value: &dyn Fn(&SeedRun) -> f64| Spread::of(runs.iter().map(value));
                 let mse = spread(&|run| run.errors.mse);
                 let percent = spread(&|run| run.errors.nrmse_std_percent.unwrap_or(f64::INFINITY));
                 let worst = spread(&|run| 100.0 * run.errors.max_abs_error / largest(data));
@@ -62,7 +62,7 @@ impl Played<'_> {
         let names = self.all().map(|contestant| format!("{}, NRMSE (% of std)", contestant.name));
         let row = |name: &str| {
             let of = |contestant: &Contestant| {
-                let percent = |run: &Run| {
+                let percent = |run: &SeedRun| {
                     let errors = errors(&self.unseen, &run.simulated, |other| other == name);
                     errors.and_then(|errors| errors.nrmse_std_percent).unwrap_or(f64::INFINITY)
                 };

@@ -9,7 +9,7 @@ use hysid::validation::{Fold, folds, folds_of_cycles};
 use hysid_document::{Cell, Table, number};
 use rayon::prelude::*;
 
-use super::{Effort, effort, network, networks, seeds, training_error};
+use super::{TrainingEffort, effort, network, networks, seeds, training_error};
 use crate::conditions::{Observer, Settings};
 use crate::spread::median;
 
@@ -30,7 +30,7 @@ pub enum FoldKind {
 
 /// How a network of a family is trained on data.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Choice {
+pub struct TrainingChoice {
     /// The rate is an input.
     pub has_rate: bool,
     /// The stops deteriorate; otherwise their capacities are unlimited, as the paper's 10⁷ is.
@@ -41,19 +41,19 @@ pub struct Choice {
 }
 
 #[derive(Debug, Clone)]
-struct Trial {
-    choice: Choice,
+struct ChoiceTrial {
+    choice: TrainingChoice,
     /// Error of each fold on its training data, in percent of std.
     training: Vec<f64>,
     /// Error on what was held out, in percent of its std.
     percents: Vec<f64>,
 }
 
-/// What was chosen, and from what.
+/// Chosen training, and the trials behind it.
 #[derive(Debug, Clone)]
-pub struct Chosen {
-    pub choice: Choice,
-    trials: Vec<Trial>,
+pub struct ChoiceResult {
+    pub choice: TrainingChoice,
+    trials: Vec<ChoiceTrial>,
     why_rate: &'static str,
 }
 
@@ -69,28 +69,28 @@ pub fn choose(
     kind: FoldKind,
     settings: Settings,
     observer: &dyn Observer,
-) -> Result<Chosen> {
-    let Effort { iterations, penalties, .. } = effort(settings);
+) -> Result<ChoiceResult> {
+    let TrainingEffort { iterations, penalties, .. } = effort(settings);
     let folds = match kind {
         FoldKind::Between => folds_of_cycles(data, FOLDS),
         FoldKind::After => folds(data, FOLDS),
     };
     let can_have_rate = family.uses_rate() && data.has_time();
     let differs_in_rate = data.records().len() > 1;
-    let first = Choice {
+    let first = TrainingChoice {
         has_rate: can_have_rate && differs_in_rate,
         deteriorates: family.deteriorates(),
         penalties: penalties[0],
         iterations: iterations[0],
     };
-    let mut bench = Bench { what, folds, family, settings, observer, trials: Vec::new() };
+    let mut bench = ChoiceBench { what, folds, family, settings, observer, trials: Vec::new() };
     let mut best = first;
     let why_rate = match (can_have_rate, differs_in_rate) {
         (false, _) if family.uses_rate() => "The record has no time, so x is the only input.",
         (false, _) => "The family has no rate.",
         (true, true) => "The records differ in rate, so x' is an input.",
         (true, false) => {
-            best = bench.if_clearly_better(first, Choice { has_rate: true, ..first })?;
+            best = bench.if_clearly_better(first, TrainingChoice { has_rate: true, ..first })?;
             match best.has_rate {
                 true => {
                     "The record has one speed, so that x' tells only the direction; it is an input because it lowers the mean error on the folds by a quarter or more."
@@ -102,32 +102,36 @@ pub fn choose(
         }
     };
     if family == Family::Xpnn {
-        best = bench.if_clearly_better(best, Choice { deteriorates: false, ..best })?;
+        best = bench.if_clearly_better(best, TrainingChoice { deteriorates: false, ..best })?;
     }
-    let of_penalties = penalties.iter().map(|&penalties| Choice { penalties, ..best });
+    let of_penalties = penalties.iter().map(|&penalties| TrainingChoice { penalties, ..best });
     best = bench.best(of_penalties.collect())?;
-    let of_iterations = iterations.iter().map(|&iterations| Choice { iterations, ..best });
+    let of_iterations = iterations.iter().map(|&iterations| TrainingChoice { iterations, ..best });
     best = bench.best(of_iterations.collect())?;
-    Ok(Chosen { choice: best, trials: bench.trials, why_rate })
+    Ok(ChoiceResult { choice: best, trials: bench.trials, why_rate })
 }
 
-struct Bench<'a> {
+struct ChoiceBench<'a> {
     what: &'a str,
     folds: Vec<Fold>,
     family: Family,
     settings: Settings,
     observer: &'a dyn Observer,
-    trials: Vec<Trial>,
+    trials: Vec<ChoiceTrial>,
 }
 
-impl Bench<'_> {
+impl ChoiceBench<'_> {
     /// The alternative if it has a [clear gain](CLEAR_GAIN), otherwise the default.
-    fn if_clearly_better(&mut self, default: Choice, alternative: Choice) -> Result<Choice> {
+    fn if_clearly_better(
+        &mut self,
+        default: TrainingChoice,
+        alternative: TrainingChoice,
+    ) -> Result<TrainingChoice> {
         let limit = CLEAR_GAIN * mean(&self.percents(default)?);
         Ok(if mean(&self.percents(alternative)?) < limit { alternative } else { default })
     }
 
-    fn best(&mut self, candidates: Vec<Choice>) -> Result<Choice> {
+    fn best(&mut self, candidates: Vec<TrainingChoice>) -> Result<TrainingChoice> {
         if self.folds.is_empty() || candidates.len() == 1 {
             return Ok(candidates[0]);
         }
@@ -142,7 +146,7 @@ impl Bench<'_> {
     }
 
     /// Error on each fold of the network with the lowest training error, of one from each seed.
-    fn percents(&mut self, choice: Choice) -> Result<Vec<f64>> {
+    fn percents(&mut self, choice: TrainingChoice) -> Result<Vec<f64>> {
         if let Some(trial) = self.trials.iter().find(|trial| trial.choice == choice) {
             return Ok(trial.percents.clone());
         }
@@ -155,12 +159,12 @@ impl Bench<'_> {
             choice.words(),
             number(mean(&percents), 3)
         ));
-        self.trials.push(Trial { choice, training, percents: percents.clone() });
+        self.trials.push(ChoiceTrial { choice, training, percents: percents.clone() });
         Ok(percents)
     }
 
-    fn errors(&self, fold: &Fold, choice: Choice) -> Result<(f64, f64)> {
-        let Effort { seeds_on_folds, .. } = effort(self.settings);
+    fn errors(&self, fold: &Fold, choice: TrainingChoice) -> Result<(f64, f64)> {
+        let TrainingEffort { seeds_on_folds, .. } = effort(self.settings);
         let seeds: Vec<u64> = seeds(self.settings).take(seeds_on_folds).collect();
         let of_seed = |place: u64| network(self.family, choice, seeds[place as usize], 0);
         let models = networks(&fold.train, of_seed, seeds.len(), self.observer)?;
@@ -184,7 +188,7 @@ fn mean(percents: &[f64]) -> f64 {
     exp(percents.iter().map(|percent| ln(*percent)).sum::<f64>() / percents.len() as f64)
 }
 
-impl Choice {
+impl TrainingChoice {
     pub fn words(self) -> String {
         format!(
             "{}, {}, ridge {:e} and decay {:e}, {} iterations",
@@ -197,7 +201,7 @@ impl Choice {
     }
 }
 
-impl Chosen {
+impl ChoiceResult {
     /// The choice in a sentence or two.
     pub fn words(&self, name: &str) -> String {
         let by =
@@ -205,12 +209,12 @@ impl Chosen {
         format!("{name}: {}{by}. {}", self.choice.words(), self.why_rate)
     }
 
-    /// What was tried, with the errors on the folds; `None` if there was nothing to choose from.
+    /// Table of the trials, with the errors on the folds; `None` if there was nothing to choose from.
     pub fn table(&self, heading: &str) -> Option<Table> {
         let folds = self.trials.first()?.percents.len();
         let columns = ["tried", "training", "mean"].map(String::from).into_iter();
         let columns = columns.chain((1..=folds).map(|fold| format!("fold {fold}")));
-        let row = |trial: &Trial| {
+        let row = |trial: &ChoiceTrial| {
             let is_chosen = trial.choice == self.choice;
             let name = trial.choice.words() + if is_chosen { " (chosen)" } else { "" };
             let percents = trial.percents.iter().map(|&percent| percent.into());

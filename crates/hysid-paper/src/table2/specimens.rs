@@ -7,61 +7,61 @@ use hysid::elementary::{sin, tanh};
 use hysid::operator::{DeterioratingStop, Operator, Stop};
 
 /// A property and the specimen that has just that.
-pub struct Property {
+pub struct SpecimenProperty {
     /// The property.
     pub name: &'static str,
     /// The specimen's law.
     pub law: &'static str,
-    /// By the paper, can PNN, GPNN, Preisach-NN, XPNN learn it?
+    /// Whether PNN, GPNN, Preisach-NN, XPNN can represent it, according to the paper.
     pub paper: [bool; 4],
     /// The specimen passes several stops through one tanh.
     pub is_mixing: bool,
-    output: fn(&Motion) -> Vec<f64>,
+    output: fn(&InputMotion) -> Vec<f64>,
 }
 
-struct Motion {
+struct InputMotion {
     x: Vec<f64>,
     rate: Vec<f64>,
 }
 
 /// All specimens. The paper has one row for loops that are not congruent; here are two.
-pub static SPECIMENS: [Property; 6] = [
-    Property {
+pub static SPECIMENS: [SpecimenProperty; 6] = [
+    SpecimenProperty {
         name: "rate-independent, congruent, Masing, symmetric",
         law: "y = Σ w ε_r[x], r = 0.1, 0.25, 0.5, 0.8, w = 1, 0.7, 0.5, 0.3",
         paper: [true, true, true, true],
         is_mixing: false,
         output: |motion| sum(&motion.x),
     },
-    Property {
+    SpecimenProperty {
         name: "not Masing",
         law: "y = Σ w tanh(3 (x - ε_r[x])), the same r and w: a function of each play, hence congruent",
         paper: [false, false, true, true],
         is_mixing: false,
         output: |motion| weighted(&motion.x, |x, stop| tanh(3.0 * (x - stop))),
     },
-    Property {
+    SpecimenProperty {
         name: "asymmetric",
         law: "y = Σ w ε_r[x] + 0.8 x²",
         paper: [false, false, true, true],
         is_mixing: false,
         output: |motion| sum(&motion.x).into_iter().zip(&motion.x).map(|(y, x)| y + 0.8 * x * x).collect(),
     },
-    Property {
+    SpecimenProperty {
         name: "not congruent, wiping out",
         law: "y = tanh(1.5 Σ w ε_r[x]): several stops through one bent function",
         paper: [false, true, false, true],
         is_mixing: true,
         output: |motion| sum(&motion.x).into_iter().map(|y| tanh(1.5 * y)).collect(),
     },
-    Property {
+    SpecimenProperty {
         name: "not congruent, deteriorating",
         law: "y = Σ w DS_r,β[x], β = 40",
         paper: [false, true, false, true],
         is_mixing: false,
         output: |motion| worn(&motion.x),
     },
-    Property {
+    SpecimenProperty {
         name: "rate-dependent",
         law: "y = Σ w ε_r[x + 0.05 x']",
         paper: [false, false, false, true],
@@ -104,13 +104,13 @@ fn worn(x: &[f64]) -> Vec<f64> {
 }
 
 /// The specimen's outputs; its rate is that of central differences, as the networks have it.
-pub fn outputs(property: &Property, time: &[f64], x: &[f64]) -> Vec<f64> {
+pub fn outputs(property: &SpecimenProperty, time: &[f64], x: &[f64]) -> Vec<f64> {
     let last = x.len() - 1;
     let rate = |row: usize| {
         let (before, after) = (row.saturating_sub(1), (row + 1).min(last));
         (x[after] - x[before]) / (time[after] - time[before])
     };
-    (property.output)(&Motion { x: x.to_vec(), rate: (0..x.len()).map(rate).collect() })
+    (property.output)(&InputMotion { x: x.to_vec(), rate: (0..x.len()).map(rate).collect() })
 }
 
 const ROWS: usize = 600;
@@ -119,7 +119,7 @@ const ROWS: usize = 600;
 const PERIODS: f64 = 7.0;
 
 /// A record of two tones that do not repeat, the slower with a period of 1 s at speed 1.
-fn record(property: &Property, speed: f64, phase: f64) -> hysid::Result<Record> {
+fn record(property: &SpecimenProperty, speed: f64, phase: f64) -> hysid::Result<Record> {
     let phases: Vec<f64> = (0..ROWS).map(|row| PERIODS * row as f64 / ROWS as f64).collect();
     let tones = |p: f64| 0.6 * sin(TAU * p) + 0.4 * sin(TAU * 2.618 * p + phase) - 0.4 * sin(phase);
     // It begins at 0 and grows to its whole size.
@@ -129,19 +129,19 @@ fn record(property: &Property, speed: f64, phase: f64) -> hysid::Result<Record> 
     Record::new(format!("speed {speed}"), vec![x], y)?.with_time(time)
 }
 
-fn dataset(property: &Property, records: [(f64, f64); 3]) -> hysid::Result<Dataset> {
+fn dataset(property: &SpecimenProperty, records: [(f64, f64); 3]) -> hysid::Result<Dataset> {
     let records: hysid::Result<Vec<Record>> =
         records.into_iter().map(|(speed, phase)| record(property, speed, phase)).collect();
     Dataset::new(ColumnNames::plain(1), records?)
 }
 
 /// The records to train on.
-pub fn training(property: &Property) -> hysid::Result<Dataset> {
+pub fn training(property: &SpecimenProperty) -> hysid::Result<Dataset> {
     dataset(property, [(1.0, 0.0), (2.5, 2.0), (6.0, 4.0)])
 }
 
-/// The records that no network sees.
-pub fn unseen(property: &Property) -> hysid::Result<Dataset> {
+/// The records that no network is trained on.
+pub fn unseen(property: &SpecimenProperty) -> hysid::Result<Dataset> {
     dataset(property, [(1.5, 1.0), (3.5, 3.0), (5.0, 5.0)])
 }
 
@@ -176,7 +176,7 @@ pub fn incongruency(outputs: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    fn of(property: &Property) -> f64 {
+    fn of(property: &SpecimenProperty) -> f64 {
         let record = two_histories().unwrap();
         incongruency(&outputs(property, record.time().unwrap(), &record.inputs()[0]))
     }

@@ -1,16 +1,16 @@
-//! What the comparison of trainers comes to: tables, figures, and the sentence on the paper's claim.
+//! Result of the comparison of trainers: tables, figures, and the sentence on the paper's claim.
 
 use hysid::elementary::square;
 use hysid::options::network::Trainer;
 use hysid::significant::Significant;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number};
 
-use super::{EPOCHS, Moment, Protocol, Repetition, TRAINERS, Training};
-use crate::chapter::{Chapter, Content, FurtherFile, Source, Target, Verdict, stands_in};
+use super::{EPOCHS, Moment, Repetition, TRAINERS, TrainerRun, TrainingProtocol};
+use crate::chapter::{Chapter, ChapterTarget, Content, FurtherFile, TargetSource, TargetVerdict, stands_in};
 use crate::spread::Spread;
 
 /// Heading of every table: what the figures are of.
-fn heading(protocol: &Protocol) -> String {
+fn heading(protocol: &TrainingProtocol) -> String {
     format!(
         "{}: XPNN with 10 stops and 10 tanh neurons; {} epochs",
         stands_in(protocol.specimen.name, "example 2"),
@@ -35,7 +35,7 @@ pub const FILES: [FurtherFile; 4] = [
     FurtherFile { name: SECONDS_CHART, header: None },
 ];
 
-pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
+pub fn chapter(protocol: &TrainingProtocol, repetitions: &[Repetition]) -> Chapter {
     let (epochs, seconds) = (chart(repetitions, Abscissa::Epochs), chart(repetitions, Abscissa::Seconds));
     let files = [
         (SEEDS_TABLE, Content::Text(csv(repetitions))),
@@ -75,7 +75,7 @@ pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
     }
 }
 
-/// What the words of the tables mean.
+/// Explains the words of the tables.
 const WORDS: &str = "Every trainer minimises the same objective on the same record, output weights by least \
                      squares. From the same seed the genetic algorithm and the hybrid begin with the same \
                      population, the sub-gradient method and Levenberg-Marquardt with the same random \
@@ -86,14 +86,14 @@ const WORDS: &str = "Every trainer minimises the same objective on the same reco
                      machine, which may have run other programs too. “Unseen” is the rest of the history, \
                      which no model was fitted to.";
 
-fn of(repetitions: &[Repetition], trainer: Trainer) -> Vec<&Training> {
+fn of(repetitions: &[Repetition], trainer: Trainer) -> Vec<&TrainerRun> {
     let all = repetitions.iter().flat_map(|repetition| &repetition.trainings);
     all.filter(|training| training.trainer == trainer).collect()
 }
 
 /// A row for each trainer; `cell` is made of the lowest, median and highest of its seeds.
 fn table(
-    protocol: &Protocol,
+    protocol: &TrainingProtocol,
     repetitions: &[Repetition],
     of_seeds: &str,
     cell: impl Fn((f64, f64, f64)) -> Cell,
@@ -103,7 +103,7 @@ fn table(
     let columns = columns.chain(["% of std", "unseen, %", "seconds", "evaluations"].map(String::from));
     let row = |trainer: Trainer| {
         let trainings = of(repetitions, trainer);
-        let spread = |value: &dyn Fn(&Training) -> f64| {
+        let spread = |value: &dyn Fn(&TrainerRun) -> f64| {
             cell(range(&trainings.iter().map(|training| value(training)).collect::<Vec<f64>>()))
         };
         vec![
@@ -131,39 +131,50 @@ fn range(values: &[f64]) -> (f64, f64, f64) {
 }
 
 /// The paper's claims on its hybrid.
-pub(super) fn targets(protocol: &Protocol, repetitions: &[Repetition]) -> Vec<Target> {
-    let target = |figure: &str, limit: f64, source: Source, ratio: &dyn Fn(&Repetition) -> Option<f64>| {
-        let ratios: Option<Vec<f64>> = repetitions.iter().map(ratio).collect();
-        let spread = ratios.and_then(Spread::of);
-        let is_met = spread.is_some_and(|spread| spread.median >= limit);
-        Target {
-            specimen: protocol.specimen.name.into(),
-            figure: figure.into(),
-            source,
-            wanted: format!("at least {limit}"),
-            one: spread.map_or_else(|| "–".into(), Spread::shown),
-            several: None,
-            verdict: if is_met { Verdict::Met } else { Verdict::Missed },
-        }
-    };
+pub(super) fn targets(protocol: &TrainingProtocol, repetitions: &[Repetition]) -> Vec<ChapterTarget> {
+    let target =
+        |figure: &str, limit: f64, source: TargetSource, ratio: &dyn Fn(&Repetition) -> Option<f64>| {
+            let ratios: Option<Vec<f64>> = repetitions.iter().map(ratio).collect();
+            let spread = ratios.and_then(Spread::of);
+            let is_met = spread.is_some_and(|spread| spread.median >= limit);
+            ChapterTarget {
+                specimen: protocol.specimen.name.into(),
+                figure: figure.into(),
+                source,
+                wanted: format!("at least {limit}"),
+                one: spread.map_or_else(|| "–".into(), Spread::shown),
+                several: None,
+                verdict: if is_met { TargetVerdict::Met } else { TargetVerdict::Missed },
+            }
+        };
     let times = |other: Trainer| {
         move |repetition: &Repetition| {
             Some(repetition.of(other)?.train.mse / repetition.of(Trainer::Hybrid)?.train.mse)
         }
     };
     vec![
-        target("MSE ratio, genetic algorithm / hybrid", 1.0, Source::Words, &times(Trainer::Genetic)),
-        target("MSE ratio, sub-gradient method / hybrid", 1.0, Source::Words, &times(Trainer::Subgradient)),
-        target("MSE ratio, end of the hybrid's first phase / end", 40.0, Source::Paper, &|repetition| {
-            let hybrid = repetition.of(Trainer::Hybrid)?;
-            let first = hybrid.percent_at(protocol.epochs / 2)?;
-            Some(square(first / hybrid.train.nrmse_std_percent?))
-        }),
+        target("MSE ratio, genetic algorithm / hybrid", 1.0, TargetSource::Words, &times(Trainer::Genetic)),
+        target(
+            "MSE ratio, sub-gradient method / hybrid",
+            1.0,
+            TargetSource::Words,
+            &times(Trainer::Subgradient),
+        ),
+        target(
+            "MSE ratio, end of the hybrid's first phase / end",
+            40.0,
+            TargetSource::Paper,
+            &|repetition| {
+                let hybrid = repetition.of(Trainer::Hybrid)?;
+                let first = hybrid.percent_at(protocol.epochs / 2)?;
+                Some(square(first / hybrid.train.nrmse_std_percent?))
+            },
+        ),
     ]
 }
 
 /// The cause, by experiment: what the same number of sub-gradient epochs comes to without the genetic algorithm before.
-fn why(protocol: &Protocol, repetitions: &[Repetition]) -> String {
+fn why(protocol: &TrainingProtocol, repetitions: &[Repetition]) -> String {
     let of_seed = |repetition: &Repetition| -> Option<(f64, f64)> {
         let (hybrid, alone) = (repetition.of(Trainer::Hybrid)?, repetition.of(Trainer::Subgradient)?);
         Some((alone.percent_at(protocol.epochs / 2)?, hybrid.train.nrmse_std_percent?))
@@ -275,7 +286,7 @@ fn chart(repetitions: &[Repetition], abscissa: Abscissa) -> Chart {
         Abscissa::Epochs => moment.epoch as f64,
         Abscissa::Seconds => moment.seconds,
     };
-    let curve = |training: &Training| {
+    let curve = |training: &TrainerRun| {
         let points = kept(&training.moments).map(|moment| (x(moment), moment.nrmse_percent));
         Curve::new(points.collect(), colour(training.trainer), 1.4)
     };
@@ -290,7 +301,7 @@ fn chart(repetitions: &[Repetition], abscissa: Abscissa) -> Chart {
     Chart::on_axes(description, x, y, curves).with_height(360.0).with_legend(legend)
 }
 
-/// Moments that can be told apart in a drawing: about a hundred in a decade of epochs.
+/// Moments that can be distinguished in a drawing: about a hundred in a decade of epochs.
 fn kept(moments: &[Moment]) -> impl Iterator<Item = &Moment> {
     let mut next = 1.0;
     moments.iter().enumerate().filter_map(move |(index, moment)| {

@@ -9,9 +9,9 @@ use crate::chapter::Content;
 
 /// A clock that goes on by a second whenever it is looked at.
 #[derive(Default)]
-struct Clock(AtomicU64);
+struct TickingClock(AtomicU64);
 
-impl Observer for Clock {
+impl Observer for TickingClock {
     fn clock(&self) -> Duration {
         Duration::from_secs(self.0.fetch_add(1, Ordering::Relaxed))
     }
@@ -33,7 +33,7 @@ fn errors(percent: f64) -> Errors {
 
 /// A repetition with errors of genetic, sub-gradient, hybrid, Levenberg-Marquardt; the hybrid takes 10 s.
 fn repetition_of(percents: [f64; 4], seconds_to_match: Option<f64>) -> Repetition {
-    let training = |(trainer, percent): (Trainer, f64)| Training {
+    let training = |(trainer, percent): (Trainer, f64)| TrainerRun {
         trainer,
         seed: 1,
         train: errors(percent),
@@ -67,11 +67,11 @@ fn the_sentence_says_what_the_figures_say() {
 /// Ratios of the MSE: squares of those of the percents.
 #[test]
 fn targets_are_those_of_the_paper_on_its_hybrid() {
-    let protocol = Protocol::new(1, true);
+    let protocol = TrainingProtocol::new(1, true);
     let found = page::targets(&protocol, &[repetition_of([4.0, 0.5, 1.0, 1.0], None)]);
-    let found: Vec<(&str, crate::chapter::Verdict)> =
+    let found: Vec<(&str, crate::chapter::TargetVerdict)> =
         found.iter().map(|target| (target.one.as_str(), target.verdict)).collect();
-    use crate::chapter::Verdict::{Met, Missed};
+    use crate::chapter::TargetVerdict::{Met, Missed};
     assert_eq!(found, [("16", Met), ("0.25", Missed), ("1", Missed)]);
 }
 
@@ -85,19 +85,23 @@ fn levenberg_marquardt_is_timed_against_the_hybrid() {
 
 #[test]
 fn time_that_ends_before_there_is_a_model_reaches_nothing() {
-    let protocol = Protocol { epochs: 10, ..Protocol::new(3, true) };
+    let protocol = TrainingProtocol { epochs: 10, ..TrainingProtocol::new(3, true) };
     // The time ends before the start, and at its first and second moments.
     for seconds in [0.5, 1.5, 2.5] {
         let mut hybrid = repetition_of([1e-12; 4], None).trainings.remove(2);
         hybrid.seconds = seconds;
-        assert_eq!(seconds_to_match(&protocol, 3, &hybrid, &Clock::default()).unwrap(), None, "{seconds} s");
+        assert_eq!(
+            seconds_to_match(&protocol, 3, &hybrid, &TickingClock::default()).unwrap(),
+            None,
+            "{seconds} s"
+        );
     }
 }
 
 #[test]
 fn a_short_comparison_makes_a_chapter() {
-    let protocol = Protocol { epochs: 10, ..Protocol::new(3, true) };
-    let chapter = compared(&protocol, &Clock::default()).unwrap();
+    let protocol = TrainingProtocol { epochs: 10, ..TrainingProtocol::new(3, true) };
+    let chapter = compared(&protocol, &TickingClock::default()).unwrap();
     let content = |name: &str| &chapter.files.iter().find(|(other, _)| other == name).unwrap().1;
     let file = |name: &str| match content(name) {
         Content::Text(text) => text.clone(),

@@ -1,19 +1,19 @@
 //! Which of the columns that no option names are time, inputs and output: guessed from names, units and values. What is
 //! clear is taken, what accompanies a test is set aside with its reason, and what remains doubtful is a question that
-//! names the options that answer it.
+//! names the options that decide it.
 
 use std::ops::Range;
 
 use anyhow::{Result, anyhow, bail};
 use hysid_core::data::column::{Course, one_signal};
-use hysid_core::data::part::Domain;
 use hysid_core::data::unit;
+use hysid_core::data::usual_role::Domain;
 use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
 use hysid_tables::Table;
 
-use super::kind::{self, Kind};
-use super::values::{self, Running, Seen, numbers};
+use super::kind::{self, ColumnKind};
+use super::values::{self, TimeCheck, ValueStatistics, numbers};
 
 /// More columns than this are not all inputs.
 const MOST_INPUTS: usize = 4;
@@ -44,7 +44,7 @@ pub struct Guess<'t> {
     pub set_aside: Vec<(String, String)>,
     /// A condition that divides the rows into records.
     pub condition: Option<String>,
-    /// What is taken against the names, in a sentence.
+    /// Roles that contradict the names, in a sentence.
     pub note: Option<String>,
 }
 
@@ -66,7 +66,7 @@ enum Rank {
 }
 
 /// A column that may be set aside.
-struct Doubt<'t> {
+struct DoubtfulColumn<'t> {
     name: &'t String,
     rank: Rank,
     reason: String,
@@ -78,7 +78,7 @@ impl<'t> Guess<'t> {
     /// Guesses: time, output, and inputs where no option names them.
     ///
     /// # Errors
-    /// Columns of which the names and values do not tell enough.
+    /// Columns whose names and values do not decide their roles.
     pub fn complete(&mut self) -> Result<()> {
         let before = self.free.len();
         let mut weakest = None;
@@ -116,24 +116,24 @@ impl<'t> Guess<'t> {
         usize::from(self.output.is_none()) + usize::from(!self.has_inputs())
     }
 
-    fn see(&self) -> Vec<(&'t String, Option<Seen>)> {
+    fn see(&self) -> Vec<(&'t String, Option<ValueStatistics>)> {
         let see = |name: &&'t String| {
-            let seen = numbers(self.table, name).map(|values| Seen::of(&values, &self.records));
+            let seen = numbers(self.table, name).map(|values| ValueStatistics::of(&values, &self.records));
             (*name, seen)
         };
         self.free.iter().map(see).collect()
     }
 
-    fn find_time(&mut self, seen: &[(&'t String, Option<Seen>)]) {
+    fn find_time(&mut self, seen: &[(&'t String, Option<ValueStatistics>)]) {
         for (name, seen) in seen {
             let Some(seen) = seen else { continue };
             let is_named = unit::may_be_time(name);
             let is_time = match seen.running {
-                Running::Strictly => {
+                TimeCheck::Strictly => {
                     is_named || self.is_first_nameless(name) && seen.course != Course::Counts
                 }
-                Running::WithEqualStamps => is_named,
-                Running::Falls | Running::No => false,
+                TimeCheck::WithEqualStamps => is_named,
+                TimeCheck::Falls | TimeCheck::No => false,
             };
             let is_free = !self.no_time && self.time.is_none();
             match (is_time, is_free) {
@@ -154,8 +154,8 @@ impl<'t> Guess<'t> {
 
     /// Sets aside, the surest first, what is no input and no output, as long as there is more than what is needed. Gives
     /// the weakest reason.
-    fn set_aside_what_accompanies(&mut self, seen: &[(&'t String, Option<Seen>)]) -> Option<Rank> {
-        let mut doubts: Vec<Doubt<'t>> = Vec::new();
+    fn set_aside_what_accompanies(&mut self, seen: &[(&'t String, Option<ValueStatistics>)]) -> Option<Rank> {
+        let mut doubts: Vec<DoubtfulColumn<'t>> = Vec::new();
         for (name, seen) in seen.iter().filter(|(name, _)| self.free.contains(name)) {
             doubts.extend(self.doubt(name, *seen));
         }
@@ -171,10 +171,11 @@ impl<'t> Guess<'t> {
         weakest
     }
 
-    fn doubt(&self, name: &'t String, seen: Option<Seen>) -> Option<Doubt<'t>> {
-        let kind = Kind::of(name);
-        let doubt =
-            |rank: Rank, reason: &str| Some(Doubt { name, rank, reason: reason.into(), divides: false });
+    fn doubt(&self, name: &'t String, seen: Option<ValueStatistics>) -> Option<DoubtfulColumn<'t>> {
+        let kind = ColumnKind::of(name);
+        let doubt = |rank: Rank, reason: &str| {
+            Some(DoubtfulColumn { name, rank, reason: reason.into(), divides: false })
+        };
         let by_name = |rank: Rank| doubt(rank, kind.accompanies().unwrap_or_default());
         let Some(seen) = seen else {
             let is_time = unit::may_be_time(name) && self.time.is_none() && !self.no_time;
@@ -183,7 +184,7 @@ impl<'t> Guess<'t> {
                 if is_time { "text, and no time stamp that Hysid reads" } else { "text" },
             );
         };
-        if unit::may_be_time(name) && seen.running == Running::No && kind == Kind::Unknown {
+        if unit::may_be_time(name) && seen.running == TimeCheck::No && kind == ColumnKind::Unknown {
             return doubt(Rank::Text, "time that falls back from one row to the next");
         }
         match seen.course {
@@ -205,50 +206,57 @@ impl<'t> Guess<'t> {
             return doubt(Rank::Raw, &format!("raw, and \"{}\" is made of it", clipped(made)));
         }
         match kind {
-            Kind::Statistic => by_name(Rank::Statistic),
-            Kind::Counter if seen.may_count() => by_name(Rank::Counter),
-            Kind::Integral => by_name(Rank::Integral),
-            Kind::Derived if kind::is_rate(name) => {
+            ColumnKind::Statistic => by_name(Rank::Statistic),
+            ColumnKind::Counter if seen.may_count() => by_name(Rank::Counter),
+            ColumnKind::Integral => by_name(Rank::Integral),
+            ColumnKind::Derived if kind::is_rate(name) => {
                 doubt(Rank::Derived, "a rate, not an input (use it with --rate)")
             }
-            Kind::Derived => by_name(Rank::Derived),
-            Kind::Condition if seen.is_kept => {
+            ColumnKind::Derived => by_name(Rank::Derived),
+            ColumnKind::Condition if seen.is_kept => {
                 let divides = self.record.is_none() && self.records.len() == 1;
                 let more = if divides { ", which divide the rows into records" } else { "" };
                 let reason = format!("a condition of the test, with few values{more}");
-                Some(Doubt { name, rank: Rank::Kept, reason, divides })
+                Some(DoubtfulColumn { name, rank: Rank::Kept, reason, divides })
             }
-            Kind::Condition => by_name(Rank::Condition),
-            Kind::Unknown if seen.is_kept && self.free.iter().any(|other| Kind::of(other).drives()) => {
+            ColumnKind::Condition => by_name(Rank::Condition),
+            ColumnKind::Unknown
+                if seen.is_kept && self.free.iter().any(|other| ColumnKind::of(other).drives()) =>
+            {
                 doubt(Rank::Kept, "few values, each kept for many rows")
             }
-            Kind::Drives(Domain::Electricity)
-                if seen.is_kept && self.has(Kind::Drives(Domain::Mechanics)) =>
+            ColumnKind::Drives(Domain::Electricity)
+                if seen.is_kept && self.has(ColumnKind::Drives(Domain::Mechanics)) =>
             {
                 doubt(Rank::Kept, "few values, each kept for many rows: a condition")
             }
             // Resistance is calculated where voltage and current are there.
-            Kind::Unknown if kind::words(name).iter().any(|word| word == "resistance") => {
-                let drives = |other: &&&String| Kind::of(other) == Kind::Drives(Domain::Electricity);
+            ColumnKind::Unknown if kind::words(name).iter().any(|word| word == "resistance") => {
+                let drives =
+                    |other: &&&String| ColumnKind::of(other) == ColumnKind::Drives(Domain::Electricity);
                 if self.free.iter().filter(drives).count() < 2 {
                     return None;
                 }
                 doubt(Rank::Derived, "calculated from other columns")
             }
-            Kind::Drives(_) | Kind::Follows(_) | Kind::Excites | Kind::Unknown | Kind::Counter => None,
+            ColumnKind::Drives(_)
+            | ColumnKind::Follows(_)
+            | ColumnKind::Excites
+            | ColumnKind::Unknown
+            | ColumnKind::Counter => None,
         }
     }
 
-    fn has(&self, kind: Kind) -> bool {
-        self.free.iter().any(|name| Kind::of(name) == kind)
+    fn has(&self, kind: ColumnKind) -> bool {
+        self.free.iter().any(|name| ColumnKind::of(name) == kind)
     }
 
     /// Refuses a column that only grows, which has no hysteresis, beside others; alone, it may be what is wanted.
-    fn refuse_growing(&self, seen: &[(&'t String, Option<Seen>)]) -> Result<()> {
+    fn refuse_growing(&self, seen: &[(&'t String, Option<ValueStatistics>)]) -> Result<()> {
         if self.has_inputs() || self.free.len() <= self.needed() {
             return Ok(());
         }
-        let grows = |seen: &Seen| seen.course == Course::Grows || seen.never_falls;
+        let grows = |seen: &ValueStatistics| seen.course == Course::Grows || seen.never_falls;
         let unclear =
             seen.iter().find(|(name, seen)| self.free.contains(name) && seen.as_ref().is_some_and(grows));
         let Some((name, _)) = unclear else { return Ok(()) };
@@ -277,12 +285,12 @@ impl<'t> Guess<'t> {
     fn guess_output(&mut self, follows_the_order: bool) -> Result<()> {
         let Some(last) = self.free.last().copied() else { return Ok(()) };
         let follows: Vec<&'t String> =
-            self.free.iter().filter(|name| Kind::of(name).follows()).copied().collect();
+            self.free.iter().filter(|name| ColumnKind::of(name).follows()).copied().collect();
         let mut output = last;
         if self.free.len() > 1 {
-            match (follows.as_slice(), Kind::of(last)) {
+            match (follows.as_slice(), ColumnKind::of(last)) {
                 ([_, .., other], _)
-                    if self.has_inputs() || self.free.iter().any(|name| Kind::of(name).drives()) =>
+                    if self.has_inputs() || self.free.iter().any(|name| ColumnKind::of(name).drives()) =>
                 {
                     let words = format!(
                         "\"{}\" and \"{}\" could both be the output",
@@ -293,7 +301,8 @@ impl<'t> Guess<'t> {
                 }
                 ([one], _) if self.has_inputs() => output = one,
                 ([one], kind)
-                    if *one != last && (self.free.len() > 2 || Kind::are_swapped(Kind::of(one), kind)) =>
+                    if *one != last
+                        && (self.free.len() > 2 || ColumnKind::are_swapped(ColumnKind::of(one), kind)) =>
                 {
                     if !follows_the_order {
                         return Err(self.against_the_order(one, last));
@@ -301,7 +310,8 @@ impl<'t> Guess<'t> {
                     self.note = Some(self.order_believed(one, last));
                 }
                 ([], kind) if !self.has_inputs() => {
-                    let swapped = self.free.iter().find(|name| Kind::are_swapped(Kind::of(name), kind));
+                    let swapped =
+                        self.free.iter().find(|name| ColumnKind::are_swapped(ColumnKind::of(name), kind));
                     match swapped {
                         Some(one) if follows_the_order => self.note = Some(self.order_believed(one, last)),
                         Some(one) => return Err(self.against_the_order(one, last)),
@@ -310,7 +320,7 @@ impl<'t> Guess<'t> {
                 }
                 _ => {}
             }
-            let is_known = self.free.iter().any(|name| Kind::of(name).drives());
+            let is_known = self.free.iter().any(|name| ColumnKind::of(name).drives());
             if output == last
                 && self.free.len() > 2
                 && !(self.has_inputs() || is_known || kind::are_documented(&self.free))
@@ -355,11 +365,11 @@ impl<'t> Guess<'t> {
 
     /// Other outputs beside the one that is known are no inputs if another column is.
     fn set_aside_other_outputs(&mut self) {
-        if self.output.as_deref().is_some_and(|output| Kind::of(output).follows())
-            && self.free.iter().any(|name| Kind::of(name).drives())
+        if self.output.as_deref().is_some_and(|output| ColumnKind::of(output).follows())
+            && self.free.iter().any(|name| ColumnKind::of(name).drives())
         {
             for name in self.free.clone() {
-                if Kind::of(name).follows() {
+                if ColumnKind::of(name).follows() {
                     self.set_aside(name, "another output".into());
                 }
             }
@@ -423,15 +433,15 @@ impl<'t> Guess<'t> {
     /// Refuses several columns of one kind, and unknown ones beside a known one: they may be inputs, copies or neither.
     fn refuse_unclear_inputs(&self) -> Result<()> {
         let [first, others @ ..] = self.free.as_slice() else { return Ok(()) };
-        let known: Vec<&&String> = self.free.iter().filter(|name| Kind::of(name).drives()).collect();
+        let known: Vec<&&String> = self.free.iter().filter(|name| ColumnKind::of(name).drives()).collect();
         if others.is_empty() || known.is_empty() {
             return Ok(());
         }
         // A force over displacement and current, as of a damper with a magnetic liquid.
-        let output = self.output.as_deref().map(Kind::of);
-        let is_damper = output == Some(Kind::Follows(Domain::Mechanics))
-            && self.has(Kind::Drives(Domain::Mechanics))
-            && self.has(Kind::Drives(Domain::Electricity))
+        let output = self.output.as_deref().map(ColumnKind::of);
+        let is_damper = output == Some(ColumnKind::Follows(Domain::Mechanics))
+            && self.has(ColumnKind::Drives(Domain::Mechanics))
+            && self.has(ColumnKind::Drives(Domain::Electricity))
             && self.free.len() == 2;
         if is_damper {
             return Ok(());
@@ -446,8 +456,8 @@ impl<'t> Guess<'t> {
 
     /// The input of the output's own branch of physics is the hysteretic one.
     fn put_the_main_input_first(&mut self) {
-        let Some(Kind::Follows(domain)) = self.output.as_deref().map(Kind::of) else { return };
-        self.free.sort_by_key(|name| Kind::of(name) != Kind::Drives(domain));
+        let Some(ColumnKind::Follows(domain)) = self.output.as_deref().map(ColumnKind::of) else { return };
+        self.free.sort_by_key(|name| ColumnKind::of(name) != ColumnKind::Drives(domain));
     }
 
     /// Refuses an input or output that only accompanies by its name if others like it, or weaker ones, were set aside.
@@ -456,14 +466,15 @@ impl<'t> Guess<'t> {
             return Ok(());
         }
         let used = self.free.iter().copied().chain(self.output.as_ref().filter(|_| self.needed() == 1));
-        let doubtful = used.filter(|name| Kind::of(name).accompanies().is_some()).collect::<Vec<_>>();
+        let doubtful = used.filter(|name| ColumnKind::of(name).accompanies().is_some()).collect::<Vec<_>>();
         if let Some(name) = doubtful.first() {
             return Err(self.question(&format!("\"{}\" is no sure input or output", clipped(name))));
         }
         // A field of few values beside a temperature that varies: which one drives?
         if let [input] = self.free.as_slice()
             && weakest == Some(Rank::Condition)
-            && numbers(self.table, input).is_some_and(|values| Seen::of(&values, &self.records).is_kept)
+            && numbers(self.table, input)
+                .is_some_and(|values| ValueStatistics::of(&values, &self.records).is_kept)
         {
             return Err(
                 self.question(&format!("\"{}\" keeps few values, and a condition varies", clipped(input)))
@@ -477,24 +488,25 @@ impl<'t> Guess<'t> {
         let ([input], Some(output)) = (self.free.as_slice(), &self.output) else { return Ok(()) };
         let set_aside = || self.set_aside.iter().map(|(name, _)| name);
         // A capacity, a temperature or hours beside voltage and current: a cell, which the current drives.
-        let is_of_cell = |name: &String| matches!(Kind::of(name), Kind::Integral | Kind::Condition);
+        let is_of_cell =
+            |name: &String| matches!(ColumnKind::of(name), ColumnKind::Integral | ColumnKind::Condition);
         let takes_long = || {
             self.time
                 .as_deref()
                 .is_some_and(|time| matches!(unit::split(time).1.as_deref(), Some("h" | "hr" | "d")))
         };
         if kind::is_current(output)
-            && Kind::of(input) == Kind::Drives(Domain::Electricity)
+            && ColumnKind::of(input) == ColumnKind::Drives(Domain::Electricity)
             && (set_aside().any(is_of_cell) || takes_long())
         {
             return Err(self.against_the_order(input, output));
         }
         let changes_much = |name: &&String| {
-            Kind::of(name) == Kind::Condition
+            ColumnKind::of(name) == ColumnKind::Condition
                 && numbers(self.table, name).is_some_and(|values| values::span(&values) > MOST_DRIFT)
                 && self.condition.as_ref() != Some(name)
         };
-        if let (false, Some(name)) = (Kind::of(output).follows(), set_aside().find(changes_much)) {
+        if let (false, Some(name)) = (ColumnKind::of(output).follows(), set_aside().find(changes_much)) {
             return Err(self.question(&format!(
                 "\"{}\" and \"{}\" could both be the input",
                 clipped(name),
@@ -504,7 +516,7 @@ impl<'t> Guess<'t> {
         Ok(())
     }
 
-    /// A question, with the options that answer it.
+    /// A question, with the options that decide it.
     fn question(&self, words: &str) -> anyhow::Error {
         anyhow!("{}: {words}: name input and output{}", self.table.file, self.columns())
     }
@@ -512,8 +524,8 @@ impl<'t> Guess<'t> {
     /// Options that name likely columns, ready to be pasted, or all columns.
     fn columns(&self) -> String {
         let free = || self.free.iter().copied();
-        let input = self.inputs.first().or(free().find(|name| Kind::of(name).drives()));
-        let output = self.output.as_ref().or(free().rfind(|name| Kind::of(name).follows()));
+        let input = self.inputs.first().or(free().find(|name| ColumnKind::of(name).drives()));
+        let output = self.output.as_ref().or(free().rfind(|name| ColumnKind::of(name).follows()));
         match (input, output) {
             (Some(input), Some(output)) if input != output => {
                 format!(", for instance {} {}", option("input", input), option("output", output))

@@ -1,12 +1,12 @@
 //! Meaning of a column by its name and unit, as machines and loggers write them: what drives, what follows, and what
 //! only accompanies a test. Words are those of a name, lower case, cut at blanks, signs, digits and capitals.
 
-use hysid_core::data::part::{Domain, Part};
 use hysid_core::data::unit;
+use hysid_core::data::usual_role::{Domain, UsualRole};
 
 /// Meaning of a column by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ColumnKind {
     /// An input.
     Drives(Domain),
     /// An output.
@@ -59,7 +59,7 @@ const DERIVED: &str = "power stiffness damping modulus permeability efficiency c
 const STATISTICS: &str = "std stdev stddev stderr err error sigma uncertainty deviation dev quality fit chi status state flag \
     range gain harmonic overload valid averages averaging offset limit mode";
 
-/// Words of inputs, beside those of [`Part::of`].
+/// Words of inputs, beside those of [`UsualRole::of`].
 const DRIVES: &[(Domain, &str)] = &[
     (
         Domain::Mechanics,
@@ -70,7 +70,7 @@ const DRIVES: &[(Domain, &str)] = &[
     (Domain::Electricity, "volt volts voltage volta vg vgs vgate vds bias spannung напряжение tension"),
 ];
 
-/// Words of outputs, beside those of [`Part::of`].
+/// Words of outputs, beside those of [`UsualRole::of`].
 const FOLLOWS: &[(Domain, &str)] = &[
     (
         Domain::Mechanics,
@@ -89,7 +89,7 @@ const RAW: [&str; 5] = ["raw", "uncorrected", "unfiltered", "uncalibrated", "roh
 const MADE: [&str; 8] =
     ["adjusted", "corrected", "filtered", "calibrated", "smoothed", "processed", "adj", "corr"];
 
-impl Kind {
+impl ColumnKind {
     /// The meaning of a column of this name.
     pub fn of(name: &str) -> Self {
         // A column that `hysid simulate` added.
@@ -156,11 +156,11 @@ impl Kind {
         }
         // A charge is a load in French; its unit decides.
         let quantity_or_unit = if has("charge") && unit.is_some() { "q" } else { quantity };
-        match Part::of(&name_of(quantity_or_unit, unit)) {
-            Some(Part::Drives(domain)) => return Some(Self::Drives(domain)),
-            Some(Part::Follows(domain)) => return Some(Self::Follows(domain)),
-            Some(Part::Excites) => return Some(Self::Excites),
-            Some(Part::Accompanies) => return Some(Self::Condition),
+        match UsualRole::of(&name_of(quantity_or_unit, unit)) {
+            Some(UsualRole::Drives(domain)) => return Some(Self::Drives(domain)),
+            Some(UsualRole::Follows(domain)) => return Some(Self::Follows(domain)),
+            Some(UsualRole::Excites) => return Some(Self::Excites),
+            Some(UsualRole::Accompanies) => return Some(Self::Condition),
             None => {}
         }
         let named =
@@ -204,12 +204,12 @@ impl Kind {
     /// True if these meanings of an input and an output are interchanged.
     pub fn are_swapped(input: Self, output: Self) -> bool {
         let part = |kind| match kind {
-            Self::Drives(domain) => Some(Part::Drives(domain)),
-            Self::Follows(domain) => Some(Part::Follows(domain)),
-            Self::Excites => Some(Part::Excites),
+            Self::Drives(domain) => Some(UsualRole::Drives(domain)),
+            Self::Follows(domain) => Some(UsualRole::Follows(domain)),
+            Self::Excites => Some(UsualRole::Excites),
             _ => None,
         };
-        Part::are_swapped(part(input), part(output))
+        UsualRole::are_swapped(part(input), part(output))
     }
 }
 
@@ -299,38 +299,38 @@ mod tests {
         use Domain::{Electricity, Magnetism, Mechanics};
         for (kind, names) in [
             (
-                Kind::Drives(Mechanics),
+                ColumnKind::Drives(Mechanics),
                 "Axial Displacement (mm); disp1; Crosshead [mm]; LVDT 2; x_mm; Strain1; Matric Suction (kPa)",
             ),
             (
-                Kind::Drives(Magnetism),
+                ColumnKind::Drives(Magnetism),
                 "Magnetic Field (Oe); Field (T); H; mu0H (T); Adjusted Field; H_A_per_m; AppliedField",
             ),
             (
-                Kind::Drives(Electricity),
+                ColumnKind::Drives(Electricity),
                 "Electric Field (kV/cm); Drive Voltage (V); current; I [A]; Vg; E (V/m)",
             ),
-            (Kind::Follows(Mechanics), "Axial Force (kN); Load1; Stress (MPa); BaseShear; F_N; F"),
+            (ColumnKind::Follows(Mechanics), "Axial Force (kN); Load1; Stress (MPa); BaseShear; F_N; F"),
             (
-                Kind::Follows(Magnetism),
+                ColumnKind::Follows(Magnetism),
                 "Moment (emu); Magnetization (A/m); M (emu/g); DC Moment Free Ctr (emu); B_T; Kerr",
             ),
-            (Kind::Follows(Electricity), "Polarization (uC/cm2); Charge (nC); P"),
-            (Kind::Condition, "Temperature (K); T (°C); Frequency (Hz); RH; Sample Temp"),
+            (ColumnKind::Follows(Electricity), "Polarization (uC/cm2); Charge (nC); P"),
+            (ColumnKind::Condition, "Temperature (K); T (°C); Frequency (Hz); RH; Sample Temp"),
             (
-                Kind::Counter,
+                ColumnKind::Counter,
                 "Cycle Count; Cycle_Index; Step; StepNo; Segment #; Axial Counts (segments); Data_Point; TC_Counter; N. cycles",
             ),
             (
-                Kind::Integral,
+                ColumnKind::Integral,
                 "chgAh; Charge_Capacity(Ah); Discharge Capacity [mAh]; Energy (J); Q (mAh/g); Dissipated Energy",
             ),
-            (Kind::Derived, "dV/dt(V/s); Velocity (mm/s); Power [W]; Storage Modulus (MPa); dQ/dV"),
-            (Kind::Statistic, "M. Std. Err. (emu); Range; Status; Moment Quality; Field error"),
-            (Kind::Unknown, "x; y; u; foo; Bridge A"),
+            (ColumnKind::Derived, "dV/dt(V/s); Velocity (mm/s); Power [W]; Storage Modulus (MPa); dQ/dV"),
+            (ColumnKind::Statistic, "M. Std. Err. (emu); Range; Status; Moment Quality; Field error"),
+            (ColumnKind::Unknown, "x; y; u; foo; Bridge A"),
         ] {
             for name in names.split("; ") {
-                assert_eq!(Kind::of(name), kind, "{name}");
+                assert_eq!(ColumnKind::of(name), kind, "{name}");
             }
         }
     }

@@ -1,4 +1,4 @@
-//! What the values of a column tell of its role: time grows, a counter counts, a condition keeps few values for long.
+//! Roles of columns from their values: time grows, a counter counts, a condition keeps few values for long.
 
 use std::ops::Range;
 
@@ -23,13 +23,13 @@ const HELD: f64 = 0.03;
 /// Share of a record's duration within which time starts again where the record began.
 const SAME_BEGINNING: f64 = 0.02;
 
-/// What the values of a column are like.
+/// Statistics of a column's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Seen {
+pub struct ValueStatistics {
     /// How they change from row to row.
     pub course: Course,
     /// Whether they may be time stamps.
-    pub running: Running,
+    pub running: TimeCheck,
     /// None is smaller than the one before.
     pub never_falls: bool,
     /// All are multiples of one half.
@@ -40,7 +40,7 @@ pub struct Seen {
     pub is_held: bool,
 }
 
-impl Seen {
+impl ValueStatistics {
     /// Of the values of a column, in records.
     pub fn of(values: &[f64], records: &[Range<usize>]) -> Self {
         let parts: Vec<&[f64]> = records.iter().map(|rows| &values[rows.clone()]).collect();
@@ -48,7 +48,7 @@ impl Seen {
         let course = Course::of(parts.iter().copied());
         Self {
             course,
-            running: Running::of(&parts),
+            running: TimeCheck::of(&parts),
             never_falls: course != Course::Constant && values.len() >= 10 && steps().all(|step| step >= 0.0),
             is_whole: values.iter().all(|value| (2.0 * value).fract() == 0.0),
             is_kept: is_kept(values, &parts),
@@ -80,7 +80,7 @@ pub fn numbers(table: &Table, name: &str) -> Option<Vec<f64>> {
 
 /// Whether values may be time stamps: they grow, and may start again where a record begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Running {
+pub enum TimeCheck {
     /// Every value is larger than the one before.
     Strictly,
     /// Some are equal to the one before, as of a clock of few digits.
@@ -91,7 +91,7 @@ pub enum Running {
     No,
 }
 
-impl Running {
+impl TimeCheck {
     fn of(records: &[&[f64]]) -> Self {
         let (mut equal, mut rises, mut falls) = (0, 0, 0);
         for values in records {
@@ -201,9 +201,9 @@ mod tests {
 
     use super::*;
 
-    fn seen(value: impl Fn(f64) -> f64, rows: u32) -> Seen {
+    fn seen(value: impl Fn(f64) -> f64, rows: u32) -> ValueStatistics {
         let values: Vec<f64> = (0..rows).map(|k| value(f64::from(k))).collect();
-        Seen::of(&values, std::slice::from_ref(&(0..values.len())))
+        ValueStatistics::of(&values, std::slice::from_ref(&(0..values.len())))
     }
 
     /// A sequence between -1 and 1 that turns as noise does.
@@ -213,18 +213,18 @@ mod tests {
 
     #[test]
     fn what_falls_is_no_time() {
-        assert_eq!(seen(|k| 0.1 * k, 100).running, Running::Strictly);
-        assert_eq!(seen(|k| (0.1 * k).floor(), 100).running, Running::WithEqualStamps);
-        assert_eq!(seen(|k| k % 25.0, 100).running, Running::Strictly, "records");
-        assert_eq!(seen(|k| (k - 40.0).abs(), 81).running, Running::Falls, "a field from its maximum");
-        assert_eq!(seen(|k| 40.0 - (k - 40.0).abs(), 81).running, Running::Falls, "a field from 0");
-        assert_eq!(seen(|k| -k, 81).running, Running::Falls);
+        assert_eq!(seen(|k| 0.1 * k, 100).running, TimeCheck::Strictly);
+        assert_eq!(seen(|k| (0.1 * k).floor(), 100).running, TimeCheck::WithEqualStamps);
+        assert_eq!(seen(|k| k % 25.0, 100).running, TimeCheck::Strictly, "records");
+        assert_eq!(seen(|k| (k - 40.0).abs(), 81).running, TimeCheck::Falls, "a field from its maximum");
+        assert_eq!(seen(|k| 40.0 - (k - 40.0).abs(), 81).running, TimeCheck::Falls, "a field from 0");
+        assert_eq!(seen(|k| -k, 81).running, TimeCheck::Falls);
         // Reversal curves begin at other fields, and end at one.
         let curves = |k: f64| {
             let (curve, place) = ((k / 20.0).floor(), k % 20.0);
             100.0 - 10.0 * (curve + 1.0) * (1.0 - place / 19.0)
         };
-        assert_ne!(seen(curves, 200).running, Running::Strictly);
+        assert_ne!(seen(curves, 200).running, TimeCheck::Strictly);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What a file of some length may become: a small one may claim any size, and compression gives a thousandfold.
+//! Limits on the unpacked size of a file: a small one may claim any size, and compression gives a thousandfold.
 
 use std::cell::Cell;
 use std::io::{self, Read};
@@ -20,20 +20,20 @@ const FREE_NUMBERS: u64 = 1 << 20;
 const FREE_TIME: Duration = Duration::from_secs(10);
 const TIME_PER_MEGABYTE: Duration = Duration::from_secs(2);
 
-/// What is said of a file whose content is not as its format asks.
+/// Message on a file whose content violates its format.
 pub const DAMAGED: &str = "it is damaged or cut off";
 
 /// Name of the threads that run libraries. What panics there is an error of the file.
 pub const THREAD: &str = "hysid-container";
 
-/// What a file of some length may become.
+/// Bytes and cells that a file may unpack to, by its length.
 #[derive(Debug, Clone, Copy)]
 pub struct Budget {
     length: u64,
 }
 
 impl Budget {
-    /// Of a file with so many bytes.
+    /// Budget of a file with `length` bytes.
     pub fn of(length: usize) -> Self {
         Self { length: length as u64 }
     }
@@ -89,7 +89,7 @@ impl Budget {
     }
 }
 
-/// What is said of a file that unpacks to more than its budget.
+/// Message on a file that unpacks to more than its budget.
 pub fn too_much() -> String {
     format!(
         "it unpacks to more than {BYTES_PER_BYTE} times its size, and {} MB are free: unpack it beforehand, or save it as CSV",
@@ -98,28 +98,28 @@ pub fn too_much() -> String {
 }
 
 /// Counts the bytes that a reader gives.
-pub struct Counted {
+pub struct CountingReader {
     reader: Box<dyn Read>,
     count: Rc<Cell<u64>>,
 }
 
 /// A reader that unpacks, within the budget of what was read so far.
-pub struct Unpacking<R> {
+pub struct UnpackingReader<R> {
     reader: R,
     packed: Rc<Cell<u64>>,
     unpacked: u64,
 }
 
-impl<R: Read> Unpacking<R> {
+impl<R: Read> UnpackingReader<R> {
     /// `unpack` makes the reader that unpacks.
-    pub fn of(packed: Box<dyn Read>, unpack: impl FnOnce(Counted) -> R) -> Self {
+    pub fn of(packed: Box<dyn Read>, unpack: impl FnOnce(CountingReader) -> R) -> Self {
         let count = Rc::new(Cell::new(0));
-        let reader = unpack(Counted { reader: packed, count: Rc::clone(&count) });
+        let reader = unpack(CountingReader { reader: packed, count: Rc::clone(&count) });
         Self { reader, packed: count, unpacked: 0 }
     }
 }
 
-impl Read for Counted {
+impl Read for CountingReader {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.reader.read(buffer)?;
         self.count.set(self.count.get() + read as u64);
@@ -127,7 +127,7 @@ impl Read for Counted {
     }
 }
 
-impl<R: Read> Read for Unpacking<R> {
+impl<R: Read> Read for UnpackingReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.reader.read(buffer)?;
         self.unpacked += read as u64;
@@ -155,7 +155,7 @@ mod tests {
         let most = Budget::of(0).bytes() as usize;
         assert_eq!(Budget::of(0).unpacked(io::repeat(0).take(most as u64)).unwrap().len(), most);
         assert!(Budget::of(0).unpacked(io::repeat(0)).unwrap_err().contains("50 times"));
-        let mut endless = Unpacking::of(Box::new(io::empty()), |_| io::repeat(7));
+        let mut endless = UnpackingReader::of(Box::new(io::empty()), |_| io::repeat(7));
         let error = io::copy(&mut endless, &mut io::sink()).unwrap_err();
         assert!(error.to_string().contains("50 times"), "{error}");
     }

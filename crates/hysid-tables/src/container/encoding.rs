@@ -6,9 +6,9 @@ use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
 use encoding_rs::{Encoding as Standard, UTF_8, UTF_16BE, UTF_16LE};
 use encoding_rs_io::DecodeReaderBytesBuilder;
 
-use crate::reading::Encoding;
+use crate::reading::TextEncoding;
 
-/// The encoding that a byte order mark tells, or the zeros of UTF-16 without a mark.
+/// The encoding by the byte order mark, or by the zeros of UTF-16 without a mark.
 pub fn of_marked_text(first: &[u8]) -> Option<&'static Standard> {
     if let Some((encoding, _)) = Standard::for_bom(first) {
         return Some(encoding);
@@ -25,14 +25,14 @@ pub fn of_marked_text(first: &[u8]) -> Option<&'static Standard> {
 }
 
 /// The text in UTF-8 without a mark, and the name of its encoding. Text in UTF-8 is not looked through: a byte that is
-/// no text is found where its row is read, which tells the line.
+/// no text is found where its row is read, which gives the line.
 pub fn decoded(
     reader: Box<dyn Read>,
     first: &[u8],
-    chosen: Option<Encoding>,
+    chosen: Option<TextEncoding>,
 ) -> (Box<dyn Read>, &'static str) {
     let encoding = match chosen {
-        Some(Encoding(encoding)) => encoding,
+        Some(TextEncoding(encoding)) => encoding,
         None => of_marked_text(first).unwrap_or_else(|| guessed(first)),
     };
     let mark = first.starts_with(b"\xef\xbb\xbf");

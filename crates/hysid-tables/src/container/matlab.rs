@@ -22,12 +22,12 @@ fn is_hdf5(first: &[u8]) -> bool {
 }
 
 /// A numeric variable: its name and its columns.
-struct Variable {
+struct MatVariable {
     name: String,
     columns: Vec<Vec<f64>>,
 }
 
-impl Variable {
+impl MatVariable {
     /// From values column by column; `None` for what is no column of a table.
     fn new(name: String, sizes: &[usize], values: Vec<f64>) -> Option<Self> {
         let [rows, columns] = sizes else { return None };
@@ -85,14 +85,14 @@ fn text_within(budget: Budget, bytes: Vec<u8>, chosen: Option<&str>) -> Result<(
     Ok((lines(&variables), format!("{kind}, {}", names_of(&variables))))
 }
 
-fn names_of(variables: &[Variable]) -> String {
+fn names_of(variables: &[MatVariable]) -> String {
     match variables {
         [one] => format!("variable {}", one.name),
         several => format!("{} variables", several.len()),
     }
 }
 
-fn lines(variables: &[Variable]) -> String {
+fn lines(variables: &[MatVariable]) -> String {
     let mut text = String::new();
     let columns: Vec<(String, &Vec<f64>)> = variables.iter().flat_map(columns_of).collect();
     for (place, (name, _)) in columns.iter().enumerate() {
@@ -113,7 +113,7 @@ fn lines(variables: &[Variable]) -> String {
 }
 
 /// The last part of a name says what it is; a matrix has numbered columns.
-fn columns_of(variable: &Variable) -> Vec<(String, &Vec<f64>)> {
+fn columns_of(variable: &MatVariable) -> Vec<(String, &Vec<f64>)> {
     let name = variable.name.rsplit('.').next().unwrap_or_default();
     match variable.columns.as_slice() {
         [one] => vec![(name.to_string(), one)],
@@ -125,7 +125,7 @@ fn columns_of(variable: &Variable) -> Vec<(String, &Vec<f64>)> {
 
 const NUMBERS_PER_GROUP: u64 = 1000;
 
-fn of_hdf5(bytes: Vec<u8>, budget: Budget) -> Result<Vec<Variable>, String> {
+fn of_hdf5(bytes: Vec<u8>, budget: Budget) -> Result<Vec<MatVariable>, String> {
     let most = usize::try_from(8 * budget.numbers()).unwrap_or(usize::MAX);
     let options = OpenOptions::default().with_max_read_bytes(most);
     let file = Hdf5File::from_vec_with_options(bytes, options).map_err(words)?;
@@ -144,7 +144,7 @@ fn collect_group(
     group: &Group,
     depth: usize,
     left: &mut u64,
-    found: &mut Vec<Variable>,
+    found: &mut Vec<MatVariable>,
 ) -> Result<(), String> {
     let (groups, datasets) = group.members().map_err(words)?;
     // Groups may lie in each other.
@@ -158,7 +158,7 @@ fn collect_group(
             // MATLAB writes its columns as the rows of HDF5.
             let mut sizes: Vec<usize> = dataset.shape().iter().map(|&size| size as usize).collect();
             sizes.reverse();
-            found.extend(Variable::new(format!("{path}{}", dataset.name()), &sizes, values));
+            found.extend(MatVariable::new(format!("{path}{}", dataset.name()), &sizes, values));
         }
     }
     // What MATLAB needs for itself begins with a number sign.

@@ -33,8 +33,8 @@ pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<Sheet, String> {
         }
         let (bytes, kind) = archive::checked(&bytes)?;
         match kind {
-            archive::Kind::Excel => sheet::<Xlsx<_>, _>(bytes, chosen.as_deref()),
-            archive::Kind::OpenDocument => sheet::<Ods<_>, _>(bytes, chosen.as_deref()),
+            archive::SpreadsheetKind::Excel => sheet::<Xlsx<_>, _>(bytes, chosen.as_deref()),
+            archive::SpreadsheetKind::OpenDocument => sheet::<Ods<_>, _>(bytes, chosen.as_deref()),
         }
     })
 }
@@ -42,7 +42,7 @@ pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<Sheet, String> {
 /// The text of a sheet, its name, and the names of the others.
 pub type Sheet = (String, String, Vec<String>);
 
-/// As [`text`], of a file that asks for no more than it holds.
+/// As [`text`], of a file whose declared sizes do not exceed its content.
 fn sheet<R, E>(bytes: Vec<u8>, chosen: Option<&str>) -> Result<Sheet, String>
 where
     R: Reader<Cursor<Vec<u8>>, Error = E>,

@@ -8,18 +8,18 @@ use crate::number::{self, NumberProblem};
 use crate::reading::Delimiter;
 use crate::stamp::Stamp;
 
-/// A cell of a line.
+/// Text of a cell, without its quotation marks.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cell<'t> {
+pub struct LineCell<'t> {
     /// Without quotation marks.
     pub text: Cow<'t, str>,
     /// It stands in quotation marks.
     pub is_quoted: bool,
 }
 
-/// What a cell is.
+/// Kind of a cell's content.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Kind {
+pub enum CellKind {
     /// Empty, or a word for a missing value.
     Missing,
     /// A number, perhaps with a unit behind it.
@@ -30,18 +30,18 @@ pub enum Kind {
     Text,
 }
 
-impl Cell<'_> {
-    /// What the cell is.
-    pub fn kind(&self) -> Kind {
+impl LineCell<'_> {
+    /// Classifies the content.
+    pub fn kind(&self) -> CellKind {
         let text = self.text.trim();
         if number::is_missing(text) {
-            return Kind::Missing;
+            return CellKind::Missing;
         }
         let (digits, unit) = bare(text);
         match number::parsed(digits, None) {
-            Ok(_) | Err(NumberProblem::TooLarge) => Kind::Number(unit.map(String::from)),
-            Err(_) if Stamp::of(text).is_some() => Kind::Stamp,
-            Err(_) => Kind::Text,
+            Ok(_) | Err(NumberProblem::TooLarge) => CellKind::Number(unit.map(String::from)),
+            Err(_) if Stamp::of(text).is_some() => CellKind::Stamp,
+            Err(_) => CellKind::Text,
         }
     }
 }
@@ -57,7 +57,7 @@ pub fn bare(text: &str) -> (&str, Option<&str>) {
     }
 }
 
-pub fn split(line: &str, delimiter: Delimiter) -> Vec<Cell<'_>> {
+pub fn split(line: &str, delimiter: Delimiter) -> Vec<LineCell<'_>> {
     let mut cells = Vec::new();
     let is_end = |letter: char| match delimiter {
         Delimiter::Character(character) => letter == char::from(character),
@@ -67,10 +67,10 @@ pub fn split(line: &str, delimiter: Delimiter) -> Vec<Cell<'_>> {
     let mut rest = if is_blanks { line.trim_matches([' ', '\t']) } else { line };
     loop {
         let (cell, length) = match rest.strip_prefix('"').and_then(|inner| quoted(inner, is_end)) {
-            Some((text, length)) => (Cell { text, is_quoted: true }, length + 1),
+            Some((text, length)) => (LineCell { text, is_quoted: true }, length + 1),
             None => {
                 let length = rest.find(is_end).unwrap_or(rest.len());
-                (Cell { text: rest[..length].into(), is_quoted: false }, length)
+                (LineCell { text: rest[..length].into(), is_quoted: false }, length)
             }
         };
         cells.push(cell);
@@ -120,16 +120,16 @@ mod tests {
 
     #[test]
     fn cells_are_numbers_stamps_or_text() {
-        let kind = |text: &str| Cell { text: text.into(), is_quoted: false }.kind();
-        assert_eq!(kind("-1,5"), Kind::Number(None));
-        assert_eq!(kind(" 12.5 kN "), Kind::Number(Some("kN".into())));
-        assert_eq!(kind("3°"), Kind::Number(Some("°".into())));
-        assert_eq!(kind("20 °C"), Kind::Number(Some("°C".into())));
-        assert_eq!(kind("#N/A"), Kind::Missing);
-        assert_eq!(kind("12:00:00"), Kind::Stamp);
-        assert_eq!(kind("2024-03-01"), Kind::Stamp);
+        let kind = |text: &str| LineCell { text: text.into(), is_quoted: false }.kind();
+        assert_eq!(kind("-1,5"), CellKind::Number(None));
+        assert_eq!(kind(" 12.5 kN "), CellKind::Number(Some("kN".into())));
+        assert_eq!(kind("3°"), CellKind::Number(Some("°".into())));
+        assert_eq!(kind("20 °C"), CellKind::Number(Some("°C".into())));
+        assert_eq!(kind("#N/A"), CellKind::Missing);
+        assert_eq!(kind("12:00:00"), CellKind::Stamp);
+        assert_eq!(kind("2024-03-01"), CellKind::Stamp);
         for text in ["force", "1.2.3", "5 apples", "mm"] {
-            assert_eq!(kind(text), Kind::Text, "{text}");
+            assert_eq!(kind(text), CellKind::Text, "{text}");
         }
     }
 }

@@ -5,10 +5,10 @@ use std::collections::{HashMap, HashSet};
 use anyhow::{Result, bail};
 use hysid_core::data::unit;
 
-use super::cells::{Cell, Kind, split};
+use super::cells::{CellKind, LineCell, split};
 use super::cells_and_names;
-use super::lines::Line;
-use super::run::Run;
+use super::lines::TextLine;
+use super::run::LineRun;
 use crate::number::is_missing;
 use crate::reading::Delimiter;
 
@@ -32,7 +32,7 @@ pub struct Header {
 }
 
 /// A line above the rows.
-struct Row {
+struct HeaderLine {
     line: u64,
     cells: Vec<String>,
 }
@@ -47,8 +47,8 @@ impl Header {
     ///
     /// # Errors
     /// Names that do not fit the rows.
-    pub fn above(file: &str, lines: &[Line<'_>], run: &Run, has_units: bool) -> Result<Self> {
-        let mut rows: Vec<Row> = Vec::new();
+    pub fn above(file: &str, lines: &[TextLine<'_>], run: &LineRun, has_units: bool) -> Result<Self> {
+        let mut rows: Vec<HeaderLine> = Vec::new();
         for (place, line) in lines[..run.lines.start].iter().enumerate().rev() {
             if line.is_blank() && rows.is_empty() {
                 continue;
@@ -59,12 +59,12 @@ impl Header {
             }
             let cells = split(line.content(), run.delimiter);
             match row(line, &cells, run, is_first(lines, place)) {
-                Fit::Row(row) => rows.push(row),
-                Fit::Nothing => break,
-                Fit::OtherWidth if rows.is_empty() && !line.is_comment && is_first(lines, place) => {
+                HeaderFit::Row(row) => rows.push(row),
+                HeaderFit::Nothing => break,
+                HeaderFit::OtherWidth if rows.is_empty() && !line.is_comment && is_first(lines, place) => {
                     return Err(other_width(file, line, &cells, run, &lines[run.lines.start]));
                 }
-                Fit::OtherWidth => break,
+                HeaderFit::OtherWidth => break,
             }
         }
         if rows.is_empty() && is_quoted_header(lines, run) {
@@ -77,7 +77,7 @@ impl Header {
         Ok(Self::of(rows, run.width, has_units))
     }
 
-    fn of(mut rows: Vec<Row>, width: usize, has_units: bool) -> Self {
+    fn of(mut rows: Vec<HeaderLine>, width: usize, has_units: bool) -> Self {
         if rows.is_empty() {
             return Self::none(width);
         }
@@ -107,14 +107,14 @@ impl Header {
 }
 
 /// Whether a line belongs to the header.
-enum Fit {
-    Row(Row),
+enum HeaderFit {
+    Row(HeaderLine),
     /// It has names, but not as many as the rows have cells.
     OtherWidth,
     Nothing,
 }
 
-fn row(line: &Line<'_>, cells: &[Cell<'_>], run: &Run, is_first: bool) -> Fit {
+fn row(line: &TextLine<'_>, cells: &[LineCell<'_>], run: &LineRun, is_first: bool) -> HeaderFit {
     let mut texts: Vec<String> = cells.iter().map(|cell| cell.text.trim().to_string()).collect();
     let width = run.width;
     if texts.len() == width + 1 && texts.last().is_some_and(|last| is_remark(last)) {
@@ -130,7 +130,7 @@ fn row(line: &Line<'_>, cells: &[Cell<'_>], run: &Run, is_first: bool) -> Fit {
     let names = texts.iter().filter(|text| is_name(text)).count();
     if texts.len() != width {
         let is_like_names = 2 * names > texts.len() && texts.len() > 1;
-        return if is_like_names { Fit::OtherWidth } else { Fit::Nothing };
+        return if is_like_names { HeaderFit::OtherWidth } else { HeaderFit::Nothing };
     }
     // Over a column of numbers stands a name, or nothing; in the first line of a file, some names may be numbers.
     let numbers =
@@ -139,9 +139,9 @@ fn row(line: &Line<'_>, cells: &[Cell<'_>], run: &Run, is_first: bool) -> Fit {
     let numbers = numbers.count();
     let has_names = names > 0 && 2 * names >= filled && (numbers == 0 || is_first && names > numbers);
     if has_names && 2 * filled >= width {
-        Fit::Row(Row { line: line.number, cells: texts })
+        HeaderFit::Row(HeaderLine { line: line.number, cells: texts })
     } else {
-        Fit::Nothing
+        HeaderFit::Nothing
     }
 }
 
@@ -150,7 +150,10 @@ fn is_remark(name: &str) -> bool {
 }
 
 fn is_number(text: &str) -> bool {
-    matches!(Cell { text: text.into(), is_quoted: false }.kind(), Kind::Number(None) | Kind::Stamp)
+    matches!(
+        LineCell { text: text.into(), is_quoted: false }.kind(),
+        CellKind::Number(None) | CellKind::Stamp
+    )
 }
 
 fn is_name(text: &str) -> bool {
@@ -177,16 +180,16 @@ fn with_their_units(line: &str) -> Option<Vec<String>> {
 }
 
 /// The first line that is neither blank nor a comment.
-fn is_first(lines: &[Line<'_>], place: usize) -> bool {
+fn is_first(lines: &[TextLine<'_>], place: usize) -> bool {
     lines[..place].iter().all(|line| line.is_blank() || line.is_comment)
 }
 
 fn other_width(
     file: &str,
-    line: &Line<'_>,
-    cells: &[Cell<'_>],
-    run: &Run,
-    first: &Line<'_>,
+    line: &TextLine<'_>,
+    cells: &[LineCell<'_>],
+    run: &LineRun,
+    first: &TextLine<'_>,
 ) -> anyhow::Error {
     let (names, width) = (cells.len(), run.width);
     let hint = match run.delimiter {
@@ -199,7 +202,7 @@ fn other_width(
 }
 
 /// True if the first row is in quotation marks and the others are not: its numbers are names.
-fn is_quoted_header(lines: &[Line<'_>], run: &Run) -> bool {
+fn is_quoted_header(lines: &[TextLine<'_>], run: &LineRun) -> bool {
     let first = split(lines[run.lines.start].text, run.delimiter);
     first.iter().all(|cell| cell.is_quoted) && run.columns.iter().all(|column| !column.is_quoted)
 }

@@ -6,7 +6,7 @@ use super::MOST_LINES;
 const LONGEST_QUOTE: usize = 8;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Line<'t> {
+pub struct TextLine<'t> {
     /// Without its end.
     pub text: &'t str,
     /// Where it begins, in bytes.
@@ -19,7 +19,7 @@ pub struct Line<'t> {
     pub is_comment: bool,
 }
 
-impl<'t> Line<'t> {
+impl<'t> TextLine<'t> {
     /// True for a line without letters.
     pub fn is_blank(&self) -> bool {
         self.text.trim().is_empty()
@@ -38,7 +38,7 @@ impl<'t> Line<'t> {
 /// Comments that are kept: names and units stand in the first or the last of them.
 const MOST_COMMENTS: usize = 10_000;
 
-/// What comments begin with.
+/// Beginnings of comments.
 const COMMENTS: [&str; 4] = ["#", "%", "//", "!"];
 
 /// True for a line that begins like a comment.
@@ -49,7 +49,7 @@ pub fn is_comment(line: &str) -> bool {
 
 /// The first lines of a text behind those that are skipped. A last line that may go on is left out unless the text is
 /// all there is.
-pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<Line<'_>> {
+pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<TextLine<'_>> {
     let mut physical = Vec::new();
     // Comments may be of any length, and the table comes behind them.
     let (mut start, mut number, mut others, mut comments) = (0, 1, 0, 0);
@@ -82,7 +82,7 @@ pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<Line<'_>> {
             }
         }
         let content = &text[start..end];
-        lines.push(Line { text: content, start, end: next, number, is_comment: is_comment(content) });
+        lines.push(TextLine { text: content, start, end: next, number, is_comment: is_comment(content) });
     }
     lines
 }

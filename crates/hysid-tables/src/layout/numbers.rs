@@ -1,12 +1,12 @@
 //! How the numbers of a table are written: the decimal sign, and what separates thousands.
 
-use super::cells::{Kind, bare, split};
-use super::lines::Line;
-use super::run::Run;
+use super::cells::{CellKind, bare, split};
+use super::lines::TextLine;
+use super::run::LineRun;
 use crate::number::{self, DecimalSign, NumberFormat, ThousandsWatch};
 use crate::reading::Reading;
 
-/// What the user chose.
+/// Number format that the user chose.
 pub fn chosen(reading: &Reading) -> NumberFormat {
     NumberFormat {
         decimal: reading.decimal,
@@ -16,16 +16,16 @@ pub fn chosen(reading: &Reading) -> NumberFormat {
     }
 }
 
-pub fn format(lines: &[Line<'_>], run: &Run, reading: &Reading) -> NumberFormat {
+pub fn format(lines: &[TextLine<'_>], run: &LineRun, reading: &Reading) -> NumberFormat {
     let mut format = chosen(reading);
     if format.is_chosen {
         return format;
     }
-    let mut evidence = Evidence::default();
+    let mut evidence = DecimalEvidence::default();
     let mut watches = vec![ThousandsWatch::default(); run.width];
     for line in &lines[run.lines.clone()] {
         for (cell, watch) in split(line.text, run.delimiter).iter().zip(&mut watches) {
-            if let Kind::Number(_) = cell.kind() {
+            if let CellKind::Number(_) = cell.kind() {
                 let (digits, _) = bare(&cell.text);
                 watch.take(digits, line.number);
                 evidence.take(digits, line.number);
@@ -48,14 +48,14 @@ pub fn format(lines: &[Line<'_>], run: &Run, reading: &Reading) -> NumberFormat 
 
 /// Lines of the first numbers that show a decimal sign.
 #[derive(Default)]
-struct Evidence {
+struct DecimalEvidence {
     point: Option<u64>,
     comma: Option<u64>,
     /// The sign of a number that may be one with thousands.
     unclear: Option<(DecimalSign, u64)>,
 }
 
-impl Evidence {
+impl DecimalEvidence {
     fn take(&mut self, digits: &str, line: u64) {
         let Ok((_, Some(sign))) = number::parsed(digits, None) else { return };
         let may_be_thousands = number::parsed(digits, Some(sign.opposite())).is_ok();

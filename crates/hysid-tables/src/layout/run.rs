@@ -2,35 +2,35 @@
 
 use std::ops::Range;
 
-use super::cells::{Cell, Kind, split};
-use super::lines::Line;
+use super::cells::{CellKind, LineCell, split};
+use super::lines::TextLine;
 use crate::reading::Delimiter;
 
-/// A line belongs to a table if at least so many of its filled cells, in percent, are numbers.
+/// Least share of the filled cells, in percent, that are numbers in a line of a table.
 const LEAST_NUMBERS: usize = 40;
 
-/// A column has what at least so many of its filled cells, in percent, have.
+/// Least share of the filled cells, in percent, that decide the kind of a column.
 const MOST_CELLS: usize = 80;
 
 /// Lines of numbers one after another with equally many cells; blank lines and comments may stand between.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
-    /// What separates the cells.
+pub struct LineRun {
+    /// Separator of the cells.
     pub delimiter: Delimiter,
     /// Cells of a row.
     pub width: usize,
     /// From the first to the last of its lines.
     pub lines: Range<usize>,
-    pub columns: Vec<Column>,
+    pub columns: Vec<ColumnCells>,
     /// The first column counts the rows.
     pub counts: bool,
     /// The last cell of every row is empty.
     ends_empty: bool,
 }
 
-/// What the cells of a column are.
+/// Counts of the kinds of cells in a column.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Column {
+pub struct ColumnCells {
     /// Cells that are numbers, time stamps, and text.
     numbers: usize,
     stamps: usize,
@@ -41,7 +41,7 @@ pub struct Column {
     pub is_quoted: bool,
 }
 
-impl Column {
+impl ColumnCells {
     fn filled(&self) -> usize {
         self.numbers + self.stamps + self.text
     }
@@ -58,11 +58,12 @@ impl Column {
     }
 }
 
-impl Run {
+impl LineRun {
     /// All runs, from the first line to the last.
-    pub fn all(lines: &[Line<'_>], delimiter: Delimiter) -> Vec<Self> {
-        let rows: Vec<Vec<Cell<'_>>> = lines.iter().map(|line| split(line.text, delimiter)).collect();
-        let kinds: Vec<Vec<Kind>> = rows.iter().map(|cells| cells.iter().map(Cell::kind).collect()).collect();
+    pub fn all(lines: &[TextLine<'_>], delimiter: Delimiter) -> Vec<Self> {
+        let rows: Vec<Vec<LineCell<'_>>> = lines.iter().map(|line| split(line.text, delimiter)).collect();
+        let kinds: Vec<Vec<CellKind>> =
+            rows.iter().map(|cells| cells.iter().map(LineCell::kind).collect()).collect();
         let is_row = |place: usize| !lines[place].is_blank() && is_data(&kinds[place]);
         let mut runs = Vec::new();
         let mut place = 0;
@@ -107,15 +108,15 @@ impl Run {
 
     /// With the rows directly above in which too many cells are no numbers: what is wrong with them is told where they
     /// are read.
-    pub fn with_rows_above(mut self, lines: &[Line<'_>]) -> Self {
+    pub fn with_rows_above(mut self, lines: &[TextLine<'_>]) -> Self {
         for place in (1..self.lines.start).rev() {
             let line = &lines[place];
             if line.is_blank() || line.is_comment {
                 continue;
             }
             let cells = split(line.text, self.delimiter);
-            let has_number = |(cell, column): (&Cell<'_>, &Column)| {
-                column.is_numeric() && matches!(cell.kind(), Kind::Number(None) | Kind::Stamp)
+            let has_number = |(cell, column): (&LineCell<'_>, &ColumnCells)| {
+                column.is_numeric() && matches!(cell.kind(), CellKind::Number(None) | CellKind::Stamp)
             };
             if cells.len() != self.width || !cells.iter().zip(&self.columns).any(has_number) {
                 break;
@@ -132,13 +133,13 @@ impl Run {
 
     /// Rows, as far as the first column has them.
     pub fn rows(&self) -> usize {
-        self.columns.iter().map(Column::filled).max().unwrap_or(0)
+        self.columns.iter().map(ColumnCells::filled).max().unwrap_or(0)
     }
 
     /// The more numbers, and the less text among them, the better.
     pub fn score(&self) -> f64 {
         let numbers: usize = self.columns.iter().map(|column| column.numbers + column.stamps).sum();
-        let filled: usize = self.columns.iter().map(Column::filled).sum();
+        let filled: usize = self.columns.iter().map(ColumnCells::filled).sum();
         let share = numbers as f64 / filled.max(1) as f64;
         numbers as f64 * share * share
     }
@@ -154,7 +155,7 @@ impl Run {
     }
 
     /// Blanks separate only where no tab does: a date and a clock are one cell of such a table.
-    fn is_of_blanks(&self, lines: &[Line<'_>]) -> bool {
+    fn is_of_blanks(&self, lines: &[TextLine<'_>]) -> bool {
         let lines = &lines[self.lines.clone()];
         let with_tabs = lines.iter().filter(|line| line.text.trim().contains('\t')).count();
         2 * with_tabs < lines.len() || lines.iter().any(|line| !line.is_blank() && !line.text.contains('\t'))
@@ -163,13 +164,13 @@ impl Run {
 
 /// True for cells of which enough are numbers.
 pub fn is_row(cells: &[&str]) -> bool {
-    let kind = |cell: &&str| Cell { text: (*cell).into(), is_quoted: false }.kind();
+    let kind = |cell: &&str| LineCell { text: (*cell).into(), is_quoted: false }.kind();
     is_data(&cells.iter().map(kind).collect::<Vec<_>>())
 }
 
-fn is_data(kinds: &[Kind]) -> bool {
-    let numbers = kinds.iter().filter(|kind| matches!(kind, Kind::Number(_) | Kind::Stamp)).count();
-    let text = kinds.iter().filter(|kind| **kind == Kind::Text).count();
+fn is_data(kinds: &[CellKind]) -> bool {
+    let numbers = kinds.iter().filter(|kind| matches!(kind, CellKind::Number(_) | CellKind::Stamp)).count();
+    let text = kinds.iter().filter(|kind| **kind == CellKind::Text).count();
     numbers > 0 && 100 * numbers >= LEAST_NUMBERS * (numbers + text)
 }
 
@@ -180,12 +181,12 @@ struct Widths {
 }
 
 impl Widths {
-    fn of(kinds: &[Kind]) -> Self {
+    fn of(kinds: &[CellKind]) -> Self {
         Self { whole: Some(kinds.len()), trimmed: Some(trimmed(kinds)) }
     }
 
     /// Takes another line; false if it does not fit.
-    fn take(&mut self, kinds: &[Kind]) -> bool {
+    fn take(&mut self, kinds: &[CellKind]) -> bool {
         let whole = self.whole.filter(|&width| width == kinds.len());
         let trimmed = self.trimmed.filter(|&width| width == trimmed(kinds));
         let fits = whole.or(trimmed).is_some();
@@ -204,20 +205,23 @@ impl Widths {
     }
 }
 
-fn trimmed(kinds: &[Kind]) -> usize {
-    kinds.len() - usize::from(kinds.len() > 1 && kinds.last() == Some(&Kind::Missing))
+fn trimmed(kinds: &[CellKind]) -> usize {
+    kinds.len() - usize::from(kinds.len() > 1 && kinds.last() == Some(&CellKind::Missing))
 }
 
-fn columns<'r>(rows: impl Iterator<Item = (&'r Vec<Kind>, &'r Vec<Cell<'r>>)>, width: usize) -> Vec<Column> {
-    let mut columns = vec![Column { is_quoted: true, ..Column::default() }; width];
+fn columns<'r>(
+    rows: impl Iterator<Item = (&'r Vec<CellKind>, &'r Vec<LineCell<'r>>)>,
+    width: usize,
+) -> Vec<ColumnCells> {
+    let mut columns = vec![ColumnCells { is_quoted: true, ..ColumnCells::default() }; width];
     for (kinds, cells) in rows {
         for ((column, kind), cell) in columns.iter_mut().zip(kinds).zip(cells) {
-            column.is_quoted &= cell.is_quoted || *kind == Kind::Missing;
+            column.is_quoted &= cell.is_quoted || *kind == CellKind::Missing;
             match kind {
-                Kind::Missing => {}
-                Kind::Text => column.text += 1,
-                Kind::Stamp => column.stamps += 1,
-                Kind::Number(unit) => {
+                CellKind::Missing => {}
+                CellKind::Text => column.text += 1,
+                CellKind::Stamp => column.stamps += 1,
+                CellKind::Number(unit) => {
                     column.numbers += 1;
                     if let Some(unit) = unit {
                         let (first, count) = column.unit.get_or_insert_with(|| (unit.clone(), 0));
@@ -231,7 +235,7 @@ fn columns<'r>(rows: impl Iterator<Item = (&'r Vec<Kind>, &'r Vec<Cell<'r>>)>, w
 }
 
 /// True if the first cells are whole numbers, each one more than that before.
-fn counts<'r>(rows: impl Iterator<Item = &'r Vec<Cell<'r>>>) -> bool {
+fn counts<'r>(rows: impl Iterator<Item = &'r Vec<LineCell<'r>>>) -> bool {
     let first: Option<Vec<i64>> = rows.map(|cells| cells.first()?.text.trim().parse().ok()).collect();
     first.is_some_and(|first| {
         first.len() > 1 && first.windows(2).all(|pair| pair[0].checked_add(1) == Some(pair[1]))

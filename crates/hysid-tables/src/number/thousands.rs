@@ -48,14 +48,14 @@ impl ThousandsWatch {
         }
     }
 
-    /// What separates thousands in the column; `None` where they are not separated, or the sign may be a decimal one.
+    /// Separator of thousands in the column; `None` if there is none, or if the sign may be a decimal one.
     pub fn separator(&self) -> Option<DecimalSign> {
         let (cell, _) = self.first.as_ref().filter(|_| !self.is_over)?;
         let sign = if cell.contains('.') { DecimalSign::Point } else { DecimalSign::Comma };
         (self.whole >= FEWEST && self.reaches_hundreds && self.separated >= FEWEST).then_some(sign)
     }
 
-    /// What is wrong with the column, and the line that shows it first; `None` if nothing is: if its thousands are not
+    /// Problem of the column, with the first line that shows it; `None` if there is none: if its thousands are not
     /// separated by what `cells` took for the decimal sign, or the user chose that sign.
     pub fn problem(&self, cells: &CellReader) -> Option<(u64, String)> {
         let (cell, line) = self.first.as_ref()?;

@@ -2,7 +2,7 @@
 
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::elementary::{cos, ln, sin};
-use hysid::network::{Architecture, Family, Layout, Network, Sizes};
+use hysid::network::{Architecture, Family, Network, ParameterLayout, Sizes};
 use hysid::options::network::{FitOptions, Trainer};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;
@@ -20,7 +20,7 @@ pub fn xpnn(stops: usize, hidden: usize, deterioration: bool) -> Architecture {
 
 /// Thresholds spread over the path, wear over its whole length, the rest at random.
 pub fn parameters(architecture: Architecture, seed: u64) -> Vec<f64> {
-    let layout = Layout::new(architecture);
+    let layout = ParameterLayout::new(architecture);
     let mut generator = Generator::seed_from_u64(seed);
     (0..layout.len())
         .map(|k| {

@@ -2,7 +2,7 @@
 //!
 //! 1. *Folds* of the training data, [`crate::validation::folds`]; of a single record only three of them.
 //! 2. *Candidates*: for data that look like a resonance models with inertia, a network and a recurrent network, which
-//!    are judged on the beginnings of the records and fitted to all of them (theory.md, section 15); otherwise networks,
+//!    are scored on the beginnings of the records and fitted to all of them (theory.md, section 15); otherwise networks,
 //!    recurrent networks, random stops and all classical laws, with and without rate, deterioration, relaxation and
 //!    companding. Laws with searched parameters are first fitted to few rows, and dropped if their errors are far above
 //!    the best. The other candidates and the remaining laws are fitted to the first folds, the best of each kind also to
@@ -25,11 +25,11 @@
 //! docs/accuracy.md of the repository reports the settings that were compared, on which cases, and the
 //! errors.
 
-mod beginning;
 mod candidates;
 mod combination;
 mod law;
 mod misfits;
+mod prepared_data;
 mod prior;
 mod score;
 mod selection;
@@ -43,40 +43,40 @@ use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::metrics::Errors;
-use crate::data::record::{Dataset, Record, Speeds};
+use crate::data::record::{Dataset, Record, SpeedEvidence};
 use crate::error::{Error, Result};
 use crate::fit::progress::{Fitted, HeldOutRows, Observer};
 use crate::model::input_transform::InputTransform;
 use crate::model::selection::{Beyond, FoundStates, Selection, WarmUp};
 use crate::model::{
-    Band, Ensemble, Found, Group, HeldOutRow, Model, Node, NodeKind, Predictor, Provenance, Weights,
+    Band, Ensemble, Group, HeldOutRow, Model, Node, NodeKind, Predictor, Provenance, ProvenanceDraft, Weights,
 };
 use crate::options::FitSpec;
 use crate::options::fit_spec::AutoOptions;
 use crate::options::table::check;
 use crate::termination::Termination;
 use crate::validation::{PooledErrors, folds_of_loop, folds_to_choose_by};
-use beginning::{Beginning, as_chosen};
 use candidates::{Candidate, candidates, quick, suited};
 use combination::{Combination, Leaf};
-use prior::Evidence;
+use prepared_data::{PreparedData, as_chosen};
+use prior::LoopEvidence;
 use selection::selection;
 use stages::Stages;
-use trial::{Bench, HeldOut, Trial, fit_members};
-use work::Work;
+use trial::{FoldBench, HeldOut, Trial, fit_members};
+use work::AutoWork;
 
 const MOST_FOLDS: usize = 5;
 
-/// Rows with an output that candidates are fitted to and judged on, at most; the memory runs through all.
+/// Rows with an output that candidates are fitted to and validated on, at most; the memory runs through all.
 const MOST_ROWS: usize = 4000;
 
-/// Rows that candidates with inertia are judged on, at most: the beginnings of the records.
+/// Rows that candidates with inertia are validated on, at most: the beginnings of the records.
 const ROWS_WITH_INERTIA: usize = 6000;
 
 /// Fits expected before anything is known.
 const FITS_EXPECTED: usize = 200;
 
-/// What is fitted to the data, each from its first start.
+/// Specifications of all candidates, each for its first start.
 pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<FitSpec> {
     wanted(data, options).iter().map(|candidate| candidate.request(0)).collect()
 }
@@ -100,19 +100,19 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     let data = &*as_chosen(data, options)?;
     let has_inertia = candidates.iter().any(Candidate::is_dynamic);
     let few = if has_inertia { data.beginnings(ROWS_WITH_INERTIA)? } else { data.thinned(MOST_ROWS) };
-    let evidence = Evidence::of(data);
+    let evidence = LoopEvidence::of(data);
     let folds =
         if evidence.is_one_loop() { folds_of_loop(&few) } else { folds_to_choose_by(&few, MOST_FOLDS) };
-    let work = Work::new(observer, FITS_EXPECTED);
+    let work = AutoWork::new(observer, FITS_EXPECTED);
 
     // Should the observer stop everything soon, this is what there is.
     let alone = work.first_fit(first, if has_inertia { data } else { &few })?;
     let beginning = match has_inertia {
-        true => Beginning::with_inertia(&few, folds, options),
-        false => Beginning::of(&quick(options), &few, folds, options, &work),
+        true => PreparedData::with_inertia(&few, folds, options),
+        false => PreparedData::of(&quick(options), &few, folds, options, &work),
     };
     let data = &*beginning.of_all(data)?;
-    let Beginning { data: few, folds, warm_up, is_changed, found } = beginning;
+    let PreparedData { data: few, folds, warm_up, is_changed, found } = beginning;
     let candidates: Vec<Candidate> = candidates.iter().map(|one| one.warmed_up(warm_up.rows)).collect();
     let held_out: Vec<HeldOut> = folds.into_iter().map(HeldOut::of).collect();
     let is_first = warm_up.rows == 0 && !is_changed && !work.is_stopped();
@@ -122,15 +122,25 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
         return without_folds(data, fitted_to, options, &candidates[0], alone, &work);
     }
     let work = &work;
-    let bench = Bench { data: fitted_to, folds: &held_out, work };
+    let bench = FoldBench { data: fitted_to, folds: &held_out, work };
     let mut stages = Stages { bench, options, evidence, trials: Vec::new(), dropped: Vec::new() };
     stages.run(candidates, first_member);
-    if !options.always_rate && options.only.is_none() && data.speeds() == Speeds::OfAmplitude {
+    if !options.always_rate && options.only.is_none() && data.speeds() == SpeedEvidence::OfAmplitude {
         stages.drop_unearned_rates();
     }
     let Stages { trials, dropped, .. } = stages;
-    Chosen { data, options, bench, evidence, trials, dropped, left_out: Vec::new(), warm_up, found }
-        .fit(alone)
+    EnsembleSelection {
+        data,
+        options,
+        bench,
+        evidence,
+        trials,
+        dropped,
+        left_out: Vec::new(),
+        warm_up,
+        found,
+    }
+    .fit(alone)
 }
 
 /// Data too few to hold any out: the first candidate, unjudged.
@@ -140,7 +150,7 @@ fn without_folds(
     options: &AutoOptions,
     candidate: &Candidate,
     alone: Model,
-    work: &Work,
+    work: &AutoWork,
 ) -> Result<Fitted> {
     let mut trials = [Trial::of(candidate.clone())];
     let starts = if candidate.is_random() { options.starts.min(options.members) } else { 1 };
@@ -160,11 +170,11 @@ fn without_folds(
     Ok(Fitted::of(model, work.done()))
 }
 
-struct Chosen<'w, 'o, 'a> {
+struct EnsembleSelection<'w, 'o, 'a> {
     data: &'w Dataset,
     options: &'w AutoOptions,
-    bench: Bench<'w, 'o, 'a>,
-    evidence: Evidence,
+    bench: FoldBench<'w, 'o, 'a>,
+    evidence: LoopEvidence,
     trials: Vec<Trial>,
     dropped: Vec<Candidate>,
     /// Candidates that were tried and made the ensemble worse.
@@ -174,7 +184,7 @@ struct Chosen<'w, 'o, 'a> {
 }
 
 /// An ensemble, and what is known of it from the folds.
-struct Assembled {
+struct ValidatedEnsemble {
     combination: Combination,
     rows: Vec<Vec<HeldOutRow>>,
     predicted: Vec<Vec<f64>>,
@@ -182,10 +192,10 @@ struct Assembled {
     model: Model,
 }
 
-impl Chosen<'_, '_, '_> {
+impl EnsembleSelection<'_, '_, '_> {
     /// The ensemble, or the single model that was requested; `alone` where nothing was tried in time.
     fn fit(mut self, alone: Model) -> Result<Fitted> {
-        let Bench { work, .. } = self.bench;
+        let FoldBench { work, .. } = self.bench;
         let fit = |model| Ok(Fitted::of(model, work.done()));
         self.drops_what_does_not_fit();
         if let Some(place) = self.place_of_law()
@@ -200,7 +210,7 @@ impl Chosen<'_, '_, '_> {
                 _ => break,
             }
         }
-        let Some(Assembled { combination, rows, predicted, selection, model }) = assembled else {
+        let Some(ValidatedEnsemble { combination, rows, predicted, selection, model }) = assembled else {
             let model = self.without_validation(alone);
             if self.combination(|_| true).is_some() {
                 return fit(model);
@@ -219,8 +229,8 @@ impl Chosen<'_, '_, '_> {
     }
 
     /// The ensemble of all candidates that are left, its members fitted; `None` if none could be fitted in time.
-    fn assembled(&mut self) -> Result<Option<Assembled>> {
-        let Bench { work, .. } = self.bench;
+    fn assembled(&mut self) -> Result<Option<ValidatedEnsemble>> {
+        let FoldBench { work, .. } = self.bench;
         let Some(all) = self.combination(|_| true) else { return Ok(None) };
         let wanted: Vec<(usize, usize)> = all.leaves().iter().map(|leaf| (leaf.place, leaf.start)).collect();
         fit_members(&mut self.trials, &wanted, self.bench.data, work);
@@ -234,7 +244,7 @@ impl Chosen<'_, '_, '_> {
         let members = |place: usize, start: usize| self.trials[place].members.get(&start).cloned();
         let body = Predictor::Ensemble(combination.ensemble(members, self.data.input_range(0))?);
         let model = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
-        Ok(Some(Assembled { combination, rows, predicted, selection, model }))
+        Ok(Some(ValidatedEnsemble { combination, rows, predicted, selection, model }))
     }
 
     fn predicted(&self, rows: &[Vec<HeldOutRow>]) -> Vec<Vec<f64>> {
@@ -309,12 +319,12 @@ impl Chosen<'_, '_, '_> {
         }
     }
 
-    /// The band that the rows held out ask for, wider where the data cannot tell candidates apart.
+    /// The band from the errors on held-out rows, wider where the data cannot distinguish candidates.
     fn band(&self, folds: &[Vec<HeldOutRow>]) -> Option<Band> {
         let band = Band::calibrate(folds)?;
         Some(match self.evidence {
-            Evidence::SeveralLoops => band,
-            Evidence::OneLoop(_) => band.wider(prior::WIDER_BAND),
+            LoopEvidence::SeveralLoops => band,
+            LoopEvidence::OneLoop(_) => band.wider(prior::WIDER_BAND),
         })
     }
 
@@ -336,7 +346,8 @@ impl Chosen<'_, '_, '_> {
         mut selection: Selection,
     ) -> Result<Option<Fitted>> {
         let Self { options, bench, evidence, .. } = *self;
-        let makers = single::Makers { trials: &mut self.trials, bench, combination, evidence, options };
+        let makers =
+            single::SingleSources { trials: &mut self.trials, bench, combination, evidence, options };
         let Some(found) = makers.single(ensemble)? else { return Ok(None) };
         selection.single = Some(found.how);
         let validation = self.errors_held_out(&found.predicted);
@@ -351,7 +362,7 @@ impl Chosen<'_, '_, '_> {
         validation: Option<Errors>,
         predicted: &[Vec<f64>],
     ) -> Result<Fitted> {
-        let Bench { folds, work, .. } = self.bench;
+        let FoldBench { folds, work, .. } = self.bench;
         let mut selection = self.judged_by(selection, validation.as_ref(), predicted);
         selection.candidates.iter_mut().for_each(|candidate| candidate.members = 0);
         let provenance = provenance_of(&model, Some(selection), validation, work);
@@ -393,9 +404,9 @@ fn ensemble(
     options: &AutoOptions,
     validation: Option<Errors>,
     selection: Option<Selection>,
-    work: &Work,
+    work: &AutoWork,
 ) -> Result<Model> {
-    let found = Found {
+    let found = ProvenanceDraft {
         options: FitSpec::Auto(options.clone()),
         chosen_start: 0,
         termination: if work.is_stopped() { Termination::Stopped } else { Termination::Converged },
@@ -411,7 +422,7 @@ fn provenance_of(
     model: &Model,
     selection: Option<Selection>,
     validation: Option<Errors>,
-    work: &Work,
+    work: &AutoWork,
 ) -> Provenance {
     let provenance = model.provenance().clone();
     let termination = if work.is_stopped() { Termination::Stopped } else { provenance.termination };

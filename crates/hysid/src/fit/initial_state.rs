@@ -29,9 +29,9 @@ pub(crate) fn quick() -> ClassicalOptions {
 
 pub(crate) const QUICK_INTERVALS: usize = search::INTERVALS;
 
-/// The initial state that is asked for, and what is needed to find it.
+/// The requested initial state, and what is needed to find it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Wanted {
+pub(crate) struct StateRequest {
     pub state: Option<InitialState>,
     /// Where the model measures its input from.
     pub origin: Origin,
@@ -40,7 +40,7 @@ pub(crate) struct Wanted {
     pub seed: u64,
 }
 
-impl Wanted {
+impl StateRequest {
     /// Each record after its lead-in. Once the observer stops, an unknown state is the one found so far.
     pub fn of<'d>(&self, data: &'d Dataset, observer: &mut Observer<'_>) -> Result<Cow<'d, Dataset>> {
         match self.state {

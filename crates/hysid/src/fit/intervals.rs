@@ -28,9 +28,9 @@ use crate::diagnosis::distribution::t_quantile;
 use crate::diagnosis::serial::{Autoregression, SerialSum, correlation_lag};
 use crate::error::{Error, Result};
 use crate::fit::law::linearised as of_law;
-use crate::fit::law::linearised::{FitVariable, Linearised};
+use crate::fit::law::linearised::{FitVariable, LinearisedLaw};
 use crate::linear_algebra::{Symmetric, dot};
-use crate::model::input_transform::Transformed;
+use crate::model::input_transform::TransformedData;
 use crate::model::{Model, ParameterInUnits};
 use crate::options::FitSpec;
 use eigenvectors::Eigenvectors;
@@ -46,7 +46,7 @@ const NO_EFFECT: f64 = 1e-9;
 /// A parameter changes along a direction if this share of its gradient, or more, is in it.
 const CHANGES: f64 = 1e-3;
 
-/// What can be said of a parameter.
+/// Whether a parameter has an interval, and why not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum IntervalStatus {
     /// It has an interval.
@@ -67,7 +67,7 @@ pub enum IntervalStatus {
 }
 
 impl IntervalStatus {
-    /// In words.
+    /// The status in the words of its JSON.
     pub fn words(self) -> &'static str {
         match self {
             Self::Determined => "determined",
@@ -86,7 +86,7 @@ pub struct ParameterInterval {
     pub symbol: String,
     /// Its value, in the user's units.
     pub value: f64,
-    /// What can be said of it.
+    /// Whether it has an interval, and why not.
     pub status: IntervalStatus,
     /// Lower end, in the user's units; `None` without an interval.
     pub low: Option<f64>,
@@ -129,7 +129,7 @@ impl ParameterIntervals {
         }
         check_trained_on(model, data)?;
         let begun = as_begun(model, data)?;
-        let seen = Transformed::of(&begun, &options.shaping, options.rate, options.model.facts().origin)?;
+        let seen = TransformedData::of(&begun, &options.shaping, options.rate, options.model.facts().origin)?;
         let options = crate::options::classical::ClassicalOptions { rate: seen.rate, ..options.clone() };
         let Some(linearised) = of_law(law, &seen.data, &options)? else { return Ok(None) };
         if linearised.variables.len() > MOST_VARIABLES {
@@ -163,8 +163,8 @@ fn as_begun(model: &Model, data: &Dataset) -> Result<Dataset> {
     begun.with_lead_ins(|_, record| record.lead_in().unwrap_or(model.lead_in()).to_vec())
 }
 
-fn intervals(parameters: &[ParameterInUnits], linearised: &Linearised) -> ParameterIntervals {
-    let spread = Spread::of(linearised);
+fn intervals(parameters: &[ParameterInUnits], linearised: &LinearisedLaw) -> ParameterIntervals {
+    let spread = ParameterSpread::of(linearised);
     let named = parameters.iter().zip(&linearised.gradients);
     let of_parameter = |(in_units, gradient): (&ParameterInUnits, &Vec<f64>)| {
         let parameter = &in_units.parameter;
@@ -192,7 +192,7 @@ fn intervals(parameters: &[ParameterInUnits], linearised: &Linearised) -> Parame
     }
 }
 
-struct Spread {
+struct ParameterSpread {
     free: Vec<usize>,
     /// Length of the column of each free variable.
     lengths: Vec<f64>,
@@ -206,9 +206,9 @@ struct Spread {
     quantile: f64,
 }
 
-impl Spread {
-    fn of(linearised: &Linearised) -> Self {
-        let Linearised { variables, residual, .. } = linearised;
+impl ParameterSpread {
+    fn of(linearised: &LinearisedLaw) -> Self {
+        let LinearisedLaw { variables, residual, .. } = linearised;
         let length = |variable: &FitVariable| dot(&variable.column, &variable.column).sqrt();
         let free: Vec<usize> = (0..variables.len()).filter(|&j| !variables[j].at_bound).collect();
         let lengths: Vec<f64> = free.iter().map(|&j| length(&variables[j])).collect();
@@ -268,7 +268,7 @@ impl Spread {
         self.covariances.iter().map(|covariance| dot(scaled, &covariance.times(scaled))).fold(0.0, f64::max)
     }
 
-    /// What can be said of a parameter with these derivatives, and its standard error.
+    /// Status and standard error of a parameter with these derivatives.
     fn of_parameter(&self, gradient: &[f64], variables: &[FitVariable]) -> (IntervalStatus, Option<f64>) {
         if gradient.iter().all(|slope| *slope == 0.0) {
             return (IntervalStatus::NotFitted, None);

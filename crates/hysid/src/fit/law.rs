@@ -27,8 +27,8 @@ use hysid_core::for_each_law;
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::law::linearised::{LawFamily, Linearised};
-use crate::fit::law::search::{Identified, search};
+use crate::fit::law::linearised::{LawFamily, LinearisedLaw};
+use crate::fit::law::search::{IdentifiedLaw, search};
 use crate::fit::progress::SearchObserver;
 use crate::law::series::Series;
 use crate::law::{Classical, Law};
@@ -48,14 +48,14 @@ pub trait Identify: Law {
         options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>>;
+    ) -> Result<IdentifiedLaw<Self>>;
 
     /// The law about the result of a fit with these options to these data, from which the intervals of its parameters
     /// follow; `None` for a law without intervals.
     ///
     /// # Errors
     /// As [`Identify::identify`].
-    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<LinearisedLaw>> {
         let _ = (data, options);
         Ok(None)
     }
@@ -65,7 +65,7 @@ pub trait Identify: Law {
         data: &Dataset,
         options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
-    ) -> Result<Identified<Self>> {
+    ) -> Result<IdentifiedLaw<Self>> {
         Self::identify(data, options, observer, StopCheck::never())
     }
 }
@@ -84,13 +84,13 @@ impl<L: SearchedLaw> Identify for L {
         options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
+    ) -> Result<IdentifiedLaw<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let (family, series) = L::family(data, options)?;
         search(&family, &series, options, observer, stop)
     }
 
-    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<LinearisedLaw>> {
         let (family, series) = L::family(data, options)?;
         Ok(Some(linearised::of_search(&family, &series, self)))
     }
@@ -104,7 +104,7 @@ macro_rules! fit {
             options: &ClassicalOptions,
             observer: &mut SearchObserver<'_>,
             stop: StopCheck<'_>,
-        ) -> Result<Identified<Classical>> {
+        ) -> Result<IdentifiedLaw<Classical>> {
             match options.model {
                 $(ClassicalModel::$law => {
                     crate::law::$module::$law::identify(data, options, observer, stop)?
@@ -125,7 +125,7 @@ macro_rules! linearised {
             law: &Classical,
             data: &Dataset,
             options: &ClassicalOptions,
-        ) -> Result<Option<Linearised>> {
+        ) -> Result<Option<LinearisedLaw>> {
             match law {
                 $(Classical::$law(law) => law.linearised(data, options),)*
             }

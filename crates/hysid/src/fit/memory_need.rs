@@ -8,12 +8,12 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::auto;
 use crate::fit::law::duhem_nn;
-use crate::fit::law::hysteretic_dynamics::{self, Asked};
+use crate::fit::law::hysteretic_dynamics::{self, DynamicsSpec};
 use crate::fit::law::random_stops::HIDDEN;
 use crate::fit::network::curvature::has_few_rows;
 use crate::fit::network::fitting::room;
-use crate::law::duhem_nn::Layout;
-use crate::law::hysteretic_dynamics::Form;
+use crate::law::duhem_nn::CellLayout;
+use crate::law::hysteretic_dynamics::DynamicsForm;
 use crate::linear_algebra::dilated_space::DilatedSpace;
 use crate::network::Architecture;
 use crate::options::FitSpec;
@@ -35,11 +35,11 @@ const MOST_PARAMETERS_OF_A_LAW: usize = 40;
 /// Peak memory of an identification, without that of the data themselves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MemoryNeed {
-    /// Bytes.
+    /// Peak memory in bytes.
     pub bytes: f64,
-    /// What needs most of it, in words.
+    /// Largest part of it, in words.
     pub taken_by: String,
-    /// What reduces it, in words.
+    /// How to reduce it, in words.
     pub advice: &'static str,
 }
 
@@ -204,7 +204,7 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
         }
         ClassicalModel::DuhemNn => {
             let starts = options.starts() as f64;
-            let layout = Layout::new(duhem_nn::shape_of(options, data.has_time()));
+            let layout = CellLayout::new(duhem_nn::shape_of(options, data.has_time()));
             let (p, m) = (layout.count() as f64, layout.shape.terms() as f64);
             let busy = threads.min(starts);
             // Gram matrix, curvature and its damped copy, two at a time, each written below its diagonal only.
@@ -221,11 +221,11 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
         }
         ClassicalModel::HystereticOscillator | ClassicalModel::HystereticStateSpace => {
             let form = match options.model {
-                ClassicalModel::HystereticOscillator => Form::Oscillator,
-                _ => Form::StateSpace,
+                ClassicalModel::HystereticOscillator => DynamicsForm::Oscillator,
+                _ => DynamicsForm::StateSpace,
             };
             // Numbers that no model can have are refused by the fit itself.
-            let parameters = Asked::of(form, options).map_or(0, |asked| asked.layout().count());
+            let parameters = DynamicsSpec::of(form, options).map_or(0, |asked| asked.layout().count());
             let (p, starts) = (parameters as f64, options.starts() as f64);
             let at_once = data.records().len().min(hysteretic_dynamics::AT_ONCE) as f64;
             let busy = threads.min(starts * at_once);

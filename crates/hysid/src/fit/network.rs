@@ -22,10 +22,10 @@ mod soundness;
 
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::initial_state::Wanted;
+use crate::fit::initial_state::StateRequest;
 use crate::fit::progress::{Checkpoint, Fitted, Observer};
 use crate::law::facts::Origin;
-use crate::model::input_transform::Transformed;
+use crate::model::input_transform::TransformedData;
 use crate::options::network::FitOptions;
 use fitting::Fitting;
 
@@ -41,13 +41,13 @@ use fitting::Fitting;
 pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     let begun = wanted_of(options).of(data, observer)?;
     let data = begun.as_ref();
-    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let seen = TransformedData::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options.clone())?.run(observer)
 }
 
-fn wanted_of(options: &FitOptions) -> Wanted {
+fn wanted_of(options: &FitOptions) -> StateRequest {
     let FitOptions { shaping, rate, seed, .. } = *options;
-    Wanted { state: shaping.initial_state, origin: Origin::OfData, rate, seed }
+    StateRequest { state: shaping.initial_state, origin: Origin::OfData, rate, seed }
 }
 
 /// Resumes a fit of the same data. The result is the same to the last bit as without the interruption.
@@ -58,6 +58,6 @@ pub fn resume(data: &Dataset, checkpoint: Checkpoint, observer: &mut Observer<'_
     let begun = wanted_of(checkpoint.options()).of(data, observer)?;
     let data = begun.as_ref();
     let (options, state) = checkpoint.for_data(data)?;
-    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let seen = TransformedData::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options)?.from(state)?.run(observer)
 }

@@ -1,18 +1,18 @@
-//! Identification of one network or one classical model, in the initial state that is asked for.
+//! Identification of one network or one classical model, in the requested initial state.
 
 use std::borrow::Cow;
 
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::initial_state::Wanted;
+use crate::fit::initial_state::StateRequest;
 use crate::fit::law;
 use crate::fit::law::random_stops::fit_random_stops;
 use crate::fit::network;
 use crate::fit::progress::{Fitted, Observer, Progress, SearchProgress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::model::history::{HistoryPoint, Phase, Run};
-use crate::model::input_transform::Transformed;
-use crate::model::{Found, Model, Predictor};
+use crate::model::input_transform::TransformedData;
+use crate::model::{Model, Predictor, ProvenanceDraft};
 use crate::options::FitSpec;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::options::network::Method;
@@ -34,7 +34,7 @@ pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) 
 fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     let begun = begun(data, options, Origin::OfData, observer)?;
     let data = begun.as_ref();
-    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let seen = TransformedData::of(data, &options.shaping, options.rate, Origin::OfData)?;
     let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
     let stop = StopCheck::new(&is_to_stop);
@@ -49,7 +49,7 @@ fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_
     let origin = options.model.facts().origin;
     let begun = begun(data, options, origin, observer)?;
     let data = begun.as_ref();
-    let seen = Transformed::of(data, &options.shaping, options.rate, origin)?;
+    let seen = TransformedData::of(data, &options.shaping, options.rate, origin)?;
     let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
     let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
@@ -91,7 +91,7 @@ fn run_of_law(history: Vec<HistoryPoint>, termination: Termination) -> Run {
     }
 }
 
-/// The data in the initial state that is asked for.
+/// The data in the requested initial state.
 fn begun<'d>(
     data: &'d Dataset,
     options: &ClassicalOptions,
@@ -99,20 +99,20 @@ fn begun<'d>(
     observer: &mut Observer<'_>,
 ) -> Result<Cow<'d, Dataset>> {
     let ClassicalOptions { shaping, rate, seed, .. } = *options;
-    Wanted { state: shaping.initial_state, origin, rate, seed }.of(data, observer)
+    StateRequest { state: shaping.initial_state, origin, rate, seed }.of(data, observer)
 }
 
 fn finished(
     data: &Dataset,
     options: &ClassicalOptions,
-    seen: &Transformed,
+    seen: &TransformedData,
     body: Predictor,
     evaluations: usize,
     termination: Termination,
     runs: Vec<Run>,
 ) -> Result<Fitted> {
     let request = FitSpec::Classical(ClassicalOptions { near: Vec::new(), ..options.clone() });
-    let found = Found { runs, ..Found::of(request, termination) };
+    let found = ProvenanceDraft { runs, ..ProvenanceDraft::of(request, termination) };
     let model = Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?;
     Ok(Fitted::of(model, evaluations))
 }

@@ -1,4 +1,4 @@
-//! What a fit tells while it runs, and what it gives.
+//! Progress and results of a fit.
 
 mod checkpoint;
 mod held_out;
@@ -41,13 +41,13 @@ pub struct Progress<'a> {
     pub train_nrmse_percent: f64,
     /// Completed share of the work, 0 to 1, if every start takes all its epochs.
     pub done: f64,
-    /// What has just become known of a candidate of `auto`; `None` if this tells of a fit on its way.
+    /// News of a candidate of `auto`; `None` while a fit is on its way.
     pub tried: Option<Tried<'a>>,
-    pub(crate) present: Option<Present<'a>>,
+    pub(crate) present: Option<CurrentFit<'a>>,
 }
 
 /// A fit on its way. What it has come to is copied only on request.
-pub(crate) trait Unfinished: Sync {
+pub(crate) trait PartialFit: Sync {
     /// The state from which the fit can be resumed; `None` for a model without checkpoints.
     fn checkpoint(&self) -> Option<Checkpoint> {
         None
@@ -56,16 +56,16 @@ pub(crate) trait Unfinished: Sync {
     fn model_so_far(&self) -> Option<Model>;
 }
 
-impl<F: Fn() -> Option<Model> + Sync> Unfinished for F {
+impl<F: Fn() -> Option<Model> + Sync> PartialFit for F {
     fn model_so_far(&self) -> Option<Model> {
         self()
     }
 }
 
 #[derive(Clone, Copy)]
-pub(crate) struct Present<'a>(&'a dyn Unfinished);
+pub(crate) struct CurrentFit<'a>(&'a dyn PartialFit);
 
-impl fmt::Debug for Present<'_> {
+impl fmt::Debug for CurrentFit<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str("a fit on its way")
     }
@@ -97,8 +97,8 @@ impl<'a> Progress<'a> {
         Progress { tried: None, present: None, ..self.clone() }
     }
 
-    pub(crate) fn with_state(self, unfinished: &'a dyn Unfinished) -> Self {
-        Self { present: Some(Present(unfinished)), ..self }
+    pub(crate) fn with_state(self, unfinished: &'a dyn PartialFit) -> Self {
+        Self { present: Some(CurrentFit(unfinished)), ..self }
     }
 
     pub(crate) fn of_beginning(options: &FitOptions) -> Self {
@@ -150,7 +150,7 @@ pub type Observer<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + Send + 'a;
 /// A fitted model with the number of evaluations.
 #[derive(Debug, Clone)]
 pub struct Fitted {
-    /// The model.
+    /// The fitted model, ready to simulate.
     pub model: Model,
     /// Evaluations of the objective, all starts together, gradients included.
     pub evaluations: usize,
@@ -183,7 +183,7 @@ pub struct SearchProgress<'a> {
     pub evaluations: usize,
     /// Error of the best start in free run, in percent of the standard deviation; NaN before there is one.
     pub train_nrmse_percent: f64,
-    pub(crate) law: LawSoFar<'a>,
+    pub(crate) law: PartialLaw<'a>,
 }
 
 impl SearchProgress<'_> {
@@ -195,9 +195,9 @@ impl SearchProgress<'_> {
 
 /// How to make the law that a search has come to.
 #[derive(Clone, Copy)]
-pub(crate) struct LawSoFar<'a>(pub Option<&'a (dyn Fn() -> Option<Classical> + Sync)>);
+pub(crate) struct PartialLaw<'a>(pub Option<&'a (dyn Fn() -> Option<Classical> + Sync)>);
 
-impl fmt::Debug for LawSoFar<'_> {
+impl fmt::Debug for PartialLaw<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(if self.0.is_some() { "a law" } else { "no law" })
     }

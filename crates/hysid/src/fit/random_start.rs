@@ -4,7 +4,7 @@ use hysid_core::elementary::{ln, powf};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::network::{Architecture, Layout};
+use crate::network::{Architecture, ParameterLayout};
 use crate::optimise::random::{normal, seed_of};
 
 /// Thresholds start between this share of the largest input and the whole of it.
@@ -41,7 +41,7 @@ pub(crate) fn draw(
     time_scales: Option<(f64, f64)>,
     seed: u64,
 ) -> Vec<f64> {
-    let layout = Layout::new(*architecture);
+    let layout = ParameterLayout::new(*architecture);
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut values = vec![0.0; layout.len()];
     let channels = architecture.channels();

@@ -24,7 +24,7 @@ use crate::error::{DataProblem, Error, Result};
 use crate::law::series::Series;
 use crate::linear_algebra::{Batch, Gram, Symmetric};
 use crate::network::scaling::Scaling;
-use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
+use crate::optimise::non_negative::{Penalty, Quadratic, WeightBounds};
 use crate::optimise::parallel;
 use crate::options::classical::Sign;
 use crate::stop_check::{Pace, StopCheck};
@@ -129,11 +129,11 @@ impl FoldSums {
     pub fn weights(
         self,
         penalty: &Penalty,
-        choice: Choice,
+        choice: PenaltyChoice,
         reversible: Range<usize>,
         stop: StopCheck<'_>,
     ) -> Result<Vec<f64>> {
-        let bounds = Bounds::new(choice.sign, reversible, self.folds[0].features);
+        let bounds = WeightBounds::new(choice.sign, reversible, self.folds[0].features);
         let mut penalised = self.into_total().quadratic();
         penalised.penalise(penalty, choice.factor);
         penalised.last_minimum(&bounds, stop)
@@ -173,7 +173,7 @@ impl FoldSums {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Choice {
+pub(crate) struct PenaltyChoice {
     /// Mean over the folds of the logarithm of the mean square error.
     pub score: f64,
     /// Factor of the penalty.
@@ -184,7 +184,7 @@ pub(crate) struct Choice {
 
 impl FoldSums {
     /// Chooses sign (one of all, if none is given) and factor of the penalty; weights of `reversible` are
-    /// bounded as those of [`Bounds::new`]. Asked to stop before anything was compared, it is a factor in the
+    /// bounded as those of [`WeightBounds::new`]. Asked to stop before anything was compared, it is a factor in the
     /// middle and the first of the signs.
     pub fn choose(
         &self,
@@ -193,19 +193,23 @@ impl FoldSums {
         sign: Option<Sign>,
         reversible: &Range<usize>,
         stop: StopCheck<'_>,
-    ) -> Choice {
+    ) -> PenaltyChoice {
         let features = self.folds[0].features;
         let signs = sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
         let mut candidates = Vec::new();
         for &sign in &signs {
-            let bounds = Bounds::new(sign, reversible.clone(), features);
+            let bounds = WeightBounds::new(sign, reversible.clone(), features);
             let path = |rest: &Quadratic| rest.path(penalty, factors, &bounds, stop);
             let Some(scores) = self.scores(path, stop) else { break };
             let choices = scores.iter().zip(factors);
-            candidates.extend(choices.map(|(&score, &factor)| Choice { score, factor, sign }));
+            candidates.extend(choices.map(|(&score, &factor)| PenaltyChoice { score, factor, sign }));
         }
         if candidates.is_empty() {
-            return Choice { score: f64::INFINITY, factor: factors[factors.len() / 2], sign: signs[0] };
+            return PenaltyChoice {
+                score: f64::INFINITY,
+                factor: factors[factors.len() / 2],
+                sign: signs[0],
+            };
         }
         let scores: Vec<f64> = candidates.iter().map(|choice| choice.score).collect();
         candidates[lowest(&scores)]
@@ -217,7 +221,7 @@ pub(crate) fn lowest(scores: &[f64]) -> usize {
     order.expect("at least one candidate")
 }
 
-pub(crate) struct Gatherer<'a> {
+pub(crate) struct SumGatherer<'a> {
     pace: Pace<'a>,
     folds: Vec<Sums>,
     judged: Vec<usize>,
@@ -227,7 +231,7 @@ pub(crate) struct Gatherer<'a> {
     fold: usize,
 }
 
-impl<'a> Gatherer<'a> {
+impl<'a> SumGatherer<'a> {
     pub fn new(features: usize, folds: &RowFolds, stop: StopCheck<'a>) -> Self {
         Self {
             pace: Pace::new(stop),
@@ -300,7 +304,7 @@ mod tests {
     #[test]
     fn the_error_from_sums_is_that_of_the_rows() {
         let one = RowFolds::one();
-        let mut gatherer = Gatherer::new(2, &one, StopCheck::never());
+        let mut gatherer = SumGatherer::new(2, &one, StopCheck::never());
         for k in 0..1000 {
             let x = f64::from(k) * 0.01;
             gatherer.add(0, &[1.0, x], if k % 10 == 0 { f64::NAN } else { 2.0 + 3.0 * x + sin(x * 7.0) });

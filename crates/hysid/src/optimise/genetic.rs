@@ -47,7 +47,7 @@ pub struct Individual {
 }
 
 /// A minimisation problem with bounds.
-pub struct Problem<'a> {
+pub struct BoundedProblem<'a> {
     /// Lowest and highest value of each gene.
     pub bounds: &'a [(f64, f64)],
     /// Seed of all random numbers.
@@ -70,7 +70,7 @@ impl Genetic {
     /// # Errors
     /// A size outside [`POPULATIONS`], bounds that are empty or not in order.
     pub fn new(
-        problem: &Problem,
+        problem: &BoundedProblem,
         size: usize,
         draw: &(dyn Fn(&mut Xoshiro256PlusPlus) -> Vec<f64> + Sync),
     ) -> Result<Self> {
@@ -87,7 +87,7 @@ impl Genetic {
         Ok(Self { population, generation: 0, evaluations: size })
     }
 
-    /// True if it is a population of so many within these bounds.
+    /// True if it is a population of this size within these bounds.
     pub(crate) fn is_sound(&self, bounds: &[(f64, f64)], size: usize) -> bool {
         let is_gene = |(gene, &(low, high)): (&f64, &(f64, f64))| (low..=high).contains(gene);
         let is_individual = |one: &Individual| {
@@ -99,7 +99,7 @@ impl Genetic {
     }
 
     /// Computes the next generation.
-    pub fn advance(&mut self, problem: &Problem) {
+    pub fn advance(&mut self, problem: &BoundedProblem) {
         self.generation += 1;
         let size = self.population.len();
         let mut order: Vec<usize> = (0..size).collect();
@@ -138,7 +138,7 @@ impl Genetic {
     }
 }
 
-impl Problem<'_> {
+impl BoundedProblem<'_> {
     fn individual(&self, mut genes: Vec<f64>) -> Individual {
         for (gene, &(low, high)) in genes.iter_mut().zip(self.bounds) {
             *gene = gene.clamp(low, high);
@@ -223,7 +223,7 @@ mod tests {
     }
 
     fn bred(seed: u64, generations: usize, threads: usize) -> Genetic {
-        let problem = Problem { bounds: &BOUNDS, seed, cost: &sphere };
+        let problem = BoundedProblem { bounds: &BOUNDS, seed, cost: &sphere };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut search = Genetic::new(&problem, 40, &uniform).unwrap();
@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn costs_that_are_no_number_are_the_worst_and_odd_settings_are_refused() {
         let cost = |genes: &[f64]| if genes[0] < 0.0 { f64::NAN } else { genes[0] };
-        let problem = Problem { bounds: &[(-1.0, 1.0)], seed: 1, cost: &cost };
+        let problem = BoundedProblem { bounds: &[(-1.0, 1.0)], seed: 1, cost: &cost };
         let draw = |generator: &mut Xoshiro256PlusPlus| vec![2.0 * generator.random::<f64>() - 1.0];
         let mut search = Genetic::new(&problem, 20, &draw).unwrap();
         for _ in 0..50 {
@@ -299,7 +299,7 @@ mod tests {
         }
         assert!((0.0..1e-2).contains(&search.best().cost), "{}", search.best().cost);
         assert!(Genetic::new(&problem, 3, &draw).is_err());
-        let reversed = Problem { bounds: &[(1.0, -1.0)], ..problem };
+        let reversed = BoundedProblem { bounds: &[(1.0, -1.0)], ..problem };
         assert!(Genetic::new(&reversed, 20, &draw).is_err());
     }
 }

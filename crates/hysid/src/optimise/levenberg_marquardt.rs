@@ -7,9 +7,9 @@
 //!
 //! `F` is half a mean or a sum of squares of the parameters `w`, `g` its gradient, `B` its Gauss-Newton
 //! matrix, `δ` the step, `μ` the damping and `D` a positive diagonal scaling; `m` and `s` are
-//! [`Rules::curvature_memory`] and [`Rules::least_curvature`].
+//! [`DescentSettings::curvature_memory`] and [`DescentSettings::least_curvature`].
 //!
-//! A [`Problem`] gives `F`, `g` and `B`, and solves for the step within its bounds. The descent controls the
+//! A [`LeastSquaresProblem`] gives `F`, `g` and `B`, and solves for the step within its bounds. The descent controls the
 //! damping.
 
 use hysid_core::elementary::powi;
@@ -27,7 +27,7 @@ const PATIENCE: usize = 3;
 
 /// Settings of a descent.
 #[derive(Debug, Clone, Copy)]
-pub struct Rules {
+pub struct DescentSettings {
     /// Smallest damping, and the damping at which the search ends.
     pub damping: (f64, f64),
     /// `m`: share of the largest earlier curvature that is kept after an iteration; 0 for the present one only.
@@ -40,7 +40,7 @@ pub struct Rules {
     pub stall: f64,
 }
 
-impl Rules {
+impl DescentSettings {
     /// For smooth functions of many parameters: earlier curvature limits the steps, and small decreases
     /// count.
     pub const SMOOTH: Self = Self {
@@ -87,13 +87,13 @@ impl Slope<Symmetric> {
 }
 
 /// A function to be minimised.
-pub trait Problem {
+pub trait LeastSquaresProblem {
     /// The function at a point, with what its slope can be computed from.
     type Value;
     /// The curvature at a point.
     type Curvature;
     /// How the descent goes.
-    const RULES: Rules;
+    const RULES: DescentSettings;
 
     /// The function at a point; infinite if the evaluation was stopped.
     fn value(&self, parameters: &[f64]) -> Self::Value;
@@ -173,7 +173,7 @@ pub struct LevenbergMarquardt<V> {
 
 impl<V> LevenbergMarquardt<V> {
     /// Begins at `parameters`.
-    pub fn new<P: Problem<Value = V>>(problem: &P, parameters: Vec<f64>) -> Self {
+    pub fn new<P: LeastSquaresProblem<Value = V>>(problem: &P, parameters: Vec<f64>) -> Self {
         let value = problem.value(&parameters);
         Self { evaluations: 1, ..Self::at(parameters, value) }
     }
@@ -184,7 +184,7 @@ impl<V> LevenbergMarquardt<V> {
     }
 
     /// True if a descent with these rules can continue from this state, which may have been read from a file.
-    pub(crate) fn is_sound(&self, rules: &Rules, are_parameters: impl Fn(&[f64]) -> bool) -> bool {
+    pub(crate) fn is_sound(&self, rules: &DescentSettings, are_parameters: impl Fn(&[f64]) -> bool) -> bool {
         let Damping { mu, growth, scale } = &self.damping;
         let (smallest, largest) = rules.damping;
         let is_scale = |scale: &f64| scale.is_finite() && *scale > 0.0;
@@ -207,7 +207,7 @@ impl<V> LevenbergMarquardt<V> {
     }
 
     /// The function at the present parameters.
-    pub fn value<P: Problem<Value = V>>(&mut self, problem: &P) -> &V {
+    pub fn value<P: LeastSquaresProblem<Value = V>>(&mut self, problem: &P) -> &V {
         self.value.get_or_insert_with(|| problem.value(&self.parameters))
     }
 
@@ -217,7 +217,7 @@ impl<V> LevenbergMarquardt<V> {
     }
 
     /// One iteration. It decreases the function, or returns why the descent ends.
-    pub fn advance<P: Problem<Value = V>>(&mut self, problem: &P) -> Option<Termination> {
+    pub fn advance<P: LeastSquaresProblem<Value = V>>(&mut self, problem: &P) -> Option<Termination> {
         let Self { parameters, value, damping, stalled, evaluations } = self;
         let here = value.get_or_insert_with(|| problem.value(parameters));
         // Broken off, the iteration is thrown away.
@@ -253,7 +253,7 @@ impl Damping {
         Self { mu: FIRST_DAMPING, growth: 2.0, scale: Vec::new() }
     }
 
-    fn see(&mut self, rules: &Rules, diagonal: &[f64]) {
+    fn see(&mut self, rules: &DescentSettings, diagonal: &[f64]) {
         self.scale.resize(diagonal.len(), 0.0);
         for (scale, &curvature) in self.scale.iter_mut().zip(diagonal) {
             *scale = (rules.curvature_memory * *scale).max(curvature);
@@ -266,7 +266,7 @@ impl Damping {
     }
 
     /// Raises the damping until a step lowers the function, then resets it by Nielsen's rule; `None` if no step does.
-    fn step<P: Problem>(
+    fn step<P: LeastSquaresProblem>(
         &mut self,
         problem: &P,
         slope: &Slope<P::Curvature>,
@@ -295,12 +295,12 @@ impl Damping {
     }
 
     /// The damped step, kept within bounds, and the fall that the quadratic model predicts for it.
-    fn candidate<P: Problem>(
+    fn candidate<P: LeastSquaresProblem>(
         &self,
         problem: &P,
         slope: &Slope<P::Curvature>,
         parameters: &[f64],
-    ) -> Option<Candidate> {
+    ) -> Option<TrialStep> {
         let damping: Vec<f64> = self.scale.iter().map(|scale| self.mu * scale).collect();
         let step = problem.step(slope, parameters, &damping)?;
         let predicted_fall = 0.5
@@ -312,11 +312,11 @@ impl Damping {
                 .sum::<f64>();
         let mut candidate: Vec<f64> = parameters.iter().zip(&step).map(|(p, d)| p + d).collect();
         problem.limit(&mut candidate);
-        (predicted_fall > 0.0).then_some(Candidate { parameters: candidate, predicted_fall })
+        (predicted_fall > 0.0).then_some(TrialStep { parameters: candidate, predicted_fall })
     }
 }
 
-struct Candidate {
+struct TrialStep {
     parameters: Vec<f64>,
     predicted_fall: f64,
 }
@@ -330,10 +330,10 @@ mod tests {
         most: f64,
     }
 
-    impl Problem for Valley {
+    impl LeastSquaresProblem for Valley {
         type Value = [f64; 2];
         type Curvature = Symmetric;
-        const RULES: Rules = Rules::SMOOTH;
+        const RULES: DescentSettings = DescentSettings::SMOOTH;
 
         fn value(&self, p: &[f64]) -> [f64; 2] {
             [10.0 * (p[1] - p[0] * p[0]), 1.0 - p[0]]

@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 use crate::optimise::parallel;
 use crate::termination::Termination;
 
-pub(crate) trait Start: Send {
+pub(crate) trait SearchStart: Send {
     /// Which of two is the better, which comes first.
     fn order(&self, other: &Self) -> Ordering;
 
@@ -21,12 +21,12 @@ pub(crate) trait Start: Send {
 }
 
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Plan {
+pub(crate) struct RoundPlan {
     /// Rounds at most.
     pub rounds: usize,
     /// Rounds at first in which no start is given up and the search does not end.
     pub spared: usize,
-    /// After so many further rounds half of the starts are given up, and again after as many more.
+    /// Further rounds after which half of the starts are given up, and again after as many more.
     pub to_prove_itself: usize,
     /// Starts that are never given up.
     pub finalists: usize,
@@ -39,7 +39,7 @@ pub(crate) struct MultiStart<S> {
     given_up: usize,
 }
 
-impl<S: Start> MultiStart<S> {
+impl<S: SearchStart> MultiStart<S> {
     /// Starts in their order; at least one.
     pub fn new(starts: Vec<S>) -> Self {
         Self { starts, given_up: 0 }
@@ -48,7 +48,7 @@ impl<S: Start> MultiStart<S> {
     /// Advances all starts in rounds, counted from 1, until all have ended or `tell` breaks.
     pub fn run(
         &mut self,
-        plan: Plan,
+        plan: RoundPlan,
         advance: impl Fn(&mut S, usize) + Sync,
         mut tell: impl FnMut(&Self, usize) -> ControlFlow<()>,
     ) -> Termination {
@@ -103,7 +103,7 @@ mod tests {
         rounds: usize,
     }
 
-    impl Start for Falling {
+    impl SearchStart for Falling {
         fn order(&self, other: &Self) -> Ordering {
             self.cost.total_cmp(&other.cost)
         }
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn the_best_is_found_and_those_behind_are_given_up() {
-        let plan = Plan { rounds: 100, spared: 1, to_prove_itself: 4, finalists: 2 };
+        let plan = RoundPlan { rounds: 100, spared: 1, to_prove_itself: 4, finalists: 2 };
         let (mut search, mut left) = (starts(), Vec::new());
         let ended = search.run(plan, fall, |search, _| {
             left.push(search.starts.len());
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn a_search_ends_when_its_rounds_are_used_or_it_is_broken_off() {
-        let plan = Plan { rounds: 3, spared: 0, to_prove_itself: 10, finalists: 1 };
+        let plan = RoundPlan { rounds: 3, spared: 0, to_prove_itself: 10, finalists: 1 };
         assert_eq!(starts().run(plan, fall, |_, _| ControlFlow::Continue(())), Termination::EpochsUsed);
         let stop_at_two = |_: &MultiStart<Falling>, round: usize| match round {
             2 => ControlFlow::Break(()),

@@ -16,13 +16,13 @@ use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
 
 #[derive(Debug, Clone)]
-pub(crate) struct Bounds {
+pub(crate) struct WeightBounds {
     bounded: Vec<bool>,
     /// Of the bounded ones, those that are at most 0.
     flipped: Vec<bool>,
 }
 
-impl Bounds {
+impl WeightBounds {
     /// Bounds of `count` weights under a sign: those after the first `reversible.end` have it, and those
     /// of `reversible` are at least 0 beside them; those before are free.
     pub fn new(sign: Sign, reversible: Range<usize>, count: usize) -> Self {
@@ -75,7 +75,12 @@ impl Quadratic {
     }
 
     /// The minimum within bounds, from a guess near it (or none: an empty one); `None` once stopped.
-    pub fn minimum_within(mut self, bounds: &Bounds, guess: &[f64], stop: StopCheck<'_>) -> Option<Vec<f64>> {
+    pub fn minimum_within(
+        mut self,
+        bounds: &WeightBounds,
+        guess: &[f64],
+        stop: StopCheck<'_>,
+    ) -> Option<Vec<f64>> {
         if !bounds.bounded.contains(&true) {
             return self.minimum(stop);
         }
@@ -88,7 +93,7 @@ impl Quadratic {
     }
 
     /// The minimum that a fit ends with. Once stopped, it is still found where that takes little time, else an error.
-    pub fn last_minimum(self, bounds: &Bounds, stop: StopCheck<'_>) -> Result<Vec<f64>> {
+    pub fn last_minimum(self, bounds: &WeightBounds, stop: StopCheck<'_>) -> Result<Vec<f64>> {
         let stop = if self.right.len() <= QUICKLY_SOLVED { StopCheck::never() } else { stop };
         self.minimum_within(bounds, &[], stop).ok_or(Error::Stopped)
     }
@@ -98,7 +103,7 @@ impl Quadratic {
         &self,
         penalty: &Penalty,
         factors: &[f64],
-        bounds: &Bounds,
+        bounds: &WeightBounds,
         stop: StopCheck<'_>,
     ) -> Option<Vec<Vec<f64>>> {
         let mut path: Vec<Vec<f64>> = Vec::new();
@@ -293,7 +298,7 @@ mod tests {
         problem.penalise(&Penalty::ridge(vec![1.0; n]), 1e-4);
         problem.right.iter_mut().skip(1).step_by(2).for_each(|right| *right = -*right);
         for sign in [Sign::NonNegative, Sign::NonPositive] {
-            let bounds = Bounds::apart(sign, 10..n, 0..0, n);
+            let bounds = WeightBounds::apart(sign, 10..n, 0..0, n);
             let weights = problem.clone().minimum_within(&bounds, &[], StopCheck::never()).unwrap();
             let product = problem.matrix.times(&weights);
             let side = if sign == Sign::NonNegative { 1.0 } else { -1.0 };

@@ -1,7 +1,7 @@
 //! Jobs shared out among the threads of the pool. Results stand in the order of the jobs, so that nothing depends on the
 //! number of threads.
 //!
-//! The pool sees one kind of job, whatever the results are: its code is compiled once and not for every caller.
+//! The pool runs one kind of job, whatever the results are: its code is compiled once and not for every caller.
 
 use std::sync::{Mutex, PoisonError};
 

@@ -162,7 +162,7 @@ impl SpaceDilatation {
         Ok(search)
     }
 
-    /// True if a minimisation of a function of so many variables with these settings can go on from here.
+    /// True if a minimisation of a function of this number of variables with these settings can go on from here.
     pub(crate) fn is_sound(&self, variables: usize, options: &DilatationOptions) -> bool {
         let n = variables;
         let are_finite = |values: &[f64]| values.iter().all(|value| value.is_finite());

@@ -4,8 +4,8 @@ use hysid_core::elementary::powf;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::path::{Leg, Path};
-use super::segment::{Kind, Segment};
+use super::path::{DrivePath, Leg};
+use super::segment::{Segment, SegmentKind};
 use super::survey::Survey;
 use hysid_diagnosis::Verdict;
 
@@ -38,14 +38,14 @@ const SLOWEST: f64 = 0.2;
 const DRAWS: usize = 20;
 
 /// Rows and segments of a drive, which begins at the start of the limits.
-pub(super) struct Drive {
+pub(super) struct DriveRows {
     pub inputs: Vec<f64>,
-    path: Path,
-    pieces: Vec<Piece>,
+    path: DrivePath,
+    pieces: Vec<DrivePiece>,
 }
 
-struct Piece {
-    kind: Kind,
+struct DrivePiece {
+    kind: SegmentKind,
     first_row: usize,
     legs: Vec<Leg>,
     /// Largest rate, smallest and largest input, behind the first leg if there are others.
@@ -63,14 +63,14 @@ fn swings(turns: &[f64], speed: f64) -> Vec<Leg> {
     turns.iter().map(|&to| Leg::Swing { to, speed }).collect()
 }
 
-impl Drive {
+impl DriveRows {
     /// A drive of one row.
-    pub fn new(path: Path) -> Self {
+    pub fn new(path: DrivePath) -> Self {
         Self { inputs: vec![path.limits.start], path, pieces: Vec::new() }
     }
 
     /// A drive for data with these gaps.
-    pub fn for_data(path: Path, survey: &Survey, seed: u64) -> Self {
+    pub fn for_data(path: DrivePath, survey: &Survey, seed: u64) -> Self {
         let mut drive = Self::new(path);
         drive.add_tests(survey);
         drive.add_random_reversals(survey, &mut Xoshiro256PlusPlus::seed_from_u64(seed));
@@ -92,7 +92,7 @@ impl Drive {
         self.inputs.len() + rows <= self.path.limits.rows
     }
 
-    pub fn add(&mut self, kind: Kind, legs: &[Leg]) {
+    pub fn add(&mut self, kind: SegmentKind, legs: &[Leg]) {
         let first_row = self.inputs.len();
         let (mut rate, mut range) = (0.0_f64, NO_RANGE);
         for (place, &leg) in legs.iter().enumerate() {
@@ -108,13 +108,13 @@ impl Drive {
             }
             self.inputs.extend(rows);
         }
-        self.pieces.push(Piece { kind, first_row, legs: legs.to_vec(), rate, range });
+        self.pieces.push(DrivePiece { kind, first_row, legs: legs.to_vec(), rate, range });
     }
 
     /// Goes back to the start.
     pub fn go_back(&mut self) {
         if self.now() != self.path.limits.start {
-            self.add(Kind::Return, &[self.way_back()]);
+            self.add(SegmentKind::Return, &[self.way_back()]);
         }
     }
 
@@ -122,27 +122,29 @@ impl Drive {
     fn add_tests(&mut self, survey: &Survey) {
         let (low, high) = self.path.limits.range;
         if survey.unknown_start && !survey.may_deteriorate {
-            self.add_test(Kind::Conditioning, &swings(&[high, low], 1.0));
+            self.add_test(SegmentKind::Conditioning, &swings(&[high, low], 1.0));
         }
         if survey.speed_matters && survey.rate_dependence == Verdict::NotTestable {
-            self.add_test_of_a_loop(Kind::TwoSpeeds, |up, down| {
+            self.add_test_of_a_loop(SegmentKind::TwoSpeeds, |up, down| {
                 [swings(&[up, down, up], 1.0), swings(&[down, up], SLOW)].concat()
             });
         }
         if survey.deterioration == Verdict::NotTestable {
-            self.add_test_of_a_loop(Kind::RepeatedLoop, |up, down| swings(&[up, down, up, down, up], 1.0));
+            self.add_test_of_a_loop(SegmentKind::RepeatedLoop, |up, down| {
+                swings(&[up, down, up, down, up], 1.0)
+            });
         }
         if survey.speed_matters && survey.no_hold {
             let rows = (HOLD * self.path.limits.rows as f64) as usize;
             for place in HOLDS {
                 let swing = Leg::Swing { to: low + place * (high - low), speed: 1.0 };
-                self.add_test(Kind::Hold, &[swing, Leg::Hold(rows.max(FEWEST_ROWS_OF_A_HOLD))]);
+                self.add_test(SegmentKind::Hold, &[swing, Leg::Hold(rows.max(FEWEST_ROWS_OF_A_HOLD))]);
             }
         }
     }
 
     /// Adds a test if it leaves enough rows; true if it was added.
-    fn add_test(&mut self, kind: Kind, legs: &[Leg]) -> bool {
+    fn add_test(&mut self, kind: SegmentKind, legs: &[Leg]) -> bool {
         let (all, rows) = (self.path.limits.rows as f64, self.path.rows_of(self.now(), legs));
         let together = (self.inputs.len() + rows) as f64;
         let may_be_run = rows as f64 <= OF_A_TEST * all && together <= OF_ALL_TESTS * all && self.fits(legs);
@@ -152,7 +154,7 @@ impl Drive {
         may_be_run
     }
 
-    fn add_test_of_a_loop(&mut self, kind: Kind, legs: impl Fn(f64, f64) -> Vec<Leg>) {
+    fn add_test_of_a_loop(&mut self, kind: SegmentKind, legs: impl Fn(f64, f64) -> Vec<Leg>) {
         let limits = self.path.limits;
         let (middle, half) = (0.5 * (limits.range.0 + limits.range.1), 0.5 * limits.width());
         AMPLITUDES
@@ -172,7 +174,7 @@ impl Drive {
             };
             let fitting = (0..DRAWS).map(|_| draw()).find(|leg| self.fits(&[*leg]));
             let Some(leg) = fitting else { return };
-            self.add(Kind::RandomReversals, &[leg]);
+            self.add(SegmentKind::RandomReversals, &[leg]);
             rises = !rises;
         }
     }
@@ -191,17 +193,17 @@ impl Drive {
 
     /// The segments: pieces of one kind that follow each other are one, and have one speed unless they are random.
     pub fn segments(&self) -> Vec<Segment> {
-        let speed = |piece: &Piece| {
+        let speed = |piece: &DrivePiece| {
             piece.legs.iter().rev().find_map(|leg| match leg {
                 Leg::Swing { speed, .. } => Some(speed.to_bits()),
                 Leg::Hold(_) => None,
             })
         };
-        let is_same = |a: &Piece, b: &Piece| {
-            a.kind == b.kind && (a.kind == Kind::RandomReversals || speed(a) == speed(b))
+        let is_same = |a: &DrivePiece, b: &DrivePiece| {
+            a.kind == b.kind && (a.kind == SegmentKind::RandomReversals || speed(a) == speed(b))
         };
         let mut end = self.inputs.len();
-        let chunks: Vec<&[Piece]> = self.pieces.chunk_by(is_same).collect();
+        let chunks: Vec<&[DrivePiece]> = self.pieces.chunk_by(is_same).collect();
         let mut segments: Vec<Segment> = Vec::new();
         for pieces in chunks.into_iter().rev() {
             segments.push(self.segment(pieces, end));
@@ -211,7 +213,7 @@ impl Drive {
         segments
     }
 
-    fn segment(&self, pieces: &[Piece], end: usize) -> Segment {
+    fn segment(&self, pieces: &[DrivePiece], end: usize) -> Segment {
         let (low, high) = pieces.iter().fold(NO_RANGE, |range, piece| joined(range, piece.range));
         let rate = pieces.iter().map(|piece| piece.rate).fold(0.0, f64::max);
         let kind = pieces[0].kind;

@@ -1,4 +1,4 @@
-//! What a machine may do: range, start, sampling step, largest rate and length of a drive.
+//! Limits of a machine: range, start, sampling step, largest rate and length of a drive.
 
 use serde::Serialize;
 
@@ -39,9 +39,9 @@ pub struct Limits {
     pub rows: usize,
 }
 
-/// What the user wants of the limits; `None` is what the data have.
+/// Limits chosen by the user; `None` takes that of the data.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Wanted {
+pub struct LimitOptions {
     /// Lowest and highest input.
     pub range: Option<(f64, f64)>,
     /// Time between rows.
@@ -57,7 +57,7 @@ impl Limits {
     ///
     /// # Errors
     /// Data from which nothing can be identified, limits that cannot be used.
-    pub fn of(data: &Dataset, wanted: &Wanted) -> Result<Self> {
+    pub fn of(data: &Dataset, wanted: &LimitOptions) -> Result<Self> {
         data.check_identifiable(crate::data::FEWEST_ROWS)?;
         let range = wanted.range.unwrap_or_else(|| data.input_range(0));
         let fastest = data.records().iter().map(|record| (largest_rate(record), record));
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn limits_are_those_of_the_data() {
-        let limits = Limits::of(&data(0.1), &Wanted::default()).unwrap();
+        let limits = Limits::of(&data(0.1), &LimitOptions::default()).unwrap();
         assert_eq!((limits.start, limits.rows), (0.0, 400));
         assert!((limits.step.unwrap() - 0.1).abs() < 1e-12);
         // The rate of 3 sin(0.5 t) is at most 1.5.
@@ -182,20 +182,20 @@ mod tests {
         let mut x: Vec<f64> = (0..1000).map(|k| sin(0.02 * f64::from(k))).collect();
         x.iter_mut().skip(500).for_each(|x| *x += 1.0);
         let data = Dataset::from_slices(&x, &x).unwrap();
-        assert!(Limits::of(&data, &Wanted::default()).unwrap().max_rate < 0.0201);
+        assert!(Limits::of(&data, &LimitOptions::default()).unwrap().max_rate < 0.0201);
     }
 
     #[test]
     fn limits_that_leave_no_drive_are_refused() {
-        let refused = |wanted: Wanted| Limits::of(&data(0.1), &wanted).unwrap_err().to_string();
-        let base = Wanted::default();
-        assert!(refused(Wanted { range: Some((1.0, 1.0)), ..base }).contains("lower one first"));
-        assert!(refused(Wanted { length: Some(3), ..base }).contains("from 40 to"));
-        assert!(refused(Wanted { max_rate: Some(-1.0), ..base }).contains("from 1e-100"));
-        assert!(refused(Wanted { max_rate: Some(1e-3), ..base }).contains("too few"));
-        assert!(refused(Wanted { step: Some(f64::NAN), ..base }).contains("from 1e-100"));
+        let refused = |wanted: LimitOptions| Limits::of(&data(0.1), &wanted).unwrap_err().to_string();
+        let base = LimitOptions::default();
+        assert!(refused(LimitOptions { range: Some((1.0, 1.0)), ..base }).contains("lower one first"));
+        assert!(refused(LimitOptions { length: Some(3), ..base }).contains("from 40 to"));
+        assert!(refused(LimitOptions { max_rate: Some(-1.0), ..base }).contains("from 1e-100"));
+        assert!(refused(LimitOptions { max_rate: Some(1e-3), ..base }).contains("too few"));
+        assert!(refused(LimitOptions { step: Some(f64::NAN), ..base }).contains("from 1e-100"));
         assert_eq!(
-            refused(Wanted { step: Some(1e-300), ..base }),
+            refused(LimitOptions { step: Some(1e-300), ..base }),
             "step 1e-300: a number from 1e-100 to 1e100 is needed"
         );
     }

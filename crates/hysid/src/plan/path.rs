@@ -49,14 +49,14 @@ pub enum Leg {
 
 /// Makes the rows of legs, within the limits.
 #[derive(Debug, Clone, Copy)]
-pub struct Path {
-    /// What the machine may do.
+pub struct DrivePath {
+    /// Limits of the machine.
     pub limits: Limits,
     /// Shape of swings.
     pub wave: Wave,
 }
 
-impl Path {
+impl DrivePath {
     /// Number of rows of a leg from an input.
     pub fn rows(&self, from: f64, leg: Leg) -> usize {
         match leg {
@@ -107,7 +107,7 @@ mod tests {
     fn a_swing_is_as_fast_as_allowed_and_no_faster() {
         let limits = Limits { range: (-1.0, 1.0), start: 0.0, step: Some(0.1), max_rate: 0.5, rows: 500 };
         for (wave, rows) in [(Wave::Smooth, 63), (Wave::Triangle, 40)] {
-            let path = Path { limits, wave };
+            let path = DrivePath { limits, wave };
             let leg = Leg::Swing { to: 1.0, speed: 1.0 };
             let x = path.leg(-1.0, leg);
             assert_eq!((x.len(), path.rows_of(-1.0, &[leg])), (rows, rows));

@@ -2,10 +2,10 @@
 
 use hysid_core::elementary::{exp, ln, powi};
 
-use super::limits::{Limits, Wanted};
-use super::path::{Leg, Path, Wave};
-use super::segment::Kind;
-use super::{Plan, drive::Drive, time};
+use super::limits::{LimitOptions, Limits};
+use super::path::{DrivePath, Leg, Wave};
+use super::segment::SegmentKind;
+use super::{Plan, drive::DriveRows, time};
 use crate::data::record::ColumnNames;
 use crate::error::{Error, OptionError, Result};
 
@@ -27,18 +27,18 @@ pub enum Protocol {
     Magnet,
 }
 
-/// What a protocol is made for.
+/// Options of a protocol for a specimen without data.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ProtocolOptions {
     /// Limits; the range is needed.
-    pub limits: Wanted,
+    pub limits: LimitOptions,
     /// Shape of swings; smooth with a time step and triangles without if `None`.
     pub wave: Option<Wave>,
 }
 
 /// A piece of a protocol: legs between levels from -1 to 1, where 0 is the start and ±1 are the ends of the range.
-struct Piece {
-    kind: Kind,
+struct ProtocolPiece {
+    kind: SegmentKind,
     legs: Vec<Level>,
 }
 
@@ -140,16 +140,16 @@ impl Protocol {
         }
     }
 
-    fn pieces(self) -> Vec<Piece> {
+    fn pieces(self) -> Vec<ProtocolPiece> {
         match self {
             Self::Structure => {
                 let amplitude = |step: i32| powi(FEMA_RATIO, step - FEMA_STEPS + 1);
-                let mut pieces: Vec<Piece> = (0..FEMA_STEPS - 3)
-                    .map(|step| cycles(Kind::RisingLoops, amplitude(step), 2, 1.0))
+                let mut pieces: Vec<ProtocolPiece> = (0..FEMA_STEPS - 3)
+                    .map(|step| cycles(SegmentKind::RisingLoops, amplitude(step), 2, 1.0))
                     .collect();
                 for step in FEMA_STEPS - 3..FEMA_STEPS {
-                    pieces.push(cycles(Kind::RisingLoops, amplitude(step), 2, 1.0));
-                    pieces.push(cycles(Kind::CentredLoop, TRAILING * amplitude(step), 1, 1.0));
+                    pieces.push(cycles(SegmentKind::RisingLoops, amplitude(step), 2, 1.0));
+                    pieces.push(cycles(SegmentKind::CentredLoop, TRAILING * amplitude(step), 1, 1.0));
                 }
                 pieces.push(nested());
                 pieces
@@ -160,22 +160,22 @@ impl Protocol {
                 pieces
             }
             Self::Rubber => {
-                let mut pieces = vec![cycles(Kind::Conditioning, 1.0, 3, 1.0)];
+                let mut pieces = vec![cycles(SegmentKind::Conditioning, 1.0, 3, 1.0)];
                 pieces.extend(at_speeds(&[0.15, 0.4, 1.0]));
                 pieces.extend([hold(0.8), hold(0.3), nested(), irregular()]);
                 pieces
             }
             Self::Actuator => {
-                let mut pieces = vec![cycles(Kind::Conditioning, 1.0, 1, 1.0)];
+                let mut pieces = vec![cycles(SegmentKind::Conditioning, 1.0, 1, 1.0)];
                 pieces.extend(reversal_curves());
                 pieces.push(nested());
-                pieces.extend(SPEEDS.map(|speed| cycles(Kind::TwoSpeeds, 0.5, 1, speed)));
+                pieces.extend(SPEEDS.map(|speed| cycles(SegmentKind::TwoSpeeds, 0.5, 1, speed)));
                 pieces.extend([hold(0.8), hold(0.4), irregular()]);
                 pieces
             }
             Self::Magnet => {
-                let mut pieces: Vec<Piece> = [0.1, 0.2, 0.35, 0.5, 0.7, 1.0]
-                    .map(|amplitude| cycles(Kind::RisingLoops, amplitude, 1, 1.0))
+                let mut pieces: Vec<ProtocolPiece> = [0.1, 0.2, 0.35, 0.5, 0.7, 1.0]
+                    .map(|amplitude| cycles(SegmentKind::RisingLoops, amplitude, 1, 1.0))
                     .into();
                 pieces.extend(reversal_curves());
                 pieces.extend([nested(), irregular()]);
@@ -194,9 +194,9 @@ impl Protocol {
         let range = wanted.range.ok_or_else(|| OptionError::value("range", "none", needed))?;
         let wave = wave.unwrap_or(if wanted.step.is_some() { Wave::Smooth } else { Wave::Triangle });
         let limits = self.limits(range, &wanted, wave)?;
-        let path = Path { limits, wave };
+        let path = DrivePath { limits, wave };
         let legs = legs(self.pieces(), limits);
-        let mut drive = Drive::new(path);
+        let mut drive = DriveRows::new(path);
         legs.iter().for_each(|(kind, legs)| drive.add(*kind, legs));
         drive.go_back();
         let names = ColumnNames { time: limits.step.map(|_| "t".into()), ..ColumnNames::plain(1) };
@@ -213,7 +213,7 @@ impl Protocol {
     }
 
     /// The limits with the rate at which the protocol takes the wanted rows, or the rows at the wanted rate.
-    fn limits(self, range: (f64, f64), wanted: &Wanted, wave: Wave) -> Result<Limits> {
+    fn limits(self, range: (f64, f64), wanted: &LimitOptions, wave: Wave) -> Result<Limits> {
         let step = wanted.step;
         let start = 0.0_f64.clamp(range.0.min(range.1), range.1);
         let rows = wanted.length.unwrap_or(ROWS);
@@ -224,7 +224,7 @@ impl Protocol {
             let limits = Limits { max_rate, ..probe };
             let all: Vec<Leg> = legs(self.pieces(), limits).into_iter().flat_map(|(_, legs)| legs).collect();
             let back = Leg::Swing { to: start, speed: 1.0 };
-            1 + Path { limits, wave }.rows_of(start, &[all, vec![back]].concat())
+            1 + DrivePath { limits, wave }.rows_of(start, &[all, vec![back]].concat())
         };
         if let Some(max_rate) = wanted.max_rate {
             // Nonsense is refused before rows are counted.
@@ -259,21 +259,22 @@ fn too_few(protocol: Protocol, rows: usize, needed: usize) -> Error {
 }
 
 /// Cycles between both ends at a level.
-fn cycles(kind: Kind, amplitude: f64, count: usize, speed: f64) -> Piece {
+fn cycles(kind: SegmentKind, amplitude: f64, count: usize, speed: f64) -> ProtocolPiece {
     let mut legs: Vec<Level> = Vec::new();
     (0..count).for_each(|_| legs.extend([Level::Swing(amplitude, speed), Level::Swing(-amplitude, speed)]));
-    Piece { kind, legs }
+    ProtocolPiece { kind, legs }
 }
 
 /// Amplitudes, each at all speeds, the slowest first.
-fn at_speeds(amplitudes: &[f64]) -> Vec<Piece> {
-    let of_amplitude = |amplitude: &f64| SPEEDS.map(|speed| cycles(Kind::RisingLoops, *amplitude, 1, speed));
+fn at_speeds(amplitudes: &[f64]) -> Vec<ProtocolPiece> {
+    let of_amplitude =
+        |amplitude: &f64| SPEEDS.map(|speed| cycles(SegmentKind::RisingLoops, *amplitude, 1, speed));
     amplitudes.iter().flat_map(of_amplitude).collect()
 }
 
-fn reversal_curves() -> Vec<Piece> {
-    let curve = |end: f64, turn: f64| Piece {
-        kind: Kind::ReversalCurve,
+fn reversal_curves() -> Vec<ProtocolPiece> {
+    let curve = |end: f64, turn: f64| ProtocolPiece {
+        kind: SegmentKind::ReversalCurve,
         legs: vec![Level::Swing(end, 1.0), Level::Swing(turn, 1.0), Level::Swing(end, 1.0)],
     };
     let turns = [0.6, 0.2, -0.2, -0.6];
@@ -281,30 +282,35 @@ fn reversal_curves() -> Vec<Piece> {
 }
 
 /// Loops that fall, each inside the one before.
-fn nested() -> Piece {
+fn nested() -> ProtocolPiece {
     let level = |k: i32| Level::Swing(if k % 2 == 0 { 1.0 } else { -1.0 } * powi(0.8, k), 1.0);
-    Piece { kind: Kind::NestedLoops, legs: (0..10).map(level).collect() }
+    ProtocolPiece { kind: SegmentKind::NestedLoops, legs: (0..10).map(level).collect() }
 }
 
 /// Turning points all over the range, by multiples of the golden ratio.
-fn irregular() -> Piece {
+fn irregular() -> ProtocolPiece {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     let level = |k: usize| Level::Swing(2.0 * (k as f64 * GOLDEN).fract() - 1.0, 1.0);
-    Piece { kind: Kind::RandomReversals, legs: (1..=14).map(level).collect() }
+    ProtocolPiece { kind: SegmentKind::RandomReversals, legs: (1..=14).map(level).collect() }
 }
 
-fn hold(level: f64) -> Piece {
-    Piece { kind: Kind::Hold, legs: vec![Level::Swing(level, 1.0), Level::Hold] }
+fn hold(level: f64) -> ProtocolPiece {
+    ProtocolPiece { kind: SegmentKind::Hold, legs: vec![Level::Swing(level, 1.0), Level::Hold] }
 }
 
-fn legs(pieces: Vec<Piece>, limits: Limits) -> Vec<(Kind, Vec<Leg>)> {
+fn legs(pieces: Vec<ProtocolPiece>, limits: Limits) -> Vec<(SegmentKind, Vec<Leg>)> {
     let (low, high) = limits.range;
     // A level of a range on one side goes from the start to the end.
     let is_one_sided =
         limits.start - low < 0.05 * limits.width() || high - limits.start < 0.05 * limits.width();
-    let place = |level: f64, kind: Kind| {
-        let is_cycle =
-            matches!(kind, Kind::RisingLoops | Kind::CentredLoop | Kind::TwoSpeeds | Kind::Conditioning);
+    let place = |level: f64, kind: SegmentKind| {
+        let is_cycle = matches!(
+            kind,
+            SegmentKind::RisingLoops
+                | SegmentKind::CentredLoop
+                | SegmentKind::TwoSpeeds
+                | SegmentKind::Conditioning
+        );
         match (is_one_sided, is_cycle) {
             (true, true) if level < 0.0 => limits.start,
             (true, true) => {
@@ -317,12 +323,13 @@ fn legs(pieces: Vec<Piece>, limits: Limits) -> Vec<(Kind, Vec<Leg>)> {
         }
     };
     let hold = HOLD * limits.width() / (limits.max_rate * limits.time_step());
-    let leg = |level: Level, kind: Kind| match level {
+    let leg = |level: Level, kind: SegmentKind| match level {
         Level::Swing(level, speed) => Leg::Swing { to: place(level, kind).clamp(low, high), speed },
         Level::Hold => Leg::Hold((hold.ceil() as usize).max(4)),
     };
-    let of_piece =
-        |piece: Piece| (piece.kind, piece.legs.into_iter().map(|level| leg(level, piece.kind)).collect());
+    let of_piece = |piece: ProtocolPiece| {
+        (piece.kind, piece.legs.into_iter().map(|level| leg(level, piece.kind)).collect())
+    };
     pieces.into_iter().map(of_piece).collect()
 }
 
@@ -353,7 +360,8 @@ mod tests {
     /// Amplitudes of FEMA 461: two cycles each, 1.4 times larger each time, from 0.048 of the largest.
     #[test]
     fn the_protocol_of_structures_is_that_of_fema_461() {
-        let limits = Wanted { range: Some((-50.0, 50.0)), length: Some(4000), ..Wanted::default() };
+        let limits =
+            LimitOptions { range: Some((-50.0, 50.0)), length: Some(4000), ..LimitOptions::default() };
         let plan = Protocol::Structure.plan(&ProtocolOptions { limits, wave: None }).unwrap();
         let turns = &plan.segments[0].turning_points;
         assert!((turns[0] / 50.0 - 0.048).abs() < 0.0005, "{turns:?}");
@@ -366,7 +374,7 @@ mod tests {
     fn every_protocol_keeps_its_limits() {
         for kind in Protocol::ALL {
             for (range, step) in [((-2.0, 3.0), Some(0.01)), ((0.0, 150.0), Some(0.1)), ((-5.0, 0.0), None)] {
-                let limits = Wanted { range: Some(range), step, ..Wanted::default() };
+                let limits = LimitOptions { range: Some(range), step, ..LimitOptions::default() };
                 let plan = kind.plan(&ProtocolOptions { limits, wave: None }).unwrap();
                 assert!(plan.input.iter().all(|x| (range.0..=range.1).contains(x)), "{kind:?}");
                 assert_eq!((plan.input[0], *plan.input.last().unwrap()), (0.0, 0.0));

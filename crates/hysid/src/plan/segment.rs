@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use serde::{Serialize, Serializer};
 
-/// Kind of a segment.
+/// Kind of a segment: how its input moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum SegmentKind {
     /// A loop over the whole range, after which the memory is known.
     Conditioning,
     /// The same loop at two speeds.
@@ -33,13 +33,13 @@ pub enum Kind {
     Return,
 }
 
-impl Kind {
-    /// What it is, in a few words.
+impl SegmentKind {
+    /// Names the kind, in a few words.
     pub fn words(self) -> &'static str {
         self.texts().0
     }
 
-    /// What it adds, in a few words.
+    /// Purpose of the segment, in a few words.
     pub fn purpose(self) -> &'static str {
         self.texts().1
     }
@@ -71,7 +71,7 @@ impl Kind {
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for SegmentKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.words())
     }
@@ -80,8 +80,8 @@ impl fmt::Display for Kind {
 /// A segment of a drive. Inputs and outputs are in the units of the data.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Segment {
-    /// What is run.
-    pub kind: Kind,
+    /// Kind of the segment.
+    pub kind: SegmentKind,
     /// Its rows in the drive, counted from 0.
     #[serde(serialize_with = "first_and_last")]
     pub rows: Range<usize>,

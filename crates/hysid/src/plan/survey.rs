@@ -1,4 +1,4 @@
-//! What data do not cover: properties that they cannot test, and swings, reversals and rates that were not run.
+//! Gaps in data: properties that they cannot test, and swings, reversals and rates that were not run.
 
 use hysid_diagnosis::cycles::Field;
 use hysid_diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
@@ -27,26 +27,26 @@ const SHORTEST: f64 = 0.1;
 /// Speeds closer than this ratio are one.
 const ONE_SPEED: f64 = 1.5;
 
-/// A hold is so many rows with less than this share of the range of movement.
+/// Least number of rows of a hold, with less than this share of the range of movement.
 const HOLD_ROWS: usize = 8;
 const STILL: f64 = 1e-3;
 
 /// Something that data do not cover.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Gap {
-    /// What: a property, or `amplitudes`, `minor-loops`, `turning-points`, `speeds`, `holds`.
+    /// A property, or `amplitudes`, `minor-loops`, `turning-points`, `speeds`, `holds`.
     pub what: &'static str,
     /// In words.
     pub statement: String,
 }
 
-/// What is known of data before a plan.
+/// Summary of the data before a plan.
 #[derive(Debug, Clone)]
 pub(super) struct Survey {
     pub gaps: Vec<Gap>,
     pub rate_dependence: Verdict,
     pub deterioration: Verdict,
-    /// True if the specimen deteriorates, or is a structure whose data cannot tell.
+    /// True if the specimen deteriorates, or is a structure whose data cannot show it.
     pub may_deteriorate: bool,
     /// True if the data have time and do not exclude rate dependence.
     pub speed_matters: bool,

@@ -1,7 +1,7 @@
 //! Folds of rows whose sums are kept apart: what is trained on is the sum of all less the one held out, so each row is in
 //! one fold. Protocols are dealt out as for the folds of data.
 
-use crate::data::record::{Dataset, Protocol, Record, protocols};
+use crate::data::record::{Dataset, Record, RepeatedProtocol, protocols};
 use crate::validation::deal;
 
 /// Blocks that the rows are cut into where there are few protocols.
@@ -33,8 +33,9 @@ impl RowFolds {
     pub fn of(data: &Dataset) -> Self {
         let used: Vec<usize> =
             (0..data.records().len()).filter(|&index| data.records()[index].scored() > 0).collect();
-        let is_scored = |protocol: &Protocol| data.records()[protocol.runs[0]].scored() > 0;
-        let protocols: Vec<Protocol> = protocols(data.records()).into_iter().filter(is_scored).collect();
+        let is_scored = |protocol: &RepeatedProtocol| data.records()[protocol.runs[0]].scored() > 0;
+        let protocols: Vec<RepeatedProtocol> =
+            protocols(data.records()).into_iter().filter(is_scored).collect();
         if protocols.len() < PROTOCOLS_AS_FOLDS {
             let are_single = protocols.iter().all(|protocol| protocol.records.len() == 1);
             return Self::blocks(data, &used, are_single);

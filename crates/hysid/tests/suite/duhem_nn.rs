@@ -3,7 +3,7 @@
 
 use crate::scaffold::*;
 use hysid::elementary::{cos, exp, powf, sin};
-use hysid::law::duhem_nn::{Cell, DuhemNn, Input, Layout, Run, Shape};
+use hysid::law::duhem_nn::{Cell, CellLayout, CellRun, CellShape, DuhemNn, Input};
 use hysid::law::series::run;
 
 /// A law without offset and scales, of one state that starts at `s_0` and is the output.
@@ -31,8 +31,8 @@ fn relaxation(c: f64, tau: f64, q: f64, s_0: f64) -> DuhemNn {
 }
 
 /// Random parameters of the magnitudes that a fit starts from, times `size`.
-fn random_cell(shape: Shape, size: f64, generator: &mut Generator) -> Cell {
-    let layout = Layout::new(shape);
+fn random_cell(shape: CellShape, size: f64, generator: &mut Generator) -> Cell {
+    let layout = CellLayout::new(shape);
     let parameters: Vec<f64> = (0..layout.count())
         .map(|place| match layout.has_decay(place) {
             true => size * between(generator, -0.8, 0.8),
@@ -57,15 +57,15 @@ fn law_of(cell: Cell) -> DuhemNn {
     law.validated().unwrap()
 }
 
-fn shapes() -> Vec<Shape> {
-    let full = Shape { channels: 2, stops: 3, states: 3, neurons: 9, has_time: true };
+fn shapes() -> Vec<CellShape> {
+    let full = CellShape { channels: 2, stops: 3, states: 3, neurons: 9, has_time: true };
     vec![
         full,
-        Shape { stops: 0, states: 1, neurons: 1, ..full },
-        Shape { stops: 0, ..full },
-        Shape { has_time: false, ..full },
-        Shape { channels: 1, has_time: false, neurons: 8, ..full },
-        Shape { channels: 1, has_time: false, stops: 0, states: 5, neurons: 3 },
+        CellShape { stops: 0, states: 1, neurons: 1, ..full },
+        CellShape { stops: 0, ..full },
+        CellShape { has_time: false, ..full },
+        CellShape { channels: 1, has_time: false, neurons: 8, ..full },
+        CellShape { channels: 1, has_time: false, stops: 0, states: 5, neurons: 3 },
     ]
 }
 
@@ -154,7 +154,7 @@ fn parts_that_do_not_go_together_are_refused() {
     assert!(refused(&|law| law.output_mean = f64::INFINITY).contains("too large"));
 }
 
-fn drive(shape: Shape, rows: usize, generator: &mut Generator) -> Vec<Input> {
+fn drive(shape: CellShape, rows: usize, generator: &mut Generator) -> Vec<Input> {
     let mut x = 0.1;
     (0..rows)
         .map(|_| {
@@ -168,7 +168,7 @@ fn drive(shape: Shape, rows: usize, generator: &mut Generator) -> Vec<Input> {
 /// The outputs, and the columns of the Jacobian if asked for, of two records.
 fn rows_of(cell: &Cell, drives: &[Vec<Input>], with_jacobian: bool) -> (Vec<f64>, Vec<Vec<f64>>) {
     let targets: Vec<Vec<f64>> = drives.iter().map(|drive| vec![0.0; drive.len()]).collect();
-    let run = Run { cell, drives, targets: &targets, with_jacobian, stop: StopCheck::never() };
+    let run = CellRun { cell, drives, targets: &targets, with_jacobian, stop: StopCheck::never() };
     let terms = cell.output.len();
     let rows = run.rows().unwrap();
     let output = |row: &Vec<f64>| row[..terms].iter().zip(&cell.output).map(|(term, w)| term * w).sum();
@@ -179,7 +179,7 @@ fn rows_of(cell: &Cell, drives: &[Vec<Input>], with_jacobian: bool) -> (Vec<f64>
 fn derivatives_are_those_of_the_free_run() {
     let mut generator = Generator::seed_from_u64(11);
     for shape in shapes() {
-        let layout = Layout::new(shape);
+        let layout = CellLayout::new(shape);
         let parameters: Vec<f64> = (0..layout.count())
             .map(|place| {
                 let size = if layout.stops.contains(&place) { 4.0 } else { 0.8 };
@@ -220,8 +220,13 @@ fn the_gram_matrix_is_that_of_the_rows() {
     let blank = |k: usize| if k % 5 == 2 { f64::NAN } else { sin(k as f64) };
     let targets: Vec<Vec<f64>> = drives.iter().map(|drive| (0..drive.len()).map(blank).collect()).collect();
     for with_jacobian in [false, true] {
-        let run =
-            Run { cell: &cell, drives: &drives, targets: &targets, with_jacobian, stop: StopCheck::never() };
+        let run = CellRun {
+            cell: &cell,
+            drives: &drives,
+            targets: &targets,
+            with_jacobian,
+            stop: StopCheck::never(),
+        };
         let (gram, rows) = (run.gram().unwrap(), run.rows().unwrap());
         assert_eq!(rows.len(), targets.iter().flatten().filter(|y| !y.is_nan()).count());
         for i in 0..rows[0].len() {
@@ -231,7 +236,7 @@ fn the_gram_matrix_is_that_of_the_rows() {
                 assert!((gram.at(i, j) - exact).abs() <= 1e-12 * size, "{i}, {j}");
             }
         }
-        let stopped = Run { stop: StopCheck::new(&|| true), ..run };
+        let stopped = CellRun { stop: StopCheck::new(&|| true), ..run };
         assert!(stopped.gram().is_none());
     }
 }
@@ -261,7 +266,7 @@ fn options(rate: Option<RateMethod>) -> ClassicalOptions {
 fn it_learns_its_own_kind() {
     let rate = Some(RateMethod::Central);
     let mut generator = Generator::seed_from_u64(17);
-    let shape = Shape { channels: 2, stops: 2, states: 2, neurons: 4, has_time: true };
+    let shape = CellShape { channels: 2, stops: 2, states: 2, neurons: 4, has_time: true };
     let mut cell = random_cell(shape, 1.0, &mut generator);
     cell.stops = vec![1.5, 4.0, 0.2, -0.3];
     let law = law_of(cell);
@@ -308,7 +313,7 @@ fn a_model_without_rate_or_time_has_only_what_its_data_have() {
         let hysid::model::Predictor::Law(hysid::law::Classical::DuhemNn(law)) = again.predictor() else {
             panic!("{:?}", again.predictor())
         };
-        let Shape { channels, has_time: relaxes, .. } = law.cell.shape();
+        let CellShape { channels, has_time: relaxes, .. } = law.cell.shape();
         assert_eq!((channels == 2, relaxes), (has_rate, has_time), "{rate:?}");
         let error = again.evaluate(&data).unwrap().nrmse_std_percent.unwrap();
         assert!(error < 10.0, "{rate:?}: {error} %");

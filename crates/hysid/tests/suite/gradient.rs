@@ -18,13 +18,13 @@ fn path(rows: usize, generator: &mut Generator) -> Vec<f64> {
     x
 }
 
-fn random_drive(a: &Architecture, rows: usize, generator: &mut Generator) -> Drive {
+fn random_drive(a: &Architecture, rows: usize, generator: &mut Generator) -> NetworkDrive {
     let channels = (0..a.channels()).map(|_| path(rows, generator)).collect();
     let steps = (0..rows).map(|k| if k == 0 { 0.0 } else { between(generator, 0.02, 0.4) });
-    Drive { channels, steps: if a.relaxation > 0 { steps.collect() } else { Vec::new() } }
+    NetworkDrive { channels, steps: if a.relaxation > 0 { steps.collect() } else { Vec::new() } }
 }
 
-fn random_parameters(layout: &Layout, ln_beta: f64, generator: &mut Generator) -> Vec<f64> {
+fn random_parameters(layout: &ParameterLayout, ln_beta: f64, generator: &mut Generator) -> Vec<f64> {
     (0..layout.len())
         .map(|k| {
             if layout.ln_beta.contains(&k) {
@@ -40,7 +40,7 @@ fn random_parameters(layout: &Layout, ln_beta: f64, generator: &mut Generator) -
         .collect()
 }
 
-pub fn run(network: &Network, drive: &Drive) -> Vec<f64> {
+pub fn run(network: &Network, drive: &NetworkDrive) -> Vec<f64> {
     let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
     let mut y = vec![0.0; drive.len()];
     network.simulator().run(&u, &drive.steps, &mut y);
@@ -54,7 +54,7 @@ fn with(network: &Network, index: usize, change: f64) -> Network {
 }
 
 /// `(y(θ + up) - y(θ - down)) / (up + down)`.
-fn quotient(network: &Network, drive: &Drive, index: usize, up: f64, down: f64) -> Vec<f64> {
+fn quotient(network: &Network, drive: &NetworkDrive, index: usize, up: f64, down: f64) -> Vec<f64> {
     let (above, below) = (run(&with(network, index, up), drive), run(&with(network, index, -down), drive));
     above.iter().zip(&below).map(|(a, b)| (a - b) / (up + down)).collect()
 }
@@ -77,7 +77,7 @@ fn the_jacobian_is_that_of_the_whole_simulation() {
             for (stops, hidden, ln_beta) in [(1, 1, 5.0), (9, 3, 4.0), (5, 2, 2.0)] {
                 let sizes = Sizes { stops, hidden, relaxation: 2 };
                 let a = Architecture::new(family, sizes, inputs, true, true).unwrap();
-                let layout = Layout::new(a);
+                let layout = ParameterLayout::new(a);
                 let parameters = random_parameters(&layout, ln_beta, &mut generator);
                 let output = (0..a.output_weights()).map(|_| between(&mut generator, -1.0, 1.0)).collect();
                 let network = Network::new(a, parameters, output).unwrap();
@@ -129,7 +129,7 @@ fn at_a_kink_the_derivative_is_one_of_the_two() {
                 let mut parameters = vec![weight];
                 parameters.extend(a.deterioration.then_some(ln(8.0)));
                 let network = Network::new(a, parameters, vec![0.25, 1.0]).unwrap();
-                let drive = Drive { channels: vec![path.to_vec()], steps: Vec::new() };
+                let drive = NetworkDrive { channels: vec![path.to_vec()], steps: Vec::new() };
                 let slope = network.linearise(&drive).jacobian[0].clone();
                 let h = powi(0.5, 26);
                 let right = quotient(&network, &drive, 0, h, 0.0);
@@ -183,7 +183,8 @@ fn case(family: Family, ridge: f64, decay: f64) -> Case {
     let options =
         FitOptions { model: family, rate, ridge: Some(ridge), decay: Some(decay), ..FitOptions::default() };
     let scaling = Scaling::of(&data, rate).unwrap();
-    let parameters = random_parameters(&Layout::new(architecture), 4.0, &mut Generator::seed_from_u64(17));
+    let parameters =
+        random_parameters(&ParameterLayout::new(architecture), 4.0, &mut Generator::seed_from_u64(17));
     Case { data, scaling, architecture, options, parameters }
 }
 
@@ -272,7 +273,7 @@ fn value_and_gradient_are_sums_over_the_scored_rows() {
         assert_eq!(residual.len(), case.data.scored());
         assert!(case.data.scored() < case.data.rows() - 40);
 
-        let layout = Layout::new(case.architecture);
+        let layout = ParameterLayout::new(case.architecture);
         let decayed = |k: usize| if layout.is_weight(k) { case.parameters[k] } else { 0.0 };
         let square: f64 = (0..layout.len()).map(|k| square(decayed(k))).sum();
         let penalty = 0.5 * 1e-3 * dot(&weights[1..], &weights[1..]) + 0.5 * 1e-2 * square;

@@ -32,7 +32,7 @@ fn odd_architectures() -> Vec<Architecture> {
 
 /// Parameters of ordinary size; some stops slip, some die.
 fn ordinary(a: Architecture, generator: &mut Generator) -> Network {
-    let layout = Layout::new(a);
+    let layout = ParameterLayout::new(a);
     let parameters = (0..layout.len())
         .map(|k| {
             if layout.ln_beta.contains(&k) {
@@ -51,7 +51,7 @@ fn ordinary(a: Architecture, generator: &mut Generator) -> Network {
 }
 
 /// A path with many turning points that starts with a jump, and uneven time steps.
-fn drive(a: &Architecture, rows: usize, generator: &mut Generator) -> Drive {
+fn drive(a: &Architecture, rows: usize, generator: &mut Generator) -> NetworkDrive {
     let mut channel = || {
         let mut x = between(generator, 0.3, 0.9);
         let mut column = Vec::new();
@@ -68,7 +68,7 @@ fn drive(a: &Architecture, rows: usize, generator: &mut Generator) -> Drive {
     };
     let channels = (0..a.channels()).map(|_| channel()).collect();
     let steps = (0..rows).map(|k| if k == 0 { 0.0 } else { between(generator, 0.01, 0.5) });
-    Drive { channels, steps: if a.relaxation > 0 { steps.collect() } else { Vec::new() } }
+    NetworkDrive { channels, steps: if a.relaxation > 0 { steps.collect() } else { Vec::new() } }
 }
 
 fn difference(a: &[f64], b: &[f64]) -> f64 {
@@ -77,7 +77,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// theory.md (2.2) to (2.6), one sample and one neuron at a time.
-fn reference(network: &Network, drive: &Drive) -> Vec<f64> {
+fn reference(network: &Network, drive: &NetworkDrive) -> Vec<f64> {
     let a = network.architecture();
     let mut parameters = network.parameters().iter().copied();
     let mut take = |count: usize| parameters.by_ref().take(count).collect::<Vec<f64>>();
@@ -179,7 +179,7 @@ fn steps_and_runs_however_split_agree_to_the_last_bit() {
         }
 
         // The state matters: without it the second half is another one (unless all is wiped out).
-        let half = Drive {
+        let half = NetworkDrive {
             channels: drive.channels.iter().map(|channel| channel[200..].to_vec()).collect(),
             steps: drive.steps.iter().skip(200).copied().collect(),
         };
@@ -208,7 +208,7 @@ fn a_network_gives_its_parameters_back_and_refuses_others() {
         assert!(refused(&[&parameters[..], &[0.0]].concat(), &output));
         assert!(refused(&parameters, &output[1..]));
         assert!(refused(&parameters, &[&output[..], &[0.0]].concat()));
-        let layout = Layout::new(a);
+        let layout = ParameterLayout::new(a);
         for k in 0..layout.len() {
             let (low, high) = layout.bounds(k);
             let with = |value: f64| {
@@ -238,7 +238,7 @@ fn a_free_run_is_finite_whatever_parameters_and_input() {
     let mut generator = Generator::seed_from_u64(4);
     let (mut runs, mut overflows) = (0, 0);
     for a in odd_architectures() {
-        let layout = Layout::new(a);
+        let layout = ParameterLayout::new(a);
         for round in 0..6 {
             // In turn: at a bound, anywhere between, either.
             let mut place = || match round % 3 {
@@ -260,7 +260,7 @@ fn a_free_run_is_finite_whatever_parameters_and_input() {
             };
             let channels: Vec<Vec<f64>> = (0..a.channels()).map(|_| column(&mut pick)).collect();
             let steps: Vec<f64> = (0..200).map(|k| if k == 0 { 0.0 } else { pick().abs() }).collect();
-            let drive = Drive { channels, steps: if a.relaxation > 0 { steps } else { Vec::new() } };
+            let drive = NetworkDrive { channels, steps: if a.relaxation > 0 { steps } else { Vec::new() } };
             let y = run(&network, &drive);
             assert!(y.iter().all(|y| y.is_finite()), "{a:?}, round {round}");
             runs += 1;

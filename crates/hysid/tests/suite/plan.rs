@@ -4,7 +4,7 @@
 use crate::scaffold::*;
 use hysid::diagnosis::Verdict;
 use hysid::elementary::{exp, sin};
-use hysid::plan::{Kind, Leg, Limits, Path, Plan, PlanOptions, Wanted, Wave};
+use hysid::plan::{DrivePath, Leg, LimitOptions, Limits, Plan, PlanOptions, SegmentKind, Wave};
 use hysid::property::Property;
 use hysid::specimens::Ferromagnet;
 use hysid::{Fit, diagnose};
@@ -60,7 +60,7 @@ proptest! {
         let data = Dataset::from_columns(time, &[("x", &x)], ("y", &y)).unwrap();
         let (low, high) = data.input_range(0);
         let middle = 0.5 * (low + high);
-        let limits = Wanted {
+        let limits = LimitOptions {
             range: Some((middle - wider * (middle - low), middle + wider * (high - middle))),
             max_rate: Some(0.12 * amplitude / if has_time { step } else { 1.0 } / slower),
             length,
@@ -91,7 +91,7 @@ fn after_cycles_of_one_amplitude_smaller_ones_are_run() {
     let swings: Vec<f64> = plan
         .segments
         .iter()
-        .filter(|segment| segment.kind != Kind::Return)
+        .filter(|segment| segment.kind != SegmentKind::Return)
         .flat_map(|segment| segment.turning_points.windows(2).map(|pair| (pair[1] - pair[0]).abs()))
         .collect();
     let between = |low: f64, high: f64| swings.iter().any(|swing| (low..high).contains(swing));
@@ -121,18 +121,18 @@ fn after_tests_at_one_speed_several_are_run() {
     let data = spring_and_slider(&x, 0.1);
     let rate = |data: &Dataset| diagnose(data).unwrap().verdict(Property::RateDependence);
     assert_eq!(rate(&data), Verdict::NotTestable);
-    let limits = Wanted { length: Some(2400), ..Wanted::default() };
+    let limits = LimitOptions { length: Some(2400), ..LimitOptions::default() };
     let plan = Plan::of(&data, &PlanOptions { limits, ..PlanOptions::default() }).unwrap();
     assert!(plan.gaps.iter().any(|gap| gap.what == "speeds" || gap.what == "rate-dependence"));
     // The longest step of each random swing.
-    let random = plan.segments.iter().find(|segment| segment.kind == Kind::RandomReversals).unwrap();
+    let random = plan.segments.iter().find(|segment| segment.kind == SegmentKind::RandomReversals).unwrap();
     let steps: Vec<f64> =
         plan.input[random.rows.clone()].windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     let mut speeds: Vec<f64> =
         steps.chunks(40).map(|some| some.iter().copied().fold(0.0, f64::max)).collect();
     speeds.sort_unstable_by(f64::total_cmp);
     assert!(speeds[speeds.len() - 1] > 1.7 * speeds[0], "{speeds:?}");
-    assert!(plan.segments.iter().any(|segment| segment.kind == Kind::TwoSpeeds));
+    assert!(plan.segments.iter().any(|segment| segment.kind == SegmentKind::TwoSpeeds));
     // What the plan is for: now the property can be tested, and the law has none.
     assert_eq!(rate(&spring_and_slider(&plan.input, 0.1)), Verdict::No);
 }
@@ -184,7 +184,7 @@ fn swings_of_a_specimen_that_deteriorates_grow() {
     assert_eq!(diagnose(&data).unwrap().verdict(Property::Deterioration), Verdict::Yes);
     let plan = Plan::of(&data, &PlanOptions::default()).unwrap();
     let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    let random = plan.segments.iter().find(|segment| segment.kind == Kind::RandomReversals).unwrap();
+    let random = plan.segments.iter().find(|segment| segment.kind == SegmentKind::RandomReversals).unwrap();
     assert!(largest(&plan.input[..300]) < 0.9 * largest(&plan.input), "{random:?}");
     assert!(random.amplitude > 8.0, "{random:?}");
 }
@@ -194,7 +194,7 @@ fn errors_after_cycles() -> (f64, f64) {
     let (low, high) = (-300.0, 300.0);
     let limits =
         Limits { range: (low, high), start: 0.0, step: None, max_rate: (high - low) / 50.0, rows: 500 };
-    let path = Path { limits, wave: Wave::Triangle };
+    let path = DrivePath { limits, wave: Wave::Triangle };
     let through = |turns: &[f64]| {
         let mut x = vec![0.0];
         for &to in turns {

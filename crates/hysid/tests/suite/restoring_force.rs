@@ -205,7 +205,7 @@ fn the_storey_of_a_shaken_building_has_the_force_of_its_law() {
     // The force of a storey by (6.46).
     let force = |storey: usize| -> Vec<f64> {
         let law = building.storeys[storey];
-        let of = |at: &hysid::specimens::shear_building::Motion| {
+        let of = |at: &hysid::specimens::shear_building::BuildingMotion| {
             let (d, v, z) = (at.drift[storey], at.drift_rate[storey], at.hysteretic_displacement[storey]);
             let share = building.elastic_share;
             law.damping * v + law.stiffness * (share * d + (1.0 - share) * z)

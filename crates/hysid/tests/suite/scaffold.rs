@@ -16,7 +16,7 @@ pub use hysid::law::series::{Series, samples_of};
 pub use hysid::law::{Classical, Law, Sample};
 pub use hysid::model::Model;
 pub use hysid::network::scaling::Scaling;
-pub use hysid::network::{Architecture, Drive, Family, Layout, Network, Sizes};
+pub use hysid::network::{Architecture, Family, Network, NetworkDrive, ParameterLayout, Sizes};
 pub use hysid::operator::{DeterioratingStop, Operator, Relay, Stop};
 pub use hysid::options::chosen::NamedOptions;
 pub use hysid::options::classical::{ClassicalModel, ClassicalOptions};

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use hysid::elementary::{atan, atan2, cos, exp, hypot, powf, sin, square};
-use hysid::specimens::generalized_play::{Envelope, GeneralizedPlays, PlayWeights, Start};
+use hysid::specimens::generalized_play::{Envelope, GeneralizedPlays, PlayStart, PlayWeights};
 use hysid::specimens::{
     BoucWenBaberNoori, Concrete, ConcreteParameters, Ferromagnet, MagnetostrictiveActuator, PiezoActuator,
     ReinforcedConcreteJoint, Specimen, shape_memory_actuator, terfenol_actuator, terfenol_rod,
@@ -146,7 +146,7 @@ fn a_displacement_that_is_none_leaves_the_joint_as_it_was() {
 fn the_lecture_example_has_its_published_range() {
     let envelope = Envelope::new([6.0, 0.4, 0.0, 0.0]);
     let weights = GeneralizedPlays::exponential(7, 0.45, 0.65, 7.75e-4);
-    let mut law = GeneralizedPlays::new([envelope, envelope], 0.45, weights, 0.0, Start::Virgin);
+    let mut law = GeneralizedPlays::new([envelope, envelope], 0.45, weights, 0.0, PlayStart::Virgin);
     let y = law.run(&[0.0, 5.0, -5.0, 5.0]);
     assert_abs_diff_eq!(y[1], 20.157, epsilon = 5e-4);
     assert_abs_diff_eq!(y[2], -20.157, epsilon = 5e-4);
@@ -269,7 +269,7 @@ fn piezo_loops_are_ellipses_of_the_area_of_their_law() {
 /// Generalized plays that are the identity: one without threshold on ground that is straight to 1e-12.
 fn no_hysteresis() -> GeneralizedPlays {
     let line = Envelope::new([1e6, 1e-6, 0.0, 0.0]);
-    GeneralizedPlays::new([line, line], 1.0, PlayWeights::Free(vec![1.0]), 0.0, Start::Virgin)
+    GeneralizedPlays::new([line, line], 1.0, PlayWeights::Free(vec![1.0]), 0.0, PlayStart::Virgin)
 }
 
 /// The gain and the lag of (6.20) and (6.21) for a sine, from their transfer functions.

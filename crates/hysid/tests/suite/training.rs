@@ -296,7 +296,7 @@ fn pnn_and_gpnn_find_their_own_parameters() {
         let provenance = fitted.model.provenance();
         assert!(provenance.penalties.unwrap().ridge < 1e-9, "{family:?}: {:?}", provenance.penalties);
         let network = fitted.model.network().unwrap();
-        let layout = Layout::new(*network.architecture());
+        let layout = ParameterLayout::new(*network.architecture());
         let scale = fitted.model.scaling().unwrap().inputs[0];
         let parameters = network.parameters();
         let mut found: Vec<(f64, f64)> = (0..3)

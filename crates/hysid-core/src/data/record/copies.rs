@@ -32,7 +32,7 @@ const MOST_PLACES: usize = 5_000_000;
 
 /// Two records that are one measurement, by their indices.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Copy {
+pub struct RecordCopy {
     /// The copy; the shorter one if they differ in length, otherwise the later one.
     pub copy: usize,
     /// The record that it is a copy of.
@@ -42,7 +42,7 @@ pub struct Copy {
 }
 
 /// All copies among records, at most one for each record.
-pub fn copies(records: &[Record]) -> Vec<Copy> {
+pub fn copies(records: &[Record]) -> Vec<RecordCopy> {
     let pairs = || (1..records.len()).flat_map(|later| (0..later).map(move |earlier| (later, earlier)));
     let mut places = 0;
     let are_many = pairs().any(|(a, b)| {
@@ -52,9 +52,9 @@ pub fn copies(records: &[Record]) -> Vec<Copy> {
     if are_many {
         return equal_ones(records);
     }
-    let known: Vec<Sought> = records.iter().map(Sought::new).collect();
+    let known: Vec<CopySearch> = records.iter().map(CopySearch::new).collect();
     let mut is_copy = vec![false; records.len()];
-    let mut found: Vec<Copy> = Vec::new();
+    let mut found: Vec<RecordCopy> = Vec::new();
     for (later, earlier) in pairs() {
         let is_shorter = records[later].len() <= records[earlier].len();
         let (short, long) = if is_shorter { (later, earlier) } else { (earlier, later) };
@@ -64,36 +64,36 @@ pub fn copies(records: &[Record]) -> Vec<Copy> {
         }
         if let Some(likeness) = known[short].likeness_to(&records[long]) {
             is_copy[short] = true;
-            found.push(Copy { copy: short, of: long, likeness });
+            found.push(RecordCopy { copy: short, of: long, likeness });
         }
     }
     found
 }
 
-fn equal_ones(records: &[Record]) -> Vec<Copy> {
+fn equal_ones(records: &[Record]) -> Vec<RecordCopy> {
     let mut known: HashMap<String, usize> = HashMap::new();
     let copy = |(place, record): (usize, &Record)| {
         let of = *known.entry(record.fingerprint().text()?).or_insert(place);
-        (of != place).then_some(Copy { copy: place, of, likeness: Likeness::Equal })
+        (of != place).then_some(RecordCopy { copy: place, of, likeness: Likeness::Equal })
     };
     records.iter().enumerate().filter_map(copy).collect()
 }
 
 /// Similarity of a record to one that is at least as long; `None` if they are two measurements.
 pub fn likeness(short: &Record, long: &Record) -> Option<Likeness> {
-    Sought::new(short).likeness_to(long)
+    CopySearch::new(short).likeness_to(long)
 }
 
-struct Sought<'r> {
+struct CopySearch<'r> {
     record: &'r Record,
     scored: Vec<usize>,
-    /// Differences of a single input, and of an output, that are none.
+    /// Differences of a single input, and of an output, that are negligible.
     loose: Vec<f64>,
-    /// Mean square differences of a whole column that are none, inputs first.
+    /// Mean square differences of a whole column that are negligible, inputs first.
     limits: Vec<f64>,
 }
 
-impl<'r> Sought<'r> {
+impl<'r> CopySearch<'r> {
     fn new(record: &'r Record) -> Self {
         let columns = || record.inputs.iter().map(|input| &**input).chain([&record.output[..]]);
         let range = |column: &[f64]| {
@@ -119,7 +119,7 @@ impl<'r> Sought<'r> {
         let is_possible = self.scored.len() >= FEWEST
             && short.len() <= long.len()
             && short.inputs.len() == long.inputs.len();
-        let compared = Compared { sought: self, short, long };
+        let compared = RecordPair { sought: self, short, long };
         // The row of the largest output is found in the longer record; from there all others are compared.
         let largest = |a: &&usize, b: &&usize| short.output[**a].total_cmp(&short.output[**b]);
         let anchor = *self.scored.iter().max_by(largest).filter(|_| is_possible)?;
@@ -129,13 +129,13 @@ impl<'r> Sought<'r> {
     }
 }
 
-struct Compared<'r> {
-    sought: &'r Sought<'r>,
+struct RecordPair<'r> {
+    sought: &'r CopySearch<'r>,
     short: &'r Record,
     long: &'r Record,
 }
 
-impl Compared<'_> {
+impl RecordPair<'_> {
     /// Differences of a row from one `shift` rows later in the longer record: each input, and the output.
     fn differences(&self, row: usize, shift: usize) -> impl Iterator<Item = f64> {
         let inputs = self.short.inputs.iter().zip(&self.long.inputs);
@@ -196,7 +196,7 @@ impl Compared<'_> {
 /// The records grouped by measurement: the indices of the records of each measurement, the longest first.
 pub(super) fn measurements(records: &[Record]) -> Vec<Vec<usize>> {
     let mut group: Vec<usize> = (0..records.len()).collect();
-    for Copy { copy, of, .. } in copies(records) {
+    for RecordCopy { copy, of, .. } in copies(records) {
         let (from, to) = (group[copy], group[of]);
         group.iter_mut().filter(|group| **group == from).for_each(|group| *group = to);
     }

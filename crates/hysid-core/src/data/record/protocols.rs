@@ -32,7 +32,7 @@ const AS_LONG: f64 = 0.02;
 
 /// Records of one protocol.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Protocol {
+pub struct RepeatedProtocol {
     /// A record of each measurement that runs through the whole protocol, the longest first.
     pub runs: Vec<usize>,
     /// All records, with copies and parts.
@@ -40,13 +40,13 @@ pub struct Protocol {
 }
 
 /// The records grouped by protocol, in the order of the first record of each.
-pub fn protocols(records: &[Record]) -> Vec<Protocol> {
+pub fn protocols(records: &[Record]) -> Vec<RepeatedProtocol> {
     let mut measured = measurements(records);
     // The longest first, so that parts are compared with what they are a part of.
     measured.sort_by_key(|group| std::cmp::Reverse(records[group[0]].scored()));
-    let mut found: Vec<(Path, Protocol)> = Vec::new();
+    let mut found: Vec<(RecordPath, RepeatedProtocol)> = Vec::new();
     for group in measured {
-        let path = Path::of(&records[group[0]]);
+        let path = RecordPath::of(&records[group[0]]);
         let known = found.iter_mut().find_map(|(other, protocol)| Some((path.agrees(other)?, protocol)));
         match known {
             Some((agreement, protocol)) => {
@@ -55,26 +55,26 @@ pub fn protocols(records: &[Record]) -> Vec<Protocol> {
                 }
                 protocol.records.extend(group);
             }
-            None => found.push((path, Protocol { runs: vec![group[0]], records: group })),
+            None => found.push((path, RepeatedProtocol { runs: vec![group[0]], records: group })),
         }
     }
-    let mut protocols: Vec<Protocol> = found.into_iter().map(|(_, protocol)| protocol).collect();
+    let mut protocols: Vec<RepeatedProtocol> = found.into_iter().map(|(_, protocol)| protocol).collect();
     protocols.sort_by_key(|protocol| protocol.records.iter().copied().min());
     protocols
 }
 
 /// How the outputs of runs of one protocol differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Difference {
+pub struct ProtocolDifference {
     /// Standard deviation of an output about the mean of two runs, in its unit.
     pub deviation: f64,
     /// Neighbouring rows differ independently. If not, the runs were made under other conditions, or the specimen changed.
     pub is_noise: bool,
 }
 
-impl Protocol {
+impl RepeatedProtocol {
     /// How the outputs of the first run and the others differ, row by row; `None` unless their inputs are the same.
-    pub fn difference(&self, records: &[Record]) -> Option<Difference> {
+    pub fn difference(&self, records: &[Record]) -> Option<ProtocolDifference> {
         let (&first, others) = self.runs.split_first()?;
         let first = &records[first];
         let (mut squares, mut shifted, mut count) = (0.0, 0.0, 0.0);
@@ -94,7 +94,7 @@ impl Protocol {
             }
         }
         let deviation = (0.5 * squares / count).sqrt();
-        (count > 0.0).then_some(Difference { deviation, is_noise: shifted <= CORRELATED * squares })
+        (count > 0.0).then_some(ProtocolDifference { deviation, is_noise: shifted <= CORRELATED * squares })
     }
 }
 
@@ -105,7 +105,7 @@ enum Agreement {
     Part,
 }
 
-struct Path<'r> {
+struct RecordPath<'r> {
     record: &'r Record,
     ranges: Vec<f64>,
     largest: usize,
@@ -113,7 +113,7 @@ struct Path<'r> {
     turning: Vec<Vec<usize>>,
 }
 
-impl<'r> Path<'r> {
+impl<'r> RecordPath<'r> {
     fn of(record: &'r Record) -> Self {
         let ranges: Vec<f64> = record.inputs.iter().map(|input| extent(input)).collect();
         let x = &record.inputs[0];
@@ -122,7 +122,7 @@ impl<'r> Path<'r> {
         Self { record, ranges, largest, turning }
     }
 
-    fn agrees(&self, long: &Path<'_>) -> Option<Agreement> {
+    fn agrees(&self, long: &RecordPath<'_>) -> Option<Agreement> {
         if self.record.inputs.len() != long.record.inputs.len() || self.record.lead_in != long.record.lead_in
         {
             return None;
@@ -134,8 +134,8 @@ impl<'r> Path<'r> {
         self.is_part_of(long, &near).then_some(Agreement::Part)
     }
 
-    /// Differences of each input that are none; of further inputs, which may be constant, also a share of their value.
-    fn near(&self, long: &Path<'_>) -> Vec<f64> {
+    /// Differences of each input that are negligible; of further inputs, which may be constant, also a share of their value.
+    fn near(&self, long: &RecordPath<'_>) -> Vec<f64> {
         let ranges = self.ranges.iter().zip(&long.ranges).map(|(a, b)| a.max(*b)).enumerate();
         let near = ranges.map(|(index, range)| match index {
             0 => NEAR * range,
@@ -145,8 +145,8 @@ impl<'r> Path<'r> {
     }
 
     /// True if both records reverse alike, from the first row to the last.
-    fn by_turns(&self, long: &Path<'_>, near: &[f64]) -> bool {
-        let ends = |path: &Path<'_>, turning: &[usize]| -> Vec<usize> {
+    fn by_turns(&self, long: &RecordPath<'_>, near: &[f64]) -> bool {
+        let ends = |path: &RecordPath<'_>, turning: &[usize]| -> Vec<usize> {
             let last = path.record.len() - 1;
             std::iter::once(0).chain(turning.iter().copied()).chain([last]).collect()
         };
@@ -157,7 +157,7 @@ impl<'r> Path<'r> {
     }
 
     /// True if the turning points are those of a part of the other record.
-    fn is_part_of(&self, long: &Path<'_>, near: &[f64]) -> bool {
+    fn is_part_of(&self, long: &RecordPath<'_>, near: &[f64]) -> bool {
         self.turning.iter().zip(&long.turning).any(|(short, of_long)| {
             short.len() >= FEWEST_OF_A_PART
                 && of_long.windows(short.len()).any(|part| self.is_alike(short, long, part, near))
@@ -165,13 +165,13 @@ impl<'r> Path<'r> {
     }
 
     /// True if all inputs agree at these rows, and the time between them.
-    fn is_alike(&self, rows: &[usize], other: &Path<'_>, other_rows: &[usize], near: &[f64]) -> bool {
+    fn is_alike(&self, rows: &[usize], other: &RecordPath<'_>, other_rows: &[usize], near: &[f64]) -> bool {
         let is_near = |(&row, &other_row): (&usize, &usize)| {
             let mut inputs = self.record.inputs.iter().zip(&other.record.inputs).zip(near);
             inputs.all(|((a, b), near)| (a[row] - b[other_row]).abs() <= *near)
         };
         rows.iter().zip(other_rows).all(is_near) && {
-            let time = |path: &Path<'_>, rows: &[usize]| {
+            let time = |path: &RecordPath<'_>, rows: &[usize]| {
                 let time = path.record.time()?;
                 Some(time[*rows.last()?] - time[*rows.first()?])
             };
@@ -180,7 +180,7 @@ impl<'r> Path<'r> {
     }
 
     /// True if the inputs agree row by row, after a shift that brings the largest values together.
-    fn by_rows(&self, long: &Path<'_>, near: &[f64]) -> bool {
+    fn by_rows(&self, long: &RecordPath<'_>, near: &[f64]) -> bool {
         let (a, b) = (self.record, long.record);
         let (rows, others) = (a.len(), b.len());
         if rows.abs_diff(others) as f64 > AS_LONG * others as f64 {

@@ -19,9 +19,9 @@ const FEW: f64 = 0.1;
 /// Reversals below this share of the range do not end a half cycle. Designed.
 const SMALLEST_REVERSAL: f64 = 0.05;
 
-/// What the speeds of the first input in the data can tell of a dependence on the rate.
+/// Whether the speeds of the first input can show a dependence on the rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Speeds {
+pub enum SpeedEvidence {
     /// Nothing: there are no time stamps, or one speed at each place.
     One,
     /// Little: speed grows with amplitude, so that dependences on both look alike.
@@ -42,10 +42,10 @@ impl Record {
 }
 
 impl Dataset {
-    /// What the speeds of the first input can tell of a dependence on the rate.
-    pub fn speeds(&self) -> Speeds {
+    /// Whether the speeds of the first input can show a dependence on the rate.
+    pub fn speeds(&self) -> SpeedEvidence {
         if !self.has_time() {
-            return Speeds::One;
+            return SpeedEvidence::One;
         }
         let (low, high) = self.input_range(0);
         let grid = Grid { low, width: (high - low) / CELLS as f64 };
@@ -57,15 +57,19 @@ impl Dataset {
             steps += record.len() - 1;
         }
         if 2 * at_rest > steps {
-            return Speeds::Several;
+            return SpeedEvidence::Several;
         }
         let passed = cells.iter().filter(|speeds| speeds.len() > 1).count();
         let several = cells.iter_mut().map(|speeds| usize::from(differ(speeds))).sum::<usize>();
         if several as f64 <= FEW * passed as f64 {
-            return Speeds::One;
+            return SpeedEvidence::One;
         }
         let mut times: Vec<f64> = self.records.iter().flat_map(|r| half_cycles(r, high - low)).collect();
-        if times.len() > 2 && !differ(&mut times) { Speeds::OfAmplitude } else { Speeds::Several }
+        if times.len() > 2 && !differ(&mut times) {
+            SpeedEvidence::OfAmplitude
+        } else {
+            SpeedEvidence::Several
+        }
     }
 }
 
@@ -160,11 +164,11 @@ mod tests {
 
     #[test]
     fn one_waveform_has_one_speed_at_each_place() {
-        assert_eq!(data(&[&|t| sine(0.2 * t)]).speeds(), Speeds::One);
-        assert_eq!(data(&[&|t| triangle(0.2 * t)]).speeds(), Speeds::One);
-        assert_eq!(data(&[&|t| t]).speeds(), Speeds::One);
+        assert_eq!(data(&[&|t| sine(0.2 * t)]).speeds(), SpeedEvidence::One);
+        assert_eq!(data(&[&|t| triangle(0.2 * t)]).speeds(), SpeedEvidence::One);
+        assert_eq!(data(&[&|t| t]).speeds(), SpeedEvidence::One);
         let jitter = |t: f64| 0.01 * (uniform((t / STEP).round() as u64) - 0.5);
-        assert_eq!(data(&[&|t| triangle(0.1 * t) + jitter(t)]).speeds(), Speeds::One);
+        assert_eq!(data(&[&|t| triangle(0.1 * t) + jitter(t)]).speeds(), SpeedEvidence::One);
         // Growing cycles at one speed, as in a cyclic test of a column.
         let growing = |t: f64| {
             let (mut t, mut amplitude) = (t, 1.0);
@@ -174,28 +178,31 @@ mod tests {
             }
             amplitude * triangle(t / (4.0 * amplitude))
         };
-        assert_eq!(data(&[&growing]).speeds(), Speeds::One);
+        assert_eq!(data(&[&growing]).speeds(), SpeedEvidence::One);
     }
 
     #[test]
     fn cycles_of_one_period_do_not_tell_the_rate_from_the_amplitude() {
-        assert_eq!(data(&[&|t| 0.1 * t.floor() * sine(t)]).speeds(), Speeds::OfAmplitude);
-        assert_eq!(data(&[&|t| sine(0.2 * t), &|t| 3.0 * sine(0.2 * t)]).speeds(), Speeds::OfAmplitude);
+        assert_eq!(data(&[&|t| 0.1 * t.floor() * sine(t)]).speeds(), SpeedEvidence::OfAmplitude);
+        assert_eq!(
+            data(&[&|t| sine(0.2 * t), &|t| 3.0 * sine(0.2 * t)]).speeds(),
+            SpeedEvidence::OfAmplitude
+        );
     }
 
     #[test]
     fn several_frequencies_have_several_speeds() {
-        assert_eq!(data(&[&|t| sine(0.2 * t), &|t| sine(0.8 * t)]).speeds(), Speeds::Several);
-        assert_eq!(data(&[&|t| sine(0.2 * t), &|t| 3.0 * sine(0.8 * t)]).speeds(), Speeds::Several);
-        assert_eq!(data(&[&|t| sine(0.3 * t) + sine(0.97 * t)]).speeds(), Speeds::Several);
+        assert_eq!(data(&[&|t| sine(0.2 * t), &|t| sine(0.8 * t)]).speeds(), SpeedEvidence::Several);
+        assert_eq!(data(&[&|t| sine(0.2 * t), &|t| 3.0 * sine(0.8 * t)]).speeds(), SpeedEvidence::Several);
+        assert_eq!(data(&[&|t| sine(0.3 * t) + sine(0.97 * t)]).speeds(), SpeedEvidence::Several);
         // Steps, after each of which the output creeps.
-        assert_eq!(data(&[&|t| (t / 4.0).floor().rem_euclid(3.0)]).speeds(), Speeds::Several);
+        assert_eq!(data(&[&|t| (t / 4.0).floor().rem_euclid(3.0)]).speeds(), SpeedEvidence::Several);
     }
 
     #[test]
     fn data_without_time_have_no_speeds() {
         let x: Vec<f64> = (0..50).map(f64::from).collect();
         let record = Record::new("r", vec![x.clone()], x).unwrap();
-        assert_eq!(Dataset::new(ColumnNames::plain(1), vec![record]).unwrap().speeds(), Speeds::One);
+        assert_eq!(Dataset::new(ColumnNames::plain(1), vec![record]).unwrap().speeds(), SpeedEvidence::One);
     }
 }

@@ -1,7 +1,7 @@
 //! Units of quantities that are made of others: energies, powers and quotients.
 
 use super::quantity::{
-    Dimension, ENERGY, ENERGY_DENSITY, FIELD, FLUX_DENSITY, POWER, POWER_DENSITY, Quantity,
+    Dimension, ENERGY, ENERGY_DENSITY, FIELD, FLUX_DENSITY, POWER, POWER_DENSITY, UnitQuantity,
 };
 
 /// Prefixes and their factors.
@@ -14,13 +14,13 @@ const NAMED: [(&str, Dimension); 4] =
 /// The unit of the area of a loop, which is the product of the units of output and input: `J` of kN and mm, `J/m3` of T
 /// and A/m, and `lbf inch` where the product is no decimal multiple of a unit of energy. The number does not change.
 pub fn energy(output: &str, input: &str) -> String {
-    let product = Quantity::of(output).zip(Quantity::of(input)).map(|(a, b)| a.times(b, 1));
+    let product = UnitQuantity::of(output).zip(UnitQuantity::of(input)).map(|(a, b)| a.times(b, 1));
     product.and_then(name).unwrap_or_else(|| format!("{output} {input}"))
 }
 
 /// The unit of an energy over time: `W` of J and s, `W/m3` of J/m3 and s.
 pub fn power(energy: &str, time: &str) -> String {
-    let over = Quantity::of(energy).zip(Quantity::of(time)).map(|(a, b)| a.times(b, -1));
+    let over = UnitQuantity::of(energy).zip(UnitQuantity::of(time)).map(|(a, b)| a.times(b, -1));
     over.and_then(name).unwrap_or_else(|| quotient(energy, time))
 }
 
@@ -34,7 +34,7 @@ const VACUUM_PERMEABILITY: f64 = 1.256_637_062e-6;
 
 /// The factor to a pure number of an input over an output, such as a field over a flux density, if it is one.
 pub fn pure_quotient(input: &str, output: &str) -> Option<f64> {
-    let (above, below) = (Quantity::of(input)?, Quantity::of(output)?);
+    let (above, below) = (UnitQuantity::of(input)?, UnitQuantity::of(output)?);
     let factor = above.factor / below.factor;
     match (above.dimension, below.dimension) {
         (FIELD, FLUX_DENSITY) => Some(factor * VACUUM_PERMEABILITY),
@@ -43,7 +43,7 @@ pub fn pure_quotient(input: &str, output: &str) -> Option<f64> {
 }
 
 /// The name of a unit that is a decimal multiple of an energy or a power. Angles count as numbers.
-fn name(quantity: Quantity) -> Option<String> {
+fn name(quantity: UnitQuantity) -> Option<String> {
     let quantity = quantity.without_angles();
     let (unit, _) = NAMED.into_iter().find(|(_, dimension)| *dimension == quantity.dimension)?;
     let is_near = |factor: f64| (quantity.factor / factor - 1.0).abs() < 1e-9;

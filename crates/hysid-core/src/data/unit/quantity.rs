@@ -1,6 +1,6 @@
 //! Units as multiples of base units, so that numbers can be converted from one to another.
 
-use crate::data::part::{Domain, Part};
+use crate::data::usual_role::{Domain, UsualRole};
 use crate::elementary::powi;
 
 /// Exponents of length, mass, time, electric current, temperature difference and angle.
@@ -31,14 +31,14 @@ pub(super) const FLUX_DENSITY: Dimension = [0, 1, -2, -1, 0, 0];
 pub(super) const FIELD: Dimension = [-1, 0, 0, 1, 0, 0];
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Quantity {
+pub(super) struct UnitQuantity {
     /// Value in SI base units; an angle in radians.
     pub factor: f64,
     /// Dimension of the quantity.
     pub dimension: Dimension,
 }
 
-impl Quantity {
+impl UnitQuantity {
     /// The unit of this name, such as `kN`, `A/m`, `V us`, `N/mm2` or `m/s²`; `None` for one that is not known.
     pub fn of(unit: &str) -> Option<Self> {
         let mut parts = unit.split('/').map(product);
@@ -47,16 +47,16 @@ impl Quantity {
     }
 
     /// The usual role of a quantity with this unit in hysteresis, if it has one.
-    pub fn part(&self) -> Option<Part> {
+    pub fn part(&self) -> Option<UsualRole> {
         use Domain::{Electricity, Magnetism, Mechanics};
         let part = match self.dimension {
-            LENGTH | ANGLE => Part::Drives(Mechanics),
-            FORCE | MOMENT | PRESSURE => Part::Follows(Mechanics),
-            FIELD => Part::Drives(Magnetism),
-            FLUX | FLUX_DENSITY => Part::Follows(Magnetism),
-            VOLTAGE | CURRENT => Part::Drives(Electricity),
-            TEMPERATURE => Part::Accompanies,
-            CHARGE | POLARIZATION => Part::Follows(Electricity),
+            LENGTH | ANGLE => UsualRole::Drives(Mechanics),
+            FORCE | MOMENT | PRESSURE => UsualRole::Follows(Mechanics),
+            FIELD => UsualRole::Drives(Magnetism),
+            FLUX | FLUX_DENSITY => UsualRole::Follows(Magnetism),
+            VOLTAGE | CURRENT => UsualRole::Drives(Electricity),
+            TEMPERATURE => UsualRole::Accompanies,
+            CHARGE | POLARIZATION => UsualRole::Follows(Electricity),
             _ => return None,
         };
         Some(part)
@@ -76,22 +76,22 @@ impl Quantity {
     }
 }
 
-fn product(text: &str) -> Option<Quantity> {
+fn product(text: &str) -> Option<UnitQuantity> {
     let mut factors = text.split([' ', '*', '·']).filter(|part| !part.is_empty()).map(power).peekable();
     factors.peek()?;
-    let one = Quantity { factor: 1.0, dimension: NONE };
+    let one = UnitQuantity { factor: 1.0, dimension: NONE };
     factors.try_fold(one, |whole, factor| Some(whole.times(factor?, 1)))
 }
 
 /// A symbol with an exponent or without.
-fn power(text: &str) -> Option<Quantity> {
+fn power(text: &str) -> Option<UnitQuantity> {
     let exponents = [("²", 2), ("³", 3), ("2", 2), ("3", 3)];
     let split = |(ending, power): (&str, i8)| {
         let base = text.strip_suffix(ending)?;
         Some((base.strip_suffix('^').unwrap_or(base), power))
     };
     let (base, power) = exponents.into_iter().find_map(split).unwrap_or((text, 1));
-    let one = Quantity { factor: 1.0, dimension: NONE };
+    let one = UnitQuantity { factor: 1.0, dimension: NONE };
     symbol(base).map(|unit| one.times(unit, power))
 }
 
@@ -101,14 +101,14 @@ pub(super) fn may_end_a_name(text: &str) -> bool {
     symbol(base).is_some() && !NOT_IN_NAMES.contains(&base)
 }
 
-/// Symbols that are words too, or of which only a bracket tells that they are units.
+/// Symbols that are words too, and are units only in brackets.
 const NOT_IN_NAMES: [&str; 14] =
     ["in", "ft", "%", "‰", "°", "°C", "\"", "'", "d", "second", "seconds", "minutes", "hours", "microstrain"];
 
-fn symbol(text: &str) -> Option<Quantity> {
+fn symbol(text: &str) -> Option<UnitQuantity> {
     let found = |(names, factor, dimension): &(&str, f64, Dimension)| {
         let is_named = names.split(' ').any(|name| name == text);
-        is_named.then_some(Quantity { factor: *factor, dimension: *dimension })
+        is_named.then_some(UnitQuantity { factor: *factor, dimension: *dimension })
     };
     SYMBOLS.iter().find_map(found)
 }
@@ -161,12 +161,12 @@ mod tests {
             ("tf", 9806.65, FORCE),
             ("um/m", 1e-6, NONE),
         ] {
-            let found = Quantity::of(unit).unwrap_or_else(|| panic!("{unit}"));
+            let found = UnitQuantity::of(unit).unwrap_or_else(|| panic!("{unit}"));
             assert_eq!(found.dimension, dimension, "{unit}");
             approx::assert_relative_eq!(found.factor, factor, max_relative = 1e-12);
         }
         for unit in ["", "/", "ticks", "degC", "mm/", "2"] {
-            assert_eq!(Quantity::of(unit), None, "{unit}");
+            assert_eq!(UnitQuantity::of(unit), None, "{unit}");
         }
     }
 }

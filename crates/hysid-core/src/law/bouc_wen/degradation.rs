@@ -81,7 +81,7 @@ pub(super) const BOUNDS: [(f64, f64); 9] = [
 
 /// `A`, `ν`, `η`, `ζ1`, `ζ2` and the centre of the pinched range at one energy.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Properties {
+pub(super) struct DegradedProperties {
     a: f64,
     nu: f64,
     eta: f64,
@@ -90,7 +90,7 @@ pub(super) struct Properties {
     centre: f64,
 }
 
-impl Properties {
+impl DegradedProperties {
     /// `dz/dx` on the way up, theory.md (8.6); `softening` is `|z/z_u|^n` with its share.
     pub fn slope(&self, z: f64, softening: f64) -> f64 {
         self.pinching(z) / self.eta * (self.a - self.nu * softening)
@@ -117,17 +117,17 @@ impl Degradation {
     }
 
     /// The properties of an element after the dissipated energy `e`.
-    pub(super) fn at(&self, n: f64, e: f64) -> Properties {
+    pub(super) fn at(&self, n: f64, e: f64) -> DegradedProperties {
         let e = limited(e);
-        let nu = 1.0 + self.delta_nu * e;
-        let zeta_1 = self.zeta_s * (1.0 - exp(-self.p * e));
-        Properties {
-            a: (1.0 - self.delta_a * e).max(0.0),
+        let nu = 1.0 + self.delta_nu * e; // (8.9)
+        let zeta_1 = self.zeta_s * (1.0 - exp(-self.p * e)); // (8.11)
+        DegradedProperties {
+            a: (1.0 - self.delta_a * e).max(0.0), // (8.9)
             nu,
-            eta: 1.0 + self.delta_eta * e,
+            eta: 1.0 + self.delta_eta * e, // (8.9)
             zeta_1,
-            zeta_2: (self.psi_0 + self.delta_psi * e) * (self.lambda + zeta_1),
-            centre: self.q * powf(nu, -1.0 / n),
+            zeta_2: (self.psi_0 + self.delta_psi * e) * (self.lambda + zeta_1), // (8.11)
+            centre: self.q * powf(nu, -1.0 / n),                                // (8.10)
         }
     }
 
@@ -163,7 +163,8 @@ impl Degradation {
     fn steady(&self, n: f64, e: f64) -> Option<(f64, f64)> {
         let properties = self.at(n, e);
         let ultimate = self.ultimate(n, e);
-        let drift = (self.delta_a / properties.a + self.delta_nu / properties.nu) / n;
+        let drift = (self.delta_a / properties.a + self.delta_nu / properties.nu) / n; // (8.52): D
+        // (8.52): κ
         let pull = properties.pinching(ultimate) * n * properties.a / (properties.eta * ultimate);
         let lag = drift * ultimate / pull;
         (lag <= SLOW).then(|| (ultimate * (1.0 + lag), SUNK / (drift * ultimate)))
@@ -193,7 +194,7 @@ impl Degradation {
         (1.0 + self.delta_nu * e) / (1.0 + self.delta_eta * e)
     }
 
-    /// Parts for a yield displacement, beyond those for its quickness, that a narrow pinched range asks for.
+    /// Parts for a yield displacement, beyond those for its quickness, that a narrow pinched range requires.
     pub(super) fn narrowness(&self) -> f64 {
         (0.5 / (self.psi_0 * (self.lambda + self.zeta_s))).clamp(1.0, 2.0)
     }

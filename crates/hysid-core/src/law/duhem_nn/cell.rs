@@ -42,7 +42,7 @@ pub struct Cell {
 
 /// Numbers of the parts of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shape {
+pub struct CellShape {
     /// Inputs: 1, or 2 with the rate.
     pub channels: usize,
     /// Stops.
@@ -55,7 +55,7 @@ pub struct Shape {
     pub has_time: bool,
 }
 
-impl Shape {
+impl CellShape {
     /// Number of inputs of the tanh layer, the constant included.
     pub fn inputs(self) -> usize {
         1 + self.channels + self.stops + self.states
@@ -87,8 +87,8 @@ pub struct Input {
 
 /// The state of a cell, with the intermediate results of the last sample.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Memory {
-    /// What the output weights multiply: `1, x, v, e, s, h`.
+pub struct CellMemory {
+    /// Factors of the output weights: `1, x, v, e, s, h`.
     pub(super) terms: Vec<f64>,
     pub(super) plays: Vec<f64>,
     pub(super) plays_before: Vec<f64>,
@@ -107,19 +107,19 @@ pub struct Memory {
 impl Cell {
     /// The numbers of its parts.
     #[inline(always)]
-    pub fn shape(&self) -> Shape {
+    pub fn shape(&self) -> CellShape {
         let has_rate = !self.rate_gains.is_empty();
         let channels = if has_rate { 2 } else { 1 };
         let stops = if has_rate { self.stops.len() / 2 } else { self.stops.len() };
         let states = self.initial.len();
         let neurons = self.output.len().saturating_sub(1 + channels + stops + states);
-        Shape { channels, stops, states, neurons, has_time: !self.relaxation_times.is_empty() }
+        CellShape { channels, stops, states, neurons, has_time: !self.relaxation_times.is_empty() }
     }
 
     /// True if all parts have the lengths that go together.
     pub(super) fn is_consistent(&self) -> bool {
         let shape = self.shape();
-        let Shape { channels, stops, states, neurons, has_time } = shape;
+        let CellShape { channels, stops, states, neurons, has_time } = shape;
         states > 0
             && neurons > 0
             && self.stops.len() == channels * stops
@@ -132,12 +132,12 @@ impl Cell {
     }
 
     /// The memory before the first sample.
-    pub fn memory(&self) -> Memory {
+    pub fn memory(&self) -> CellMemory {
         let shape = self.shape();
         let mut terms = vec![0.0; shape.terms()];
         terms[0] = 1.0;
         terms[shape.first_state()..shape.inputs()].copy_from_slice(&self.initial);
-        Memory {
+        CellMemory {
             terms,
             plays: vec![0.0; shape.stops],
             plays_before: vec![0.0; shape.stops],
@@ -151,7 +151,7 @@ impl Cell {
     }
 
     #[inline(always)]
-    pub(super) fn advance<S: Simd>(&self, memory: &mut Memory, input: Input) {
+    pub(super) fn advance<S: Simd>(&self, memory: &mut CellMemory, input: Input) {
         let shape = self.shape();
         (memory.moved, memory.elapsed) = match memory.x {
             Some(before) => ((input.x - before).abs(), if input.step > 0.0 { input.step } else { 0.0 }),
@@ -164,9 +164,9 @@ impl Cell {
         }
         self.advance_stops::<S>(shape, memory, input);
         let (inputs, neurons) = memory.terms.split_at_mut(shape.inputs());
-        layer::<S>(&self.hidden, inputs, neurons);
+        layer::<S>(&self.hidden, inputs, neurons); // (8.30)
         let states = &mut inputs[shape.first_state()..];
-        self.leaks::<S>(memory.moved, memory.elapsed, &mut memory.leaks);
+        self.leaks::<S>(memory.moved, memory.elapsed, &mut memory.leaks); // (8.29)
         memory.states_before.copy_from_slice(states);
         let rows = self.targets.chunks_exact(shape.neurons);
         for (i, (state, row)) in states.iter_mut().zip(rows).enumerate() {
@@ -175,13 +175,13 @@ impl Cell {
                 target = multiply_add::<S>(self.rate_gains[i], input.rate, target);
             }
             memory.pulls[i] = target - *state;
-            *state = multiply_add::<S>(memory.leaks[i], memory.pulls[i], *state);
+            *state = multiply_add::<S>(memory.leaks[i], memory.pulls[i], *state); // (8.31)
         }
     }
 
     #[inline(always)]
-    fn advance_stops<S: Simd>(&self, shape: Shape, memory: &mut Memory, input: Input) {
-        let Memory { terms, plays, plays_before, .. } = memory;
+    fn advance_stops<S: Simd>(&self, shape: CellShape, memory: &mut CellMemory, input: Input) {
+        let CellMemory { terms, plays, plays_before, .. } = memory;
         let elongations = &mut terms[1 + shape.channels..][..shape.stops];
         let (of_x, of_rate) = self.stops.split_at(shape.stops);
         plays_before.copy_from_slice(plays);
@@ -206,12 +206,12 @@ impl Cell {
         }
         for leak in leaks {
             let t = tanh::<S>(0.5 * *leak);
-            *leak = 2.0 * t / (1.0 + t);
+            *leak = 2.0 * t / (1.0 + t); // (8.29): 1 - exp(-leak)
         }
     }
 
     #[inline(always)]
-    pub(super) fn output<S: Simd>(&self, memory: &Memory) -> f64 {
-        product::<S>(&self.output, &memory.terms)
+    pub(super) fn output<S: Simd>(&self, memory: &CellMemory) -> f64 {
+        product::<S>(&self.output, &memory.terms) // (8.32)
     }
 }

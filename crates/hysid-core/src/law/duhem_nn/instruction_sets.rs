@@ -1,12 +1,12 @@
 //! Every instruction set of the machine simulates a cell to the same bits, and so is its Gram matrix.
 
-use super::cell::{Cell, Input, Shape};
+use super::cell::{Cell, CellShape, Input};
 use super::*;
 use crate::elementary::exp;
 use crate::random::uniform;
 use crate::stop_check::StopCheck;
 
-const SHAPE: Shape = Shape { channels: 2, stops: 5, states: 3, neurons: 13, has_time: true };
+const SHAPE: CellShape = CellShape { channels: 2, stops: 5, states: 3, neurons: 13, has_time: true };
 
 /// Numbers from -1 to 1.
 fn numbers(seed: u64, count: usize) -> Vec<f64> {
@@ -38,9 +38,9 @@ fn inputs(rows: usize) -> Vec<Input> {
     (0..rows).map(input).collect()
 }
 
-struct Simulated<'a>(&'a Cell, &'a [Input]);
+struct CellOutputs<'a>(&'a Cell, &'a [Input]);
 
-impl WithSimd for Simulated<'_> {
+impl WithSimd for CellOutputs<'_> {
     type Output = Vec<f64>;
 
     #[inline(always)]
@@ -49,7 +49,7 @@ impl WithSimd for Simulated<'_> {
         let mut memory = cell.memory();
         let mut outputs = Vec::with_capacity(inputs.len());
         for &input in inputs {
-            outputs.push(Step { cell, memory: &mut memory, input }.with_simd(simd));
+            outputs.push(CellStep { cell, memory: &mut memory, input }.with_simd(simd));
         }
         outputs
     }
@@ -59,12 +59,12 @@ impl WithSimd for Simulated<'_> {
 fn simulations_and_gram_matrices_are_equal() {
     let (cell, inputs) = (cell(), inputs(600));
     assert_eq!(cell.shape(), SHAPE);
-    let outputs = simd::run_with_all(|| Simulated(&cell, &inputs));
+    let outputs = simd::run_with_all(|| CellOutputs(&cell, &inputs));
     assert!(outputs[0].iter().all(|y| y.is_finite()));
     assert!(outputs.iter().all(|y| *y == outputs[0]));
 
     let targets = [numbers(12, inputs.len())];
-    let run = sensitivities::Run {
+    let run = sensitivities::CellRun {
         cell: &cell,
         drives: &[inputs],
         targets: &targets,

@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use super::cell::{Cell, Shape};
+use super::cell::{Cell, CellShape};
 use crate::elementary::exp;
 
 /// Positions of the parameters of a cell in the flat vector.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Layout {
+pub struct CellLayout {
     /// The numbers of the parts.
-    pub shape: Shape,
+    pub shape: CellShape,
     /// `b` and `A`, as [`Cell::hidden`].
     pub hidden: Range<usize>,
     /// `W`, as [`Cell::targets`].
@@ -26,9 +26,9 @@ pub struct Layout {
     pub stops: Range<usize>,
 }
 
-impl Layout {
+impl CellLayout {
     /// The layout of a shape.
-    pub fn new(shape: Shape) -> Self {
+    pub fn new(shape: CellShape) -> Self {
         let mut end = 0;
         let mut next = |length: usize| {
             let start = end;

@@ -11,8 +11,8 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::cell::{Cell, Input, Memory};
-use super::parameters::Layout;
+use super::cell::{Cell, CellMemory, Input};
+use super::parameters::CellLayout;
 use crate::law::gram_of_rows::{GramOfRows, RowUse};
 use crate::law::tanh_layer::{LANES, add_multiples, product};
 use crate::linear_algebra::Gram;
@@ -21,7 +21,7 @@ use crate::stop_check::{Pace, StopCheck};
 
 /// A cell and the records that it is run over.
 #[derive(Debug, Clone, Copy)]
-pub struct Run<'a> {
+pub struct CellRun<'a> {
     /// The cell; its output weights count only for the Jacobian.
     pub cell: &'a Cell,
     /// The samples of each record.
@@ -34,7 +34,7 @@ pub struct Run<'a> {
     pub stop: StopCheck<'a>,
 }
 
-impl<'a> Run<'a> {
+impl<'a> CellRun<'a> {
     /// The Gram matrix over all samples with a target: terms of the output, target, Jacobian. `None` once stopped.
     pub fn gram(self) -> Option<Gram> {
         let count = self.columns();
@@ -45,7 +45,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The columns of [`Run::gram`] themselves, row by row; `None` once stopped.
+    /// The columns of [`CellRun::gram`] themselves, row by row; `None` once stopped.
     pub fn rows(self) -> Option<Vec<Vec<f64>>> {
         match self.sweep(RowUse::Rows(Vec::new()))? {
             RowUse::Rows(rows) => Some(rows),
@@ -53,42 +53,42 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The entries of [`Run::gram`] with each instruction set of the machine.
+    /// The entries of [`CellRun::gram`] with each instruction set of the machine.
     #[cfg(test)]
     pub(super) fn grams_of_all(self) -> Vec<Vec<f64>> {
         let count = self.columns();
         let rows = || RowUse::Gram(GramOfRows::new(count, self.stop));
-        let grams = simd::run_with_all(|| Sweep { run: self, rows: rows() }).into_iter().flatten();
+        let grams = simd::run_with_all(|| CellSweep { run: self, rows: rows() }).into_iter().flatten();
         grams.filter_map(RowUse::entries).collect()
     }
 
     /// The rows as they were used; `None` once stopped.
     fn sweep(self, rows: RowUse<'a>) -> Option<RowUse<'a>> {
-        simd::run(Sweep { run: self, rows })
+        simd::run(CellSweep { run: self, rows })
     }
 
     fn columns(&self) -> usize {
         let shape = self.cell.shape();
-        let jacobian = if self.with_jacobian { Layout::new(shape).count() } else { 0 };
+        let jacobian = if self.with_jacobian { CellLayout::new(shape).count() } else { 0 };
         shape.terms() + 1 + jacobian
     }
 }
 
 /// A run whose rows are taken.
-struct Sweep<'a> {
-    run: Run<'a>,
+struct CellSweep<'a> {
+    run: CellRun<'a>,
     rows: RowUse<'a>,
 }
 
-impl<'a> WithSimd for Sweep<'a> {
+impl<'a> WithSimd for CellSweep<'a> {
     type Output = Option<RowUse<'a>>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) -> Option<RowUse<'a>> {
-        let Run { cell, drives, targets, with_jacobian, stop } = self.run;
+        let CellRun { cell, drives, targets, with_jacobian, stop } = self.run;
         let shape = cell.shape();
         let mut pace = Pace::new(stop);
-        let mut sensitivities = with_jacobian.then(|| Sensitivities::new(cell));
+        let mut sensitivities = with_jacobian.then(|| CellSensitivities::new(cell));
         let per_sample = shape.inputs() * shape.neurons;
         let per_sample = per_sample
             + sensitivities.as_ref().map_or(0, |all| all.width * shape.states * (shape.states + 1));
@@ -96,7 +96,7 @@ impl<'a> WithSimd for Sweep<'a> {
         let target = shape.terms();
         for (drive, targets) in drives.iter().zip(targets) {
             let mut memory = cell.memory();
-            sensitivities.iter_mut().for_each(Sensitivities::begin);
+            sensitivities.iter_mut().for_each(CellSensitivities::begin);
             for (&input, &y) in drive.iter().zip(targets) {
                 if pace.is_over(per_sample) {
                     return None;
@@ -121,8 +121,8 @@ impl<'a> WithSimd for Sweep<'a> {
 }
 
 /// `∂s/∂θ` on its way along a record, and what it follows from at the present sample.
-struct Sensitivities {
-    layout: Layout,
+struct CellSensitivities {
+    layout: CellLayout,
     /// Parameters, rounded up to whole groups.
     width: usize,
     /// `∂s_i` of each state, `width` numbers each, and the same before the present sample.
@@ -142,9 +142,9 @@ struct Sensitivities {
     carried: Vec<f64>,
 }
 
-impl Sensitivities {
+impl CellSensitivities {
     fn new(cell: &Cell) -> Self {
-        let layout = Layout::new(cell.shape());
+        let layout = CellLayout::new(cell.shape());
         let shape = layout.shape;
         let width = layout.count().next_multiple_of(LANES);
         let of_stops = vec![0.0; shape.channels * shape.stops];
@@ -175,7 +175,7 @@ impl Sensitivities {
 
     /// To the sample to which the cell has just advanced (theory.md (8.33)).
     #[inline(always)]
-    fn advance<S: Simd>(&mut self, cell: &Cell, memory: &Memory, input: Input) {
+    fn advance<S: Simd>(&mut self, cell: &Cell, memory: &CellMemory, input: Input) {
         let Self { layout, width, states, before, direct, inputs, slopes, back, carried, .. } = self;
         let (shape, width) = (layout.shape, *width);
         of_plays(memory, input, &mut self.plays, &mut self.elongations);
@@ -183,7 +183,7 @@ impl Sensitivities {
         inputs[..first].copy_from_slice(&memory.terms[..first]);
         inputs[first..].copy_from_slice(&memory.states_before);
         for (slope, h) in slopes.iter_mut().zip(neurons) {
-            *slope = 1.0 - h * h;
+            *slope = 1.0 - h * h; // (8.33): g_j
         }
         std::mem::swap(states, before);
         for i in 0..shape.states {
@@ -210,10 +210,10 @@ impl Sensitivities {
                 direct[layout.ln_relaxation_times.start + i] = if kept == 0.0 { 0.0 } else { -kept * steps };
             }
             carry::<S>(cell, back, carried);
-            carried[i] += 1.0 - leak;
+            carried[i] += 1.0 - leak; // (8.33)
             let state = &mut states[i * width..][..width];
             state.copy_from_slice(direct);
-            add_multiples::<S>(state, carried, before);
+            add_multiples::<S>(state, carried, before); // (8.33)
         }
     }
 
@@ -238,15 +238,15 @@ impl Sensitivities {
             }
         }
         carry::<S>(cell, back, carried);
-        add_multiples::<S>(of_output, carried, before);
-        add_multiples::<S>(of_output, &of_inputs[shape.first_state()..], states);
+        add_multiples::<S>(of_output, carried, before); // (8.34)
+        add_multiples::<S>(of_output, &of_inputs[shape.first_state()..], states); // (8.34)
         jacobian.copy_from_slice(&of_output[..jacobian.len()]);
     }
 }
 
 /// `∂p` and `∂e` of each stop by its own weights: a play follows its input where it has just moved.
 #[inline(always)]
-fn of_plays(memory: &Memory, input: Input, plays: &mut [f64], elongations: &mut [f64]) {
+fn of_plays(memory: &CellMemory, input: Input, plays: &mut [f64], elongations: &mut [f64]) {
     let stops = memory.plays.len();
     if stops == 0 {
         return;
@@ -274,7 +274,13 @@ fn of_layer(inputs: &[f64], back: &[f64], direct: &mut [f64]) {
 
 /// The direct terms of the weights of the stops through the layer.
 #[inline(always)]
-fn of_stops<S: Simd>(cell: &Cell, layout: &Layout, back: &[f64], elongations: &[f64], direct: &mut [f64]) {
+fn of_stops<S: Simd>(
+    cell: &Cell,
+    layout: &CellLayout,
+    back: &[f64],
+    elongations: &[f64],
+    direct: &mut [f64],
+) {
     let shape = layout.shape;
     let direct = &mut direct[layout.stops.clone()];
     for stop in 0..shape.stops {

@@ -20,7 +20,7 @@
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
-use super::Shape;
+use super::ElementShape;
 use crate::law::tanh_layer::{layer, product};
 use crate::network::tanh::tanh;
 use crate::simd::multiply_add;
@@ -60,8 +60,8 @@ pub struct Element {
 }
 
 impl Element {
-    pub(super) fn is_consistent(&self, shape: Shape, modes: usize) -> bool {
-        let Shape { stops, states, neurons, deteriorates } = shape;
+    pub(super) fn is_consistent(&self, shape: ElementShape, modes: usize) -> bool {
+        let ElementShape { stops, states, neurons, deteriorates } = shape;
         neurons > 0
             && self.of_displacements.len() == modes
             && self.of_velocities.len() == modes
@@ -84,15 +84,15 @@ impl Element {
     }
 
     /// Numbers of its parts.
-    pub fn shape(&self) -> Shape {
+    pub fn shape(&self) -> ElementShape {
         let (stops, states) = (self.thresholds.len(), self.path_leaks.len());
         let neurons = self.force.len().saturating_sub(stops + states);
-        Shape { stops, states, neurons, deteriorates: !self.strength_losses.is_empty() }
+        ElementShape { stops, states, neurons, deteriorates: !self.strength_losses.is_empty() }
     }
 
     /// Bounds of the magnitudes of the force and of each state, which is an average of past and targets.
     pub fn bounds(&self) -> (f64, Vec<f64>) {
-        let Shape { stops, states, neurons, .. } = self.shape();
+        let ElementShape { stops, states, neurons, .. } = self.shape();
         let size = |weights: &[f64]| weights.iter().map(|w| w.abs()).sum::<f64>();
         let of_state = |i: usize| {
             let row = i * neurons..(i + 1) * neurons;
@@ -171,7 +171,7 @@ impl StateWeights {
 }
 
 impl PathPoint {
-    fn zero(shape: Shape) -> Self {
+    fn zero(shape: ElementShape) -> Self {
         Self {
             inputs: vec![0.0; shape.inputs()],
             neurons: vec![0.0; shape.neurons],
@@ -193,8 +193,9 @@ impl PathPoint {
     /// Neurons and force from the inputs of the layer.
     #[inline(always)]
     pub fn finish<S: Simd>(&mut self, element: &Element) {
-        layer::<S>(&element.layer, &self.inputs, &mut self.neurons);
+        layer::<S>(&element.layer, &self.inputs, &mut self.neurons); // (15.7)
         let (of_memory, of_neurons) = element.force.split_at(self.inputs.len() - 3);
+        // (15.10)
         self.force = product::<S>(of_memory, &self.inputs[3..]) + product::<S>(of_neurons, &self.neurons);
     }
 
@@ -243,19 +244,20 @@ impl PathStep {
         let of_velocity = velocity - from.inputs[2];
         for i in 0..stops {
             let driven = multiply_add::<S>(element.stop_velocities[i], of_velocity, self.moved);
-            let (free, threshold) = (from.elongations[i] + driven, element.thresholds[i]);
-            let elongation = free.clamp(-threshold, threshold);
+            let (free, threshold) = (from.elongations[i] + driven, element.thresholds[i]); // (15.6): ε̂
+            let elongation = free.clamp(-threshold, threshold); // (15.6): ε
             elongations[i] = elongation;
-            slips[i] = from.slips[i] + (free - elongation).abs();
+            slips[i] = from.slips[i] + (free - elongation).abs(); // (15.6): Λ
             let loss = element.strength_losses.get(i).copied().unwrap_or(0.0);
             self.strengths[i] = (1.0 - loss * slips[i]).max(0.0);
             self.at_threshold[i] = if elongation == free { 0.0 } else { elongation };
-            inputs[3 + i] = elongation * self.strengths[i];
+            inputs[3 + i] = elongation * self.strengths[i]; // (15.6): z
         }
         let inputs = &mut self.end.inputs;
         self.inputs_ahead[..first_state].copy_from_slice(&inputs[..first_state]);
         for (i, before) in from.inputs[first_state..].iter().enumerate() {
             let weights = StateWeights::of::<S>(element.path_leaks[i] * path);
+            // (15.8): T_0
             let target = product::<S>(&rows[i * shape.neurons..][..shape.neurons], &from.neurons);
             self.inputs_ahead[first_state + i] =
                 multiply_add::<S>(1.0 - weights.kept, target - before, *before);
@@ -264,8 +266,10 @@ impl PathStep {
         layer::<S>(&element.layer, &self.inputs_ahead, &mut self.neurons_ahead);
         for (i, before) in from.inputs[first_state..].iter().enumerate() {
             let StateWeights { kept, first, last, .. } = self.weights[i];
+            // (15.8): T_1
             let ahead = product::<S>(&rows[i * shape.neurons..][..shape.neurons], &self.neurons_ahead);
             self.targets_ahead[i] = ahead;
+            // (15.9)
             self.end.inputs[first_state + i] =
                 multiply_add::<S>(kept, *before, multiply_add::<S>(first, self.targets[i], last * ahead));
         }

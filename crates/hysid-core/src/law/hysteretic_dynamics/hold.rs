@@ -24,7 +24,7 @@ impl Hold {
 
     /// The input after the share `part` of the last step, from the newest four samples, the newest first.
     #[inline(always)]
-    pub(super) fn at(self, part: f64, recent: &Recent) -> f64 {
+    pub(super) fn at(self, part: f64, recent: &RecentSamples) -> f64 {
         let [last, before, third, fourth] = recent.values;
         match self {
             Self::Constant => before,
@@ -40,7 +40,7 @@ impl Hold {
 
 /// The newest samples of the input, and whether they are equally far apart.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Recent {
+pub(super) struct RecentSamples {
     /// The newest first.
     pub values: [f64; 4],
     /// The last three time steps, the newest first; 0 where there was none.
@@ -48,7 +48,7 @@ pub(super) struct Recent {
     pub is_even: bool,
 }
 
-impl Recent {
+impl RecentSamples {
     /// At rest under this input.
     pub fn at_rest(value: f64) -> Self {
         Self { values: [value; 4], steps: [0.0; 3], is_even: false }
@@ -67,8 +67,8 @@ impl Recent {
 mod tests {
     use super::*;
 
-    fn recent(values: [f64; 4], steps: [f64; 3]) -> Recent {
-        let mut recent = Recent::at_rest(values[0]);
+    fn recent(values: [f64; 4], steps: [f64; 3]) -> RecentSamples {
+        let mut recent = RecentSamples::at_rest(values[0]);
         values[1..].iter().zip(steps).for_each(|(&value, step)| recent.add(value, step));
         recent
     }

@@ -3,9 +3,9 @@
 use super::tests::{SHAPE, drive, in_motion, model, samples};
 use super::*;
 
-struct Simulated<'a>(&'a Dynamics, &'a [Sample]);
+struct DynamicsOutputs<'a>(&'a Dynamics, &'a [Sample]);
 
-impl WithSimd for Simulated<'_> {
+impl WithSimd for DynamicsOutputs<'_> {
     type Output = Vec<f64>;
 
     #[inline(always)]
@@ -14,7 +14,7 @@ impl WithSimd for Simulated<'_> {
         let mut motion = dynamics.virgin();
         let mut outputs = Vec::with_capacity(samples.len());
         for &sample in samples {
-            outputs.push(Row { dynamics, motion: &mut motion, sample }.with_simd(simd));
+            outputs.push(DynamicsStep { dynamics, motion: &mut motion, sample }.with_simd(simd));
         }
         outputs
     }
@@ -25,11 +25,11 @@ fn simulations_and_gram_matrices_are_equal() {
     let dynamics = model(8, 2, 2, SHAPE, 0.5);
     let drives = [drive(2, 100, 0.1), drive(3, 30, 0.2)];
     let samples = samples(&drives[0]);
-    let outputs = simd::run_with_all(|| Simulated(&dynamics, &samples));
+    let outputs = simd::run_with_all(|| DynamicsOutputs(&dynamics, &samples));
     assert!(outputs[0].iter().all(|y| y.is_finite()));
     assert!(outputs.iter().all(|y| *y == outputs[0]));
 
-    let layout = Layout::new(Form::StateSpace, 2, 2, SHAPE);
+    let layout = DynamicsLayout::new(DynamicsForm::StateSpace, 2, 2, SHAPE);
     let grams = in_motion(&dynamics, &drives, &[]).grams_of_all(&layout);
     assert!(grams[0].iter().all(|entry| entry.is_finite()));
     assert!(grams.iter().all(|gram| *gram == grams[0]));

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use super::{DAMPING_RATIOS, Dynamics, Element, LARGEST_WEIGHT, Mode, Shape};
+use super::{DAMPING_RATIOS, Dynamics, Element, ElementShape, LARGEST_WEIGHT, Mode};
 use crate::elementary::{exp, ln};
 
 /// Which coefficients are free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
+pub enum DynamicsForm {
     /// An oscillator: its output, and what moves its elements, are displacements.
     Oscillator,
     /// A state space model: any sums of displacements, velocities and inputs.
@@ -49,9 +49,9 @@ pub struct ElementLayout {
 
 /// Positions of the parameters in the flat vector: the offset in units of the output scale, `d`, modes and elements.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Layout {
+pub struct DynamicsLayout {
     /// The numbers of the parts of each element.
-    pub shape: Shape,
+    pub shape: ElementShape,
     /// Of each mode.
     pub modes: Vec<ModeLayout>,
     /// Of each element.
@@ -67,16 +67,16 @@ pub(super) const OFFSET: usize = 0;
 /// Place of `d`.
 pub(super) const DIRECT: usize = 1;
 
-impl Layout {
-    /// The layout of so many modes and elements.
-    pub fn new(form: Form, modes: usize, elements: usize, shape: Shape) -> Self {
+impl DynamicsLayout {
+    /// The layout for these numbers of modes and elements.
+    pub fn new(form: DynamicsForm, modes: usize, elements: usize, shape: ElementShape) -> Self {
         let mut end = DIRECT + 1;
         let mut next = |length: usize| {
             let start = end;
             end += length;
             start..end
         };
-        let is_general = form == Form::StateSpace;
+        let is_general = form == DynamicsForm::StateSpace;
         let if_general = |length: usize| if is_general { length } else { 0 };
         let coupled = if is_general || modes > 1 { modes } else { 0 };
         let of_mode = |_| ModeLayout {

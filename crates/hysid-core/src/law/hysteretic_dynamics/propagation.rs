@@ -88,7 +88,7 @@ impl Propagation {
     pub fn moved(&self, [q, p]: [f64; 2], [f_before, f]: [f64; 2]) -> [f64; 2] {
         let of =
             |[by_q, by_p, by_before, by_f]: [f64; 4]| by_q * q + by_p * p + by_before * f_before + by_f * f;
-        [of(self.displacement), of(self.velocity)]
+        [of(self.displacement), of(self.velocity)] // (15.3), (15.4)
     }
 
     const AT_REST: Self = Self { displacement: [0.0, 0.0, 0.0, 1.0], velocity: [0.0; 4] };
@@ -106,7 +106,7 @@ impl PropagationSlopes {
             };
         }
         let ratio = Dual { value: damping, by: [0.0, 1.0] };
-        let weights = Weights::new(Dual { value: theta, by: [1.0, 0.0] }, ratio);
+        let weights = ForceWeights::new(Dual { value: theta, by: [1.0, 0.0] }, ratio);
         let factors = weights.factors(ratio);
         let of = |pick: &dyn Fn(Dual) -> f64| Propagation {
             displacement: factors[0].map(pick),
@@ -122,12 +122,12 @@ impl PropagationSlopes {
 
 /// The weights of the forces at both ends of a step, from which all factors follow.
 #[derive(Clone, Copy)]
-struct Weights {
+struct ForceWeights {
     alpha: [Dual; 2],
     beta: [Dual; 2],
 }
 
-impl Weights {
+impl ForceWeights {
     fn new(angle: Dual, ratio: Dual) -> Self {
         let mut part = angle;
         while part.value * (1.0 + 2.0 * ratio.value) >= SHORT {

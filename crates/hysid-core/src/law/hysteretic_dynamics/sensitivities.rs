@@ -6,16 +6,16 @@
 //! from them. The local derivatives of an element by the ends of its step come from sweeps backwards through its layer,
 //! one for each state and one for the force.
 
-mod of_stops;
+mod stops;
 
-use of_stops::{OfStops, add_by_end};
 use pulp::{Simd, WithSimd};
+use stops::{StopSensitivities, add_by_end};
 
 use super::element::{Element, PathPoint, PathStep};
-use super::parameters::{DIRECT, ElementLayout, Layout, OFFSET};
+use super::parameters::{DIRECT, DynamicsLayout, ElementLayout, OFFSET};
 use super::propagation::PropagationSlopes;
-use super::trial::Motion;
-use super::{Dynamics, Shape};
+use super::trial::DynamicsMotion;
+use super::{Dynamics, ElementShape};
 use crate::law::gram_of_rows::{GramOfRows, RowUse};
 use crate::law::tanh_layer::{LANES, add_multiple, add_multiples, add_two, product};
 use crate::linear_algebra::Gram;
@@ -27,7 +27,7 @@ const LEAST_PIVOT: f64 = 0.01;
 
 /// A record as it drives a model.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Drive {
+pub struct DynamicsDrive {
     /// The input, in its unit.
     pub x: Vec<f64>,
     /// Time since the row before, in the unit of time; infinite in a lead-in.
@@ -38,7 +38,7 @@ pub struct Drive {
     pub weights: Vec<f64>,
 }
 
-impl Drive {
+impl DynamicsDrive {
     /// Number of rows that are compared, with those that they stand for.
     pub fn rows(&self) -> f64 {
         let compared = self.targets.iter().zip(&self.weights).filter(|(target, _)| !target.is_nan());
@@ -48,11 +48,11 @@ impl Drive {
 
 /// A model and the records that it is run over.
 #[derive(Debug, Clone, Copy)]
-pub struct Run<'a> {
+pub struct DynamicsRun<'a> {
     /// The model.
     pub dynamics: &'a Dynamics,
     /// The records.
-    pub drives: &'a [Drive],
+    pub drives: &'a [DynamicsDrive],
     /// Of each record the displacements of the modes at its first row, beside those at rest, and then the velocities;
     /// empty if all begin at rest.
     pub beginnings: &'a [f64],
@@ -63,9 +63,9 @@ pub struct Run<'a> {
     pub stop: StopCheck<'a>,
 }
 
-impl<'a> Run<'a> {
+impl<'a> DynamicsRun<'a> {
     /// A run over records that begin at rest.
-    pub fn from_rest(dynamics: &'a Dynamics, drives: &'a [Drive], stop: StopCheck<'a>) -> Self {
+    pub fn from_rest(dynamics: &'a Dynamics, drives: &'a [DynamicsDrive], stop: StopCheck<'a>) -> Self {
         Self { dynamics, drives, beginnings: &[], is_in_motion: false, stop }
     }
 
@@ -79,7 +79,7 @@ impl<'a> Run<'a> {
 
     /// The Gram matrix of the derivatives by the parameters of the layout and of the error, each row weighted; `None`
     /// once stopped. The columns of the beginning are those of each record in turn.
-    pub fn gram(self, layout: &Layout) -> Option<Gram> {
+    pub fn gram(self, layout: &DynamicsLayout) -> Option<Gram> {
         let rows = GramOfRows::new(layout.count() + 1, self.stop);
         match self.sweep(Some(layout), RowUse::Gram(rows))? {
             RowUse::Gram(rows) => Some(rows.gram),
@@ -87,50 +87,50 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The columns of [`Run::gram`] themselves, row by row; `None` once stopped.
-    pub fn rows(self, layout: &Layout) -> Option<Vec<Vec<f64>>> {
+    /// The columns of [`DynamicsRun::gram`] themselves, row by row; `None` once stopped.
+    pub fn rows(self, layout: &DynamicsLayout) -> Option<Vec<Vec<f64>>> {
         match self.sweep(Some(layout), RowUse::Rows(Vec::new()))? {
             RowUse::Rows(rows) => Some(rows),
             _ => None,
         }
     }
 
-    /// The entries of [`Run::gram`] with each instruction set of the machine.
+    /// The entries of [`DynamicsRun::gram`] with each instruction set of the machine.
     #[cfg(test)]
-    pub(super) fn grams_of_all(self, layout: &Layout) -> Vec<Vec<f64>> {
+    pub(super) fn grams_of_all(self, layout: &DynamicsLayout) -> Vec<Vec<f64>> {
         let rows = || RowUse::Gram(GramOfRows::new(layout.count() + 1, self.stop));
-        let grams = simd::run_with_all(|| Sweep { run: self, layout: Some(layout), rows: rows() });
+        let grams = simd::run_with_all(|| DynamicsSweep { run: self, layout: Some(layout), rows: rows() });
         grams.into_iter().flatten().filter_map(RowUse::entries).collect()
     }
 
     /// The rows as they were used; `None` once stopped.
-    fn sweep(self, layout: Option<&Layout>, rows: RowUse<'a>) -> Option<RowUse<'a>> {
-        simd::run(Sweep { run: self, layout, rows })
+    fn sweep(self, layout: Option<&DynamicsLayout>, rows: RowUse<'a>) -> Option<RowUse<'a>> {
+        simd::run(DynamicsSweep { run: self, layout, rows })
     }
 }
 
-struct Sweep<'a, 'l> {
-    run: Run<'a>,
-    layout: Option<&'l Layout>,
+struct DynamicsSweep<'a, 'l> {
+    run: DynamicsRun<'a>,
+    layout: Option<&'l DynamicsLayout>,
     rows: RowUse<'a>,
 }
 
-impl<'a> WithSimd for Sweep<'a, '_> {
+impl<'a> WithSimd for DynamicsSweep<'a, '_> {
     type Output = Option<RowUse<'a>>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) -> Option<RowUse<'a>> {
-        let Run { dynamics, drives, beginnings, is_in_motion, stop } = self.run;
+        let DynamicsRun { dynamics, drives, beginnings, is_in_motion, stop } = self.run;
         let mut pace = Pace::new(stop);
         let offset = dynamics.output_offset / dynamics.output_scale;
-        let mut sensitivities = self.layout.map(|layout| Sensitivities::new(dynamics, layout));
-        let columns = self.layout.map_or(0, Layout::count);
+        let mut sensitivities = self.layout.map(|layout| MotionSensitivities::new(dynamics, layout));
+        let columns = self.layout.map_or(0, DynamicsLayout::count);
         let per_step = 400 + 40 * columns;
         let mut row = vec![0.0; columns + 1];
         let modes = dynamics.modes.len();
         for (index, drive) in drives.iter().enumerate() {
             let beginning = beginnings.get(2 * modes * index..2 * modes * (index + 1));
-            let mut motion = Motion::virgin(dynamics);
+            let mut motion = DynamicsMotion::virgin(dynamics);
             motion.start::<S>(dynamics);
             if let Some(sensitivities) = &mut sensitivities {
                 sensitivities.begin::<S>(dynamics, &motion);
@@ -186,8 +186,8 @@ impl<'a> WithSimd for Sweep<'a, '_> {
 }
 
 /// Derivatives of the motion, carried forward along a record. A row has one number for each parameter, in whole groups.
-struct Sensitivities<'l> {
-    layout: &'l Layout,
+struct MotionSensitivities<'l> {
+    layout: &'l DynamicsLayout,
     width: usize,
     /// `∂q` of each mode, then `∂p`.
     modes: Vec<f64>,
@@ -195,9 +195,9 @@ struct Sensitivities<'l> {
     alone: Vec<f64>,
     /// `∂r` of each element.
     forces: Vec<f64>,
-    /// What the forces are without their own influence, then the new `∂r`.
+    /// Forces without their own influence, then the new `∂r`.
     new_forces: Vec<f64>,
-    elements: Vec<OfElement>,
+    elements: Vec<ElementSensitivities>,
     /// `∂δ` and `∂ν` at the end of the step.
     ends: Vec<f64>,
     slopes: Vec<PropagationSlopes>,
@@ -208,12 +208,12 @@ struct Sensitivities<'l> {
     of_output: Vec<f64>,
 }
 
-struct OfElement {
+struct ElementSensitivities {
     /// At its point of the path: `∂δ`, `∂ν`, `∂z` of each stop, `∂s` of each state.
     point: Vec<f64>,
     /// Of the outputs of stops and of the states at the end of a step, without those of `δ` and `ν` there.
     memory: Vec<f64>,
-    stops: OfStops,
+    stops: StopSensitivities,
     of_states: Vec<Local>,
     of_force: Local,
     /// Where the step began.
@@ -240,8 +240,8 @@ struct Scratch {
     on_targets: Vec<f64>,
 }
 
-impl OfElement {
-    fn new(shape: Shape, width: usize) -> Self {
+impl ElementSensitivities {
+    fn new(shape: ElementShape, width: usize) -> Self {
         let memory = shape.stops + shape.states;
         let local = Local {
             by_start: vec![0.0; 2 + memory],
@@ -252,7 +252,7 @@ impl OfElement {
         Self {
             point: vec![0.0; (2 + memory) * width],
             memory: vec![0.0; memory * width],
-            stops: OfStops::new(shape, width),
+            stops: StopSensitivities::new(shape, width),
             of_states: vec![local.clone(); shape.states],
             of_force: Local { by_start: Vec::new(), ..local },
             from: None,
@@ -266,8 +266,8 @@ impl OfElement {
     }
 }
 
-impl<'l> Sensitivities<'l> {
-    fn new(dynamics: &Dynamics, layout: &'l Layout) -> Self {
+impl<'l> MotionSensitivities<'l> {
+    fn new(dynamics: &Dynamics, layout: &'l DynamicsLayout) -> Self {
         let width = layout.count().next_multiple_of(LANES);
         let (modes, elements) = (dynamics.modes.len(), dynamics.elements.len());
         let rows = |count: usize| vec![0.0; count * width];
@@ -278,7 +278,7 @@ impl<'l> Sensitivities<'l> {
             alone: rows(2 * modes),
             forces: rows(elements),
             new_forces: rows(elements),
-            elements: (0..elements).map(|_| OfElement::new(layout.shape, width)).collect(),
+            elements: (0..elements).map(|_| ElementSensitivities::new(layout.shape, width)).collect(),
             ends: rows(2 * elements),
             slopes: vec![PropagationSlopes::new(1.0, 1.0, 1.0); modes],
             step: f64::NAN,
@@ -290,7 +290,7 @@ impl<'l> Sensitivities<'l> {
 
     /// Before the first sample of a record only initial states, and forces in them, depend on parameters.
     #[inline(always)]
-    fn begin<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+    fn begin<S: Simd>(&mut self, dynamics: &Dynamics, motion: &DynamicsMotion) {
         let (width, shape) = (self.width, self.layout.shape);
         self.modes.fill(0.0);
         self.forces.fill(0.0);
@@ -305,12 +305,12 @@ impl<'l> Sensitivities<'l> {
         self.forces_at_points::<S>(dynamics, motion);
     }
 
-    /// After [`Motion::displace`].
+    /// After [`DynamicsMotion::displace`].
     #[inline(always)]
     fn displace<S: Simd>(
         &mut self,
         dynamics: &Dynamics,
-        motion: &Motion,
+        motion: &DynamicsMotion,
         displacements: &[f64],
         velocities: &[f64],
     ) {
@@ -343,7 +343,7 @@ impl<'l> Sensitivities<'l> {
 
     /// `∂r` where the elements are, from what describes their points.
     #[inline(always)]
-    fn forces_at_points<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+    fn forces_at_points<S: Simd>(&mut self, dynamics: &Dynamics, motion: &DynamicsMotion) {
         let width = self.width;
         for (e, own) in self.elements.iter_mut().enumerate() {
             let force = &mut self.forces[e * width..(e + 1) * width];
@@ -355,7 +355,7 @@ impl<'l> Sensitivities<'l> {
     }
 
     #[inline(always)]
-    fn remember(&mut self, motion: &Motion) {
+    fn remember(&mut self, motion: &DynamicsMotion) {
         for (element, point) in self.elements.iter_mut().zip(&motion.points) {
             match &mut element.from {
                 Some(from) => from.copy_from(point),
@@ -366,7 +366,7 @@ impl<'l> Sensitivities<'l> {
 
     /// To the end of the step that the motion has just made.
     #[inline(always)]
-    fn advance<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+    fn advance<S: Simd>(&mut self, dynamics: &Dynamics, motion: &DynamicsMotion) {
         if motion.step != self.step {
             self.step = motion.step;
             for (slopes, mode) in self.slopes.iter_mut().zip(&dynamics.modes) {
@@ -384,7 +384,7 @@ impl<'l> Sensitivities<'l> {
 
     /// `∂q` and `∂p` at the end of the step with the forces there held.
     #[inline(always)]
-    fn modes_alone<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+    fn modes_alone<S: Simd>(&mut self, dynamics: &Dynamics, motion: &DynamicsMotion) {
         let (width, modes) = (self.width, dynamics.modes.len());
         let mut factors = [0.0; super::MOST_PARTS];
         for i in 0..modes {
@@ -408,6 +408,7 @@ impl<'l> Sensitivities<'l> {
             for (offset, by, by_ln_frequency, by_ln_damping) in parts {
                 let row = &mut self.alone[(offset + i) * width..][..width];
                 row.fill(0.0);
+                // (15.3), (15.4)
                 let along = |[a, b, c, d]: [f64; 4]| a * state[0] + b * state[1] + c * first + d * last;
                 row[layout.ln_frequency] = along(by_ln_frequency);
                 row[layout.ln_damping] = along(by_ln_damping);
@@ -427,7 +428,7 @@ impl<'l> Sensitivities<'l> {
 
     /// `∂δ` and `∂ν` at the end of the step, from those modes.
     #[inline(always)]
-    fn displacements_alone<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+    fn displacements_alone<S: Simd>(&mut self, dynamics: &Dynamics, motion: &DynamicsMotion) {
         let (width, modes) = (self.width, dynamics.modes.len());
         for (e, element) in dynamics.elements.iter().enumerate() {
             let layout = &self.layout.elements[e];
@@ -453,13 +454,13 @@ impl<'l> Sensitivities<'l> {
 
     /// States and force of an element without `∂δ` and `∂ν` at the end of the step, and their derivatives by these.
     #[inline(always)]
-    fn element<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion, e: usize) {
+    fn element<S: Simd>(&mut self, dynamics: &Dynamics, motion: &DynamicsMotion, e: usize) {
         let (width, shape) = (self.width, self.layout.shape);
         let (element, layout) = (&dynamics.elements[e], &self.layout.elements[e]);
         let step = &motion.path_steps[e];
         let own = &mut self.elements[e];
         let from = own.from.as_ref().expect("the beginning of a step is remembered");
-        let ends = Ends { element, layout, shape, from, step };
+        let ends = ElementEnds { element, layout, shape, from, step };
         let (outputs, states) = own.memory.split_at_mut(shape.stops * width);
         own.stops.take::<S>(ends, &own.point, outputs);
         for (k, local) in own.of_states.iter_mut().enumerate() {
@@ -502,13 +503,14 @@ impl<'l> Sensitivities<'l> {
                 let (displacement, velocity) = self.influence(dynamics, e, f);
                 let Local { by_displacement, by_velocity, .. } = self.elements[e].of_force;
                 let own = by_displacement * displacement + by_velocity * velocity;
-                self.matrix[e * count + f] = if e == f { 1.0 } else { 0.0 } - own;
+                self.matrix[e * count + f] = if e == f { 1.0 } else { 0.0 } - own; // (15.13): 1 - ∂R/∂r
             }
         }
         invert(&mut self.matrix, &mut self.inverse, count);
         for e in 0..count {
             let row = &mut self.forces[e * width..(e + 1) * width];
             row.fill(0.0);
+            // (15.13)
             add_multiples::<S>(row, &self.inverse[e * count..(e + 1) * count], &self.new_forces);
         }
     }
@@ -543,12 +545,12 @@ impl<'l> Sensitivities<'l> {
         }
     }
 
-    /// The derivative of [`Motion::force_on`] a mode, weighted.
+    /// The derivative of [`DynamicsMotion::force_on`] a mode, weighted.
     #[inline(always)]
     fn of_rest<S: Simd>(
         &mut self,
         dynamics: &Dynamics,
-        motion: &Motion,
+        motion: &DynamicsMotion,
         mode: usize,
         weight: f64,
         jacobian: &mut [f64],
@@ -571,7 +573,7 @@ impl<'l> Sensitivities<'l> {
     fn of_output<S: Simd>(
         &mut self,
         dynamics: &Dynamics,
-        motion: &Motion,
+        motion: &DynamicsMotion,
         weight: f64,
         jacobian: &mut [f64],
     ) {
@@ -600,7 +602,7 @@ impl<'l> Sensitivities<'l> {
     }
 }
 
-impl OfElement {
+impl ElementSensitivities {
     /// Of the force at a point of the path: by `δ`, `ν` and memory there, and in `row` by its own parameters.
     #[inline(always)]
     fn force<S: Simd>(
@@ -660,15 +662,15 @@ impl Local {
 
 /// A step of an element and its ends.
 #[derive(Clone, Copy)]
-pub(super) struct Ends<'a> {
+pub(super) struct ElementEnds<'a> {
     element: &'a Element,
     layout: &'a ElementLayout,
-    shape: Shape,
+    shape: ElementShape,
     from: &'a PathPoint,
     step: &'a PathStep,
 }
 
-impl Ends<'_> {
+impl ElementEnds<'_> {
     /// Derivatives of state `k` at the end of the step by its ends, and in `row` by the parameters of the element.
     #[inline(always)]
     fn of_state<S: Simd>(&self, k: usize, scratch: &mut Scratch, local: &mut Local, row: &mut [f64]) {

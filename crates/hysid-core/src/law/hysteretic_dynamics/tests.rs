@@ -6,9 +6,9 @@ use crate::random::mix;
 use crate::stop_check::StopCheck;
 
 /// Numbers between -1 and 1.
-struct Numbers(u64);
+struct UnitNumbers(u64);
 
-impl Numbers {
+impl UnitNumbers {
     fn new(seed: u64) -> Self {
         Self(mix(seed))
     }
@@ -23,8 +23,8 @@ impl Numbers {
     }
 }
 
-fn element(numbers: &mut Numbers, shape: Shape, modes: usize, size: f64) -> Element {
-    let Shape { stops, states, neurons, deteriorates } = shape;
+fn element(numbers: &mut UnitNumbers, shape: ElementShape, modes: usize, size: f64) -> Element {
+    let ElementShape { stops, states, neurons, deteriorates } = shape;
     let constant = shape.first_free_input();
     Element {
         of_displacements: numbers.many(modes, 1.0),
@@ -50,9 +50,9 @@ fn element(numbers: &mut Numbers, shape: Shape, modes: usize, size: f64) -> Elem
 }
 
 /// A model with random coefficients, whose modes have frequencies of 1, 2, ... radians per unit of time.
-pub(super) fn model(seed: u64, modes: usize, elements: usize, shape: Shape, size: f64) -> Dynamics {
-    let mut numbers = Numbers::new(seed);
-    let mode = |i: usize, numbers: &mut Numbers| Mode {
+pub(super) fn model(seed: u64, modes: usize, elements: usize, shape: ElementShape, size: f64) -> Dynamics {
+    let mut numbers = UnitNumbers::new(seed);
+    let mode = |i: usize, numbers: &mut UnitNumbers| Mode {
         frequency: 1.0 + i as f64,
         damping: 0.05 * exp(numbers.next()),
         gain: 1.0 + 0.5 * numbers.next(),
@@ -71,12 +71,12 @@ pub(super) fn model(seed: u64, modes: usize, elements: usize, shape: Shape, size
     }
 }
 
-pub(super) fn drive(seed: u64, rows: usize, step: f64) -> Drive {
-    let mut numbers = Numbers::new(seed);
+pub(super) fn drive(seed: u64, rows: usize, step: f64) -> DynamicsDrive {
+    let mut numbers = UnitNumbers::new(seed);
     let phases = numbers.many(5, std::f64::consts::PI);
     let tones =
         |t: f64| (1..).zip(&phases).map(|(k, phase)| sin(0.37 * f64::from(k) * t + phase)).sum::<f64>();
-    Drive {
+    DynamicsDrive {
         x: (0..rows).map(|k| tones(k as f64 * step)).collect(),
         steps: (0..rows).map(|k| if k == 0 { 0.0 } else { step }).collect(),
         targets: numbers.many(rows, 1.0),
@@ -84,7 +84,7 @@ pub(super) fn drive(seed: u64, rows: usize, step: f64) -> Drive {
     }
 }
 
-pub(super) fn samples(drive: &Drive) -> Vec<Sample> {
+pub(super) fn samples(drive: &DynamicsDrive) -> Vec<Sample> {
     let rows = drive.x.iter().zip(&drive.steps);
     rows.map(|(&x, &step)| Sample { x, rate: 0.0, step }).collect()
 }
@@ -94,36 +94,47 @@ fn outputs(dynamics: &Dynamics, samples: &[Sample]) -> Vec<f64> {
     samples.iter().map(|&sample| dynamics.step(&mut motion, sample)).collect()
 }
 
-pub(super) const SHAPE: Shape = Shape { stops: 2, states: 2, neurons: 9, deteriorates: true };
+pub(super) const SHAPE: ElementShape = ElementShape { stops: 2, states: 2, neurons: 9, deteriorates: true };
 
 /// A run over records that begin in mid-motion.
-pub(super) fn in_motion<'a>(dynamics: &'a Dynamics, drives: &'a [Drive], beginnings: &'a [f64]) -> Run<'a> {
-    Run { dynamics, drives, beginnings, is_in_motion: true, stop: StopCheck::never() }
+pub(super) fn in_motion<'a>(
+    dynamics: &'a Dynamics,
+    drives: &'a [DynamicsDrive],
+    beginnings: &'a [f64],
+) -> DynamicsRun<'a> {
+    DynamicsRun { dynamics, drives, beginnings, is_in_motion: true, stop: StopCheck::never() }
 }
 
 #[test]
 fn derivatives_equal_differences() {
     for (form, modes, elements, shape, begins_under_input, hold) in [
-        (Form::Oscillator, 1, 1, SHAPE, false, Hold::Cubic),
-        (Form::Oscillator, 2, 2, SHAPE, true, Hold::Linear),
-        (Form::StateSpace, 2, 2, SHAPE, false, Hold::Constant),
+        (DynamicsForm::Oscillator, 1, 1, SHAPE, false, Hold::Cubic),
+        (DynamicsForm::Oscillator, 2, 2, SHAPE, true, Hold::Linear),
+        (DynamicsForm::StateSpace, 2, 2, SHAPE, false, Hold::Constant),
         (
-            Form::StateSpace,
+            DynamicsForm::StateSpace,
             3,
             1,
-            Shape { stops: 0, states: 3, neurons: 4, deteriorates: false },
+            ElementShape { stops: 0, states: 3, neurons: 4, deteriorates: false },
             true,
             Hold::Cubic,
         ),
-        (Form::Oscillator, 2, 0, SHAPE, false, Hold::Cubic),
-        (Form::Oscillator, 1, 1, Shape { states: 0, deteriorates: false, ..SHAPE }, false, Hold::Cubic),
+        (DynamicsForm::Oscillator, 2, 0, SHAPE, false, Hold::Cubic),
+        (
+            DynamicsForm::Oscillator,
+            1,
+            1,
+            ElementShape { states: 0, deteriorates: false, ..SHAPE },
+            false,
+            Hold::Cubic,
+        ),
     ] {
-        let layout = Layout::new(form, modes, elements, shape).with_beginning();
+        let layout = DynamicsLayout::new(form, modes, elements, shape).with_beginning();
         let mut template = model(7, modes, elements, shape, 0.7);
         (template.begins_under_input, template.hold) = (begins_under_input, hold);
         let drives = [drive(3, 40, 0.11), drive(5, 25, 0.2)];
         let mut parameters = layout.parameters(&template);
-        parameters[layout.beginning.clone()].copy_from_slice(&Numbers::new(11).many(2 * modes, 1.0));
+        parameters[layout.beginning.clone()].copy_from_slice(&UnitNumbers::new(11).many(2 * modes, 1.0));
         // Both records begin alike, so that one column serves both.
         let beginnings = |parameters: &[f64]| parameters[layout.beginning.clone()].repeat(2);
         let errors = |parameters: &[f64]| -> Vec<f64> {
@@ -166,7 +177,7 @@ fn outputs_are_finite_whatever_the_parameters_and_the_steps() {
         dynamics.begins_under_input = seed % 2 == 0;
         dynamics.hold = Hold::ALL[seed as usize % 3];
         dynamics.modes[0].damping = [1e-4, 0.3, 1.0, 7.0][seed as usize % 4];
-        let mut numbers = Numbers::new(seed);
+        let mut numbers = UnitNumbers::new(seed);
         let mut motion = dynamics.virgin();
         for _ in 0..400 {
             let step = exp(8.0 * numbers.next());
@@ -181,7 +192,7 @@ fn outputs_are_finite_whatever_the_parameters_and_the_steps() {
 fn the_force_of_a_single_element_is_always_found() {
     for seed in 0..40 {
         let dynamics = model(seed, 2, 1, SHAPE, 5.0);
-        let mut numbers = Numbers::new(seed);
+        let mut numbers = UnitNumbers::new(seed);
         let mut motion = dynamics.virgin();
         for k in 0..200 {
             let step = if k % 20 == 0 { f64::INFINITY } else { exp(6.0 * numbers.next()) };
@@ -213,7 +224,8 @@ fn shorter_steps_converge_to_second_order() {
 /// A stop of large threshold is a spring: the mode under it is a mode of another frequency.
 #[test]
 fn an_element_that_is_a_spring_shifts_the_frequency() {
-    let mut dynamics = model(2, 1, 1, Shape { stops: 1, states: 0, neurons: 1, deteriorates: false }, 0.0);
+    let mut dynamics =
+        model(2, 1, 1, ElementShape { stops: 1, states: 0, neurons: 1, deteriorates: false }, 0.0);
     let (stiffness, mode) = (3.0, Mode { frequency: 1.0, damping: 0.05, gain: 1.0, velocity_in_output: 0.0 });
     dynamics.modes = vec![mode];
     dynamics.direct = 0.0;
@@ -252,9 +264,11 @@ fn a_record_begins_at_rest() {
 
 #[test]
 fn parameters_that_are_listed_are_those_that_are_free() {
-    for (form, modes) in [(Form::Oscillator, 1), (Form::Oscillator, 2), (Form::StateSpace, 1)] {
+    for (form, modes) in
+        [(DynamicsForm::Oscillator, 1), (DynamicsForm::Oscillator, 2), (DynamicsForm::StateSpace, 1)]
+    {
         let listed = model(1, modes, 1, SHAPE, 0.5).parameters(form);
-        assert_eq!(listed.len(), Layout::new(form, modes, 1, SHAPE).count(), "{form:?} {modes}");
+        assert_eq!(listed.len(), DynamicsLayout::new(form, modes, 1, SHAPE).count(), "{form:?} {modes}");
     }
 }
 
@@ -262,8 +276,8 @@ fn parameters_that_are_listed_are_those_that_are_free() {
 #[test]
 fn a_stop_deteriorates_as_the_operator_does() {
     use crate::operator::{DeterioratingStop, Operator};
-    let shape = Shape { stops: 2, states: 0, neurons: 1, deteriorates: true };
-    let mut element = element(&mut Numbers::new(3), shape, 1, 0.5);
+    let shape = ElementShape { stops: 2, states: 0, neurons: 1, deteriorates: true };
+    let mut element = element(&mut UnitNumbers::new(3), shape, 1, 0.5);
     let capacity = 4.0;
     element.strength_losses = element.thresholds.iter().map(|r| 1.0 / (r * capacity)).collect();
     element.stop_velocities = vec![0.0, 0.4];
@@ -272,7 +286,7 @@ fn a_stop_deteriorates_as_the_operator_does() {
     let (mut plain, mut of_rate) = (stop(0), stop(1));
     plain.step(0.0);
     of_rate.step(0.0);
-    let mut numbers = Numbers::new(4);
+    let mut numbers = UnitNumbers::new(4);
     for _ in 0..40 {
         let (displacement, velocity) = (numbers.next(), numbers.next());
         step.take::<pulp::Scalar>(&element, &point, displacement, velocity);
@@ -285,7 +299,7 @@ fn a_stop_deteriorates_as_the_operator_does() {
 
 #[test]
 fn an_element_of_deteriorating_stops_is_odd() {
-    let shape = Shape { states: 0, ..SHAPE };
+    let shape = ElementShape { states: 0, ..SHAPE };
     let mut dynamics = model(6, 1, 1, shape, 0.7);
     dynamics.output_offset = 0.0;
     let there = samples(&drive(2, 60, 0.1));
@@ -297,7 +311,7 @@ fn an_element_of_deteriorating_stops_is_odd() {
 /// `exp(ln x)` is not always `x`.
 #[test]
 fn parameters_at_their_bounds_are_accepted() {
-    let layout = Layout::new(Form::StateSpace, 1, 1, SHAPE);
+    let layout = DynamicsLayout::new(DynamicsForm::StateSpace, 1, 1, SHAPE);
     let mut sound = model(1, 1, 1, SHAPE, 0.5);
     sound.output_offset = 0.0;
     for damping in [DAMPING_RATIOS.0, DAMPING_RATIOS.1] {

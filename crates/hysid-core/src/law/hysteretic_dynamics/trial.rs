@@ -4,7 +4,7 @@
 use pulp::Simd;
 
 use super::element::{PathPoint, PathStep};
-use super::hold::{Hold, Recent};
+use super::hold::{Hold, RecentSamples};
 use super::propagation::Propagation;
 use super::{Dynamics, STATIC_STEPS};
 use crate::simd::multiply_add;
@@ -22,19 +22,19 @@ const LEAST_DIFFERENCE: f64 = 1e-9;
 const LARGEST_SLOPE: f64 = 1e3;
 const STEEPEST_SLOPE: f64 = 0.9;
 
-/// Mismatch of a force that counts as none, relative to its size.
+/// Mismatch of a force that is neglected, relative to its size.
 const TOLERANCE: f64 = 1e-12;
 
 /// The state of modes and elements, with the intermediate results of the last step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Motion {
+pub struct DynamicsMotion {
     /// Displacement `q` and velocity `p` of each mode.
     pub(super) displacements: Vec<f64>,
     pub(super) velocities: Vec<f64>,
     /// The same before the last step.
     pub(super) displacements_before: Vec<f64>,
     pub(super) velocities_before: Vec<f64>,
-    /// What the modes do in a step without the forces at its end.
+    /// Displacements and velocities of the modes after a step without the forces at its end.
     displacements_alone: Vec<f64>,
     velocities_alone: Vec<f64>,
     pub(super) points: Vec<PathPoint>,
@@ -44,14 +44,14 @@ pub struct Motion {
     pub(super) forces: Vec<f64>,
     /// Bounds of the forces.
     largest: Vec<f64>,
-    /// `∂R/∂r` of each element, from the newest trials that told it.
+    /// `∂R/∂r` of each element, from the newest trials that showed it.
     slopes: Vec<f64>,
     /// The last force that was assumed, and the one that followed.
     tried: Vec<(f64, f64)>,
     /// Scaled input at the beginning and at the end of the last step.
     pub(super) input_before: f64,
     pub(super) input: f64,
-    pub(super) recent: Recent,
+    pub(super) recent: RecentSamples,
     /// Length of the steps that `propagations` are of.
     pub(super) step: f64,
     propagations: Vec<Propagation>,
@@ -66,7 +66,7 @@ pub(super) struct RowSteps {
     pub length: f64,
 }
 
-impl Motion {
+impl DynamicsMotion {
     pub(super) fn virgin(dynamics: &Dynamics) -> Self {
         let (modes, elements) = (dynamics.modes.len(), &dynamics.elements);
         let points: Vec<PathPoint> = elements.iter().map(PathPoint::virgin).collect();
@@ -86,7 +86,7 @@ impl Motion {
             points,
             input_before: 0.0,
             input: 0.0,
-            recent: Recent::default(),
+            recent: RecentSamples::default(),
             step: f64::NAN,
             propagations: vec![Propagation::new(1.0, 1.0, 0.0); modes],
             has_begun: false,
@@ -140,7 +140,7 @@ impl Motion {
         // Before the first sample the motion is at rest, and while no time passes nothing moves.
         if is_first || row.is_nan() || row <= 0.0 {
             if is_first {
-                self.recent = Recent::at_rest(u);
+                self.recent = RecentSamples::at_rest(u);
             } else {
                 self.recent.values[0] = u;
             }
@@ -177,6 +177,7 @@ impl Motion {
 
     #[inline(always)]
     pub(super) fn output<S: Simd>(&self, dynamics: &Dynamics) -> f64 {
+        // (15.5), without y_0 and σ
         let mut y = dynamics.direct * self.newest_input();
         for (i, mode) in dynamics.modes.iter().enumerate() {
             y += multiply_add::<S>(mode.velocity_in_output, self.velocities[i], self.displacements[i]);
@@ -192,7 +193,7 @@ impl Motion {
     pub(super) fn force_on<S: Simd>(&self, dynamics: &Dynamics, mode: usize, other: f64) -> f64 {
         let mut force = other;
         for (element, r) in dynamics.elements.iter().zip(&self.forces) {
-            force = multiply_add::<S>(-element.compliances[mode], *r, force);
+            force = multiply_add::<S>(-element.compliances[mode], *r, force); // (15.1): f_i
         }
         force
     }
@@ -222,8 +223,8 @@ impl Motion {
             let (q, p) = (self.displacements[i], self.velocities[i]);
             let force = self.force_on::<S>(dynamics, i, mode.gain * self.input_before);
             let ahead = mode.gain * self.input;
-            self.displacements_alone[i] = sum::<S>(by.displacement, [q, p, force, ahead]);
-            self.velocities_alone[i] = sum::<S>(by.velocity, [q, p, force, ahead]);
+            self.displacements_alone[i] = sum::<S>(by.displacement, [q, p, force, ahead]); // (15.3)
+            self.velocities_alone[i] = sum::<S>(by.velocity, [q, p, force, ahead]); // (15.4)
         }
     }
 
@@ -232,7 +233,9 @@ impl Motion {
     fn move_modes<S: Simd>(&mut self, dynamics: &Dynamics) {
         for (i, by) in self.propagations.iter().enumerate() {
             let force = self.force_on::<S>(dynamics, i, 0.0);
+            // (15.3): α_1 f_1
             self.displacements[i] = multiply_add::<S>(by.displacement[3], force, self.displacements_alone[i]);
+            // (15.4): β_1 f_1
             self.velocities[i] = multiply_add::<S>(by.velocity[3], force, self.velocities_alone[i]);
         }
     }
@@ -241,6 +244,7 @@ impl Motion {
     #[inline(always)]
     fn try_step<S: Simd>(&mut self, dynamics: &Dynamics, index: usize) {
         let element = &dynamics.elements[index];
+        // (15.2)
         let (mut displacement, mut velocity) = (element.of_input * self.input, 0.0);
         for (i, (q, p)) in self.displacements.iter().zip(&self.velocities).enumerate() {
             displacement = multiply_add::<S>(element.of_displacements[i], *q, displacement);

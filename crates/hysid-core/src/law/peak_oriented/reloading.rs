@@ -7,7 +7,7 @@
 //! ```
 //!
 //! `τ` and `φ` are the shares of the way and of the force between zero force and the target, and `t` runs from zero
-//! to one. The curve begins and ends along the lines to the pinch point `(τ_b, φ_ω)`; `w` tells how closely it
+//! to one. The curve begins and ends along the lines to the pinch point `(τ_b, φ_ω)`; `w` determines how closely it
 //! follows them.
 
 use crate::elementary::ln_1p;

@@ -18,12 +18,12 @@ use super::plane::Plane;
 
 /// Place of an input among the lines: interval, and share of it below the input.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
+pub(super) struct LinePlace {
     interval: usize,
     share: f64,
 }
 
-impl Place {
+impl LinePlace {
     /// Interval, and share of it below.
     pub fn parts(self) -> (usize, f64) {
         (self.interval, self.share)
@@ -32,15 +32,15 @@ impl Place {
 
 /// Tables of the Everett function.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Everett {
+pub(super) struct EverettTables {
     lines: Vec<f64>,
     /// One row for each interval of α, one column for each of β.
-    cells: Vec<Cell>,
+    cells: Vec<EverettCell>,
     virgin: [VirginCurve; 2],
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Cell {
+struct EverettCell {
     weight: f64,
     /// `E_{i,j+1}`
     inner: f64,
@@ -50,7 +50,7 @@ struct Cell {
     along_column: f64,
 }
 
-/// What the virgin curve switches on one side of 0, by the magnitude of the input.
+/// Output along the virgin curve on one side of 0, by the magnitude of the input.
 #[derive(Debug, Clone, PartialEq)]
 struct VirginCurve {
     knots: Vec<f64>,
@@ -58,11 +58,11 @@ struct VirginCurve {
     pieces: Vec<[f64; 3]>,
 }
 
-impl Everett {
+impl EverettTables {
     /// Tables for weights of the cells, in their order.
     pub fn new(plane: &Plane, weights: &[f64]) -> Self {
         let n = plane.intervals();
-        let mut cells = vec![Cell::default(); n * n];
+        let mut cells = vec![EverettCell::default(); n * n];
         for ((i, j), &weight) in plane.indices().zip(weights) {
             cells[i * n + j].weight = weight;
         }
@@ -106,16 +106,16 @@ impl Everett {
 
     /// Place of an input; one beyond the plane is at its edge.
     #[inline]
-    pub fn place(&self, x: f64) -> Place {
+    pub fn place(&self, x: f64) -> LinePlace {
         let n = self.lines.len() - 1;
         let interval = self.lines[1..n].partition_point(|&line| line <= x);
         let (low, high) = (self.lines[interval], self.lines[interval + 1]);
-        Place { interval, share: ((x - low) / (high - low)).clamp(0.0, 1.0) }
+        LinePlace { interval, share: ((x - low) / (high - low)).clamp(0.0, 1.0) }
     }
 
     /// `E(a, b)`, 0 unless `a > b`.
     #[inline]
-    pub fn value(&self, a: Place, b: Place) -> f64 {
+    pub fn value(&self, a: LinePlace, b: LinePlace) -> f64 {
         let n = self.lines.len() - 1;
         let (i, j) = (a.interval, b.interval);
         let at = |i: usize, j: usize| &self.cells[i * n + j];
@@ -136,7 +136,7 @@ impl Everett {
         }
     }
 
-    /// What the virgin curve up or down to `h` switches.
+    /// Output along the virgin curve up or down to `h`.
     #[inline]
     pub fn virgin(&self, h: f64) -> f64 {
         let curve = &self.virgin[usize::from(h < 0.0)];

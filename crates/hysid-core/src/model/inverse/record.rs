@@ -10,7 +10,7 @@ const ROWS_OF_A_CHOICE: usize = 20_000;
 /// The longest preview that is tried, as a share of the record.
 const LONGEST: f64 = 0.125;
 
-/// The search of a preview ends after so many longer ones without improvement, if the lowest cost is at most [`GOOD`].
+/// Longer previews without improvement after which the search ends, if the lowest cost is at most [`GOOD`].
 const WORSE: usize = 4;
 const GOOD: f64 = 0.1;
 
@@ -128,13 +128,13 @@ impl Reference<'_> {
 }
 
 /// The wanted output at times that increase.
-struct Ahead<'a> {
+struct TargetPath<'a> {
     reference: Reference<'a>,
     /// The row before the last time.
     row: usize,
 }
 
-impl Ahead<'_> {
+impl TargetPath<'_> {
     /// The wanted output at this time, on a straight line between rows; behind the last row, the last one.
     fn at(&mut self, time: f64) -> f64 {
         let (times, wanted) = (self.reference.time.unwrap_or_default(), self.reference.wanted);
@@ -161,7 +161,7 @@ impl Inverse<'_> {
     pub fn run(&mut self, reference: &Reference<'_>) -> Result<Inversion> {
         self.check_time(reference)?;
         reference.check()?;
-        let mut ahead = Ahead { reference: *reference, row: 0 };
+        let mut ahead = TargetPath { reference: *reference, row: 0 };
         let mut inversion = Inversion::default();
         let mut others = vec![0.0; reference.others.len()];
         for row in 0..reference.wanted.len() {
@@ -274,7 +274,7 @@ mod tests {
     fn wanted_outputs_ahead_lie_on_straight_lines() {
         let (time, wanted) = ([0.0, 1.0, 3.0], [0.0, 2.0, -2.0]);
         let reference = Reference { wanted: &wanted, others: &[], time: Some(&time) };
-        let mut ahead = Ahead { reference, row: 0 };
+        let mut ahead = TargetPath { reference, row: 0 };
         let found = [0.0, 0.25, 1.0, 1.5, 2.0, 3.0, 9.0].map(|time| ahead.at(time));
         assert_eq!(found, [0.0, 0.5, 2.0, 1.0, 0.0, -2.0, -2.0]);
     }

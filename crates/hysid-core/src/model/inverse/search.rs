@@ -34,7 +34,7 @@ const ACCEPTED: f64 = 1e3;
 
 /// How a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ending {
+pub enum SearchEnding {
     /// The function has the value.
     Reached,
     /// The nearest value is at the low end of the window.
@@ -47,7 +47,7 @@ pub enum Ending {
     Jump,
 }
 
-impl Ending {
+impl SearchEnding {
     /// True if the value is not among those of the window.
     pub fn is_beside(self) -> bool {
         matches!(self, Self::Low | Self::High | Self::Extremum)
@@ -56,13 +56,13 @@ impl Ending {
 
 /// An argument with its function value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct SearchPoint {
     pub argument: f64,
     pub value: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
-pub struct Wanted {
+pub struct TargetValue {
     /// Value of the function.
     pub value: f64,
     /// Largest deviation from it.
@@ -71,37 +71,37 @@ pub struct Wanted {
     pub window: (f64, f64),
 }
 
-/// The result of a search.
+/// Last point of a search, and why it ended.
 #[derive(Debug, Clone, Copy)]
-pub struct Found {
-    pub point: Point,
-    pub ending: Ending,
+pub struct SearchResult {
+    pub point: SearchPoint,
+    pub ending: SearchEnding,
     /// Slope of the last secant, if there was one.
     pub slope: Option<f64>,
 }
 
-impl Wanted {
-    fn excess(&self, point: Point) -> f64 {
+impl TargetValue {
+    fn excess(&self, point: SearchPoint) -> f64 {
         point.value - self.value
     }
 
-    fn is_reached(&self, point: Point) -> bool {
+    fn is_reached(&self, point: SearchPoint) -> bool {
         self.excess(point).abs() <= self.tolerance
     }
 
-    fn found(&self, point: Point, slope: Option<f64>) -> Found {
-        Found { point, ending: Ending::Reached, slope }
+    fn found(&self, point: SearchPoint, slope: Option<f64>) -> SearchResult {
+        SearchResult { point, ending: SearchEnding::Reached, slope }
     }
 
-    /// The argument at which `function` has the value, nearest to `first` in the direction that `slope` tells.
+    /// The argument at which `function` has the value, nearest to `first` in the direction that `slope` gives.
     pub fn search<E>(
         &self,
         first: f64,
         slope: f64,
         function: &mut impl FnMut(f64) -> Result<f64, E>,
-    ) -> Result<Found, E> {
+    ) -> Result<SearchResult, E> {
         let (low, high) = self.window;
-        let mut at = |argument: f64| function(argument).map(|value| Point { argument, value });
+        let mut at = |argument: f64| function(argument).map(|value| SearchPoint { argument, value });
         let mut here = at(first.clamp(low, high))?;
         if self.is_reached(here) {
             return Ok(self.found(here, None));
@@ -134,14 +134,14 @@ impl Wanted {
     /// Searches between two arguments with values on both sides of the wanted one.
     fn enclosed<E>(
         &self,
-        first: Point,
-        second: Point,
-        at: &mut impl FnMut(f64) -> Result<Point, E>,
-    ) -> Result<Found, E> {
+        first: SearchPoint,
+        second: SearchPoint,
+        at: &mut impl FnMut(f64) -> Result<SearchPoint, E>,
+    ) -> Result<SearchResult, E> {
         let (mut below, mut above) = if self.excess(first) < 0.0 { (first, second) } else { (second, first) };
         // The last two points on the side of the last one.
         let (mut before, mut last) = (first, second);
-        let width = |below: Point, above: Point| (above.argument - below.argument).abs();
+        let width = |below: SearchPoint, above: SearchPoint| (above.argument - below.argument).abs();
         for _ in 0..MOST_HALVINGS {
             let half = 0.5 * width(below, above);
             for part in 0..3 {
@@ -172,25 +172,33 @@ impl Wanted {
     }
 
     /// The nearer side of a jump.
-    fn at_jump(&self, below: Point, above: Point) -> Found {
+    fn at_jump(&self, below: SearchPoint, above: SearchPoint) -> SearchResult {
         let point = if -self.excess(below) <= self.excess(above) { below } else { above };
         let is_near = self.excess(point).abs() <= ACCEPTED * self.tolerance;
-        Found { point, ending: if is_near { Ending::Reached } else { Ending::Jump }, slope: None }
+        SearchResult {
+            point,
+            ending: if is_near { SearchEnding::Reached } else { SearchEnding::Jump },
+            slope: None,
+        }
     }
 
     /// Looks at the whole window, for a function that is not monotone or does not have the value.
-    fn scan<E>(&self, first: f64, at: &mut impl FnMut(f64) -> Result<Point, E>) -> Result<Found, E> {
+    fn scan<E>(
+        &self,
+        first: f64,
+        at: &mut impl FnMut(f64) -> Result<SearchPoint, E>,
+    ) -> Result<SearchResult, E> {
         let (low, high) = self.window;
         let points = (0..SCANNED)
             .map(|k| {
                 let share = k as f64 / (SCANNED - 1) as f64;
                 at(if k + 1 == SCANNED { high } else { low + share * (high - low) })
             })
-            .collect::<Result<Vec<Point>, E>>()?;
+            .collect::<Result<Vec<SearchPoint>, E>>()?;
         if let Some(&point) = points.iter().find(|point| self.is_reached(**point)) {
             return Ok(self.found(point, None));
         }
-        let distance = |pair: &[Point]| (0.5 * (pair[0].argument + pair[1].argument) - first).abs();
+        let distance = |pair: &[SearchPoint]| (0.5 * (pair[0].argument + pair[1].argument) - first).abs();
         let crossing = points
             .windows(2)
             .filter(|pair| (self.excess(pair[0]) < 0.0) != (self.excess(pair[1]) < 0.0))
@@ -204,8 +212,10 @@ impl Wanted {
             deviation(a).total_cmp(&deviation(b)).then_with(|| near(a).total_cmp(&near(b)))
         };
         match (0..SCANNED).min_by(by).expect("there are points") {
-            0 => Ok(Found { point: points[0], ending: Ending::Low, slope: None }),
-            k if k + 1 == SCANNED => Ok(Found { point: points[k], ending: Ending::High, slope: None }),
+            0 => Ok(SearchResult { point: points[0], ending: SearchEnding::Low, slope: None }),
+            k if k + 1 == SCANNED => {
+                Ok(SearchResult { point: points[k], ending: SearchEnding::High, slope: None })
+            }
             k => self.extremum([points[k - 1], points[k], points[k + 1]], at),
         }
     }
@@ -213,9 +223,9 @@ impl Wanted {
     /// The nearest value between the outer two of three arguments, by golden sections.
     fn extremum<E>(
         &self,
-        [left, middle, right]: [Point; 3],
-        at: &mut impl FnMut(f64) -> Result<Point, E>,
-    ) -> Result<Found, E> {
+        [left, middle, right]: [SearchPoint; 3],
+        at: &mut impl FnMut(f64) -> Result<SearchPoint, E>,
+    ) -> Result<SearchResult, E> {
         let (mut low, mut best, mut high) = (left.argument, middle, right.argument);
         let golden = 0.5 * (3.0 - 5.0_f64.sqrt());
         for _ in 0..GOLDEN {
@@ -235,11 +245,11 @@ impl Wanted {
             *(if other < nearer.argument { &mut low } else { &mut high }) = other;
             best = nearer;
         }
-        Ok(Found { point: best, ending: Ending::Extremum, slope: None })
+        Ok(SearchResult { point: best, ending: SearchEnding::Extremum, slope: None })
     }
 }
 
-fn secant(a: Point, b: Point) -> f64 {
+fn secant(a: SearchPoint, b: SearchPoint) -> f64 {
     (b.value - a.value) / (b.argument - a.argument)
 }
 
@@ -250,9 +260,9 @@ mod tests {
     use super::*;
     use crate::elementary::{atanh, powi, tanh};
 
-    fn search(value: f64, first: f64, function: impl Fn(f64) -> f64) -> (Found, usize) {
+    fn search(value: f64, first: f64, function: impl Fn(f64) -> f64) -> (SearchResult, usize) {
         let mut count = 0;
-        let wanted = Wanted { value, tolerance: 1e-13, window: (-2.0, 3.0) };
+        let wanted = TargetValue { value, tolerance: 1e-13, window: (-2.0, 3.0) };
         let mut counted = |x| -> Result<f64, Infallible> {
             count += 1;
             Ok(function(x))
@@ -264,7 +274,7 @@ mod tests {
     #[test]
     fn a_line_takes_three_values() {
         let (found, count) = search(1.0, 0.0, |x| 2.0 * x + 0.5);
-        assert_eq!(found.ending, Ending::Reached);
+        assert_eq!(found.ending, SearchEnding::Reached);
         assert!((found.point.argument - 0.25).abs() < 1e-13 && count <= 3, "{count}");
     }
 
@@ -273,7 +283,7 @@ mod tests {
         let kinked = |x: f64| if x < 0.7 { 0.01 * x } else { 0.007 + 30.0 * (x - 0.7) };
         for value in [-0.015, 0.001, 0.0069, 0.0071, 5.0, 60.0] {
             let (found, count) = search(value, 0.0, kinked);
-            assert_eq!(found.ending, Ending::Reached, "{value}");
+            assert_eq!(found.ending, SearchEnding::Reached, "{value}");
             assert!((kinked(found.point.argument) - value).abs() <= 1e-13 && count < 30, "{value}: {count}");
         }
     }
@@ -281,28 +291,28 @@ mod tests {
     #[test]
     fn decreasing_functions_are_found_by_the_scan() {
         let (found, _) = search(0.3, 0.0, |x| -tanh(x));
-        assert_eq!(found.ending, Ending::Reached);
+        assert_eq!(found.ending, SearchEnding::Reached);
         assert!((found.point.argument + atanh(0.3)).abs() < 1e-12);
     }
 
     #[test]
     fn the_ends_of_the_window_are_named() {
-        assert_eq!(search(9.0, 0.0, |x| x).0.ending, Ending::High);
+        assert_eq!(search(9.0, 0.0, |x| x).0.ending, SearchEnding::High);
         assert_eq!(search(9.0, 0.0, |x| x).0.point.argument, 3.0);
-        assert_eq!(search(-9.0, 0.0, |x| x).0.ending, Ending::Low);
+        assert_eq!(search(-9.0, 0.0, |x| x).0.ending, SearchEnding::Low);
     }
 
     #[test]
     fn an_extremum_is_found() {
         let (found, _) = search(2.0, 0.0, |x| 1.0 - (x - 0.61) * (x - 0.61));
-        assert_eq!(found.ending, Ending::Extremum);
+        assert_eq!(found.ending, SearchEnding::Extremum);
         assert!((found.point.argument - 0.61).abs() < 1e-6);
     }
 
     #[test]
     fn a_jump_ends_at_its_nearer_side() {
         let (found, count) = search(0.9, -1.0, |x| if x < 1.25 { 0.01 * x } else { 1.0 });
-        assert_eq!(found.ending, Ending::Jump);
+        assert_eq!(found.ending, SearchEnding::Jump);
         assert_eq!(found.point.value, 1.0);
         assert!(count <= MOST_STRIDES + 3 * MOST_HALVINGS);
     }
@@ -312,7 +322,7 @@ mod tests {
     fn the_number_of_function_values_is_bounded() {
         for power in [3, 9, 31, 101] {
             let (found, count) = search(1e-9, -1.9, |x| powi(x, power));
-            assert!(found.ending == Ending::Reached, "{power}");
+            assert!(found.ending == SearchEnding::Reached, "{power}");
             assert!(count <= MOST_STRIDES + 3 * MOST_HALVINGS, "{power}: {count}");
         }
     }

@@ -1,45 +1,47 @@
-//! What a stepper remembers at one moment, without the weights of its networks.
+//! Memory of a stepper at one moment, without the weights of its networks.
 
 use crate::law::ClassicalState;
 use crate::model::ensemble::Excursion;
-use crate::model::input_transform::Past;
-use crate::model::stepper::{Memory, State};
+use crate::model::input_transform::InputPast;
+use crate::model::stepper::{StepperMemory, StepperState};
 use crate::network::MemoryState;
 
 /// The memory of a [`Stepper`](crate::model::Stepper) at one moment.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
-    memory: Remembered,
-    past: Past,
+    memory: StoredMemory,
+    past: InputPast,
     last: Option<(f64, f64)>,
     excursion: Option<Excursion>,
 }
 
 #[derive(Debug, Clone)]
-enum Remembered {
+enum StoredMemory {
     Network(MemoryState),
     Law(Box<ClassicalState>),
     Ensemble(Vec<Snapshot>, Excursion),
 }
 
 impl Snapshot {
-    pub(super) fn of(state: &State) -> Self {
+    pub(super) fn of(state: &StepperState) -> Self {
         let memory = match &state.memory {
-            Memory::Network(simulator, _) => Remembered::Network(simulator.state().clone()),
-            Memory::Law(law) => Remembered::Law(law.clone()),
-            Memory::Ensemble(ensemble) => {
-                Remembered::Ensemble(ensemble.members.iter().map(Self::of).collect(), ensemble.excursion)
+            StepperMemory::Network(simulator, _) => StoredMemory::Network(simulator.state().clone()),
+            StepperMemory::Law(law) => StoredMemory::Law(law.clone()),
+            StepperMemory::Ensemble(ensemble) => {
+                StoredMemory::Ensemble(ensemble.members.iter().map(Self::of).collect(), ensemble.excursion)
             }
         };
         Self { memory, past: state.past, last: state.last, excursion: state.excursion }
     }
 
     /// Makes the state what it was; panics for a state of another model.
-    pub(super) fn restore(&self, state: &mut State) {
+    pub(super) fn restore(&self, state: &mut StepperState) {
         match (&self.memory, &mut state.memory) {
-            (Remembered::Network(kept), Memory::Network(simulator, _)) => simulator.set_state(kept.clone()),
-            (Remembered::Law(kept), Memory::Law(law)) => law.clone_from(kept),
-            (Remembered::Ensemble(members, excursion), Memory::Ensemble(ensemble)) => {
+            (StoredMemory::Network(kept), StepperMemory::Network(simulator, _)) => {
+                simulator.set_state(kept.clone())
+            }
+            (StoredMemory::Law(kept), StepperMemory::Law(law)) => law.clone_from(kept),
+            (StoredMemory::Ensemble(members, excursion), StepperMemory::Ensemble(ensemble)) => {
                 assert_eq!(members.len(), ensemble.members.len(), "a snapshot of this model");
                 members.iter().zip(&mut ensemble.members).for_each(|(kept, member)| kept.restore(member));
                 ensemble.excursion = *excursion;

@@ -2,13 +2,13 @@
 
 use crate::error::Result;
 use crate::model::Predictor;
-use crate::model::stepper::{Memory, Snapshot, Stepper};
+use crate::model::stepper::{Snapshot, Stepper, StepperMemory};
 
 /// Length of the difference quotient of a tangent, as a share of the trained range of the first input.
 const SHARE: f64 = 1e-6;
 
 impl Stepper<'_> {
-    /// The output at a sample from the committed state, which stays as it is. It may be asked for any number of times;
+    /// The output at a sample from the committed state, which stays as it is. It may be called any number of times;
     /// [`Stepper::commit`] accepts the last one. The arguments are those of [`Stepper::step`].
     ///
     /// # Errors
@@ -48,7 +48,7 @@ impl Stepper<'_> {
     /// The first input at which the next output is `output`, from the committed state, for a law with a closed inverse.
     pub(in crate::model) fn input_for(&mut self, output: f64) -> Option<f64> {
         self.revert();
-        let (Predictor::Law(law), Memory::Law(state)) = (&self.model.body, &self.state.memory) else {
+        let (Predictor::Law(law), StepperMemory::Law(state)) = (&self.model.body, &self.state.memory) else {
             return None;
         };
         // The lead-in comes with the first sample.

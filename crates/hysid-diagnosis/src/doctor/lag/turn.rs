@@ -8,7 +8,7 @@ use crate::branch::{Branch, BranchSet};
 /// Rows on each side of a turning point at least.
 const FEWEST_ROWS: usize = 5;
 
-/// Rows of a window at most; of more, every so many are taken.
+/// Most rows of a window; of more, evenly spaced ones are taken.
 const MOST_ROWS: usize = 400;
 
 /// The input turns sharply where its second derivatives in three rows are so many times one beside them (for a
@@ -24,9 +24,9 @@ const COLUMNS: usize = 2 * POWERS + 3;
 /// A column whose own part is below this share of it says nothing new.
 const DEPENDENT: f64 = 1e-13;
 
-/// What is fitted beside the law.
+/// Effect fitted beside the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Beside {
+pub(super) enum LagEffect {
     /// Nothing: the output is this much later than the input.
     Lag(f64),
     /// A step at the turning point.
@@ -36,7 +36,7 @@ pub(super) enum Beside {
 }
 
 /// A turning point with the branches on both sides.
-pub(super) struct Turn<'d> {
+pub(super) struct TurnBranches<'d> {
     time: &'d [f64],
     x: &'d [f64],
     y: &'d [f64],
@@ -54,21 +54,21 @@ pub(super) struct Turn<'d> {
 }
 
 /// Rows around a turning point.
-pub(super) struct Window {
+pub(super) struct TurnWindow {
     rows: Range<usize>,
     stride: usize,
     /// Way of the input within it.
     way: f64,
 }
 
-impl Window {
+impl TurnWindow {
     /// Rows that are fitted.
     pub fn len(&self) -> usize {
         self.rows.len().div_ceil(self.stride)
     }
 }
 
-impl<'d> Turn<'d> {
+impl<'d> TurnBranches<'d> {
     /// The turning point between two branches that follow one another, of a record with time.
     pub fn between(survey: &BranchSet<'d>, before: &Branch, after: &Branch) -> Option<Self> {
         let record = &survey.data.records()[before.record];
@@ -156,7 +156,7 @@ impl<'d> Turn<'d> {
 
     /// Rows where the input is within `share` of the shorter branch from the turning point, or was at any of the
     /// `lags` earlier. `None` where they are few, or have no output.
-    pub fn window(&self, share: f64, lags: (f64, f64)) -> Option<Window> {
+    pub fn window(&self, share: f64, lags: (f64, f64)) -> Option<TurnWindow> {
         let way = share * self.travel;
         let inside = |row: &usize| (self.x[*row] - self.extreme).abs() <= way;
         let before = (self.rows.start..self.row).rev().take_while(inside).count();
@@ -170,14 +170,14 @@ impl<'d> Turn<'d> {
         let rows = place(ends[0])..(place(ends[1]) + 1).min(self.time.len());
         let measured = rows.len() > before + after && self.y[rows.clone()].iter().all(|y| !y.is_nan());
         let stride = rows.len().div_ceil(MOST_ROWS);
-        measured.then_some(Window { rows, stride, way })
+        measured.then_some(TurnWindow { rows, stride, way })
     }
 
     /// Sum of squares that the law leaves of the output in a window.
-    pub fn remainder(&self, window: &Window, beside: Beside) -> f64 {
-        let lag = if let Beside::Lag(lag) = beside { lag } else { 0.0 };
+    pub fn remainder(&self, window: &TurnWindow, beside: LagEffect) -> f64 {
+        let lag = if let LagEffect::Lag(lag) = beside { lag } else { 0.0 };
         let origin = self.y[self.row];
-        let mut sides = [Sums::default(); 2];
+        let mut sides = [SideSums::default(); 2];
         let mut k = window.rows.start;
         for row in window.rows.clone().step_by(window.stride) {
             let at = self.time[row] - lag;
@@ -190,9 +190,9 @@ impl<'d> Turn<'d> {
             let q = (self.input_at(k, at) - self.extreme) / window.way;
             let side = usize::from(at >= self.moment);
             let effect = match beside {
-                Beside::Lag(_) => 0.0,
-                Beside::Step => side as f64,
-                Beside::Rate => self.rate(row),
+                LagEffect::Lag(_) => 0.0,
+                LagEffect::Step => side as f64,
+                LagEffect::Rate => self.rate(row),
             };
             sides[side].add(q, effect, self.y[row] - origin);
         }
@@ -208,14 +208,14 @@ impl<'d> Turn<'d> {
 /// Sums over the rows on one side of a turning point: of the powers of `q`, the way from it, alone and times an
 /// effect and the output.
 #[derive(Debug, Clone, Copy, Default)]
-struct Sums {
+struct SideSums {
     powers: [f64; 2 * POWERS + 1],
     effect: [f64; POWERS + 1],
     output: [f64; POWERS + 1],
     squares: [f64; 3],
 }
 
-impl Sums {
+impl SideSums {
     fn add(&mut self, q: f64, effect: f64, y: f64) {
         let square = q * q;
         let powers = [1.0, q, square, q * square];
@@ -235,7 +235,7 @@ impl Sums {
 }
 
 /// Products of all columns, lower triangle: 1, the powers before, the powers after, the effect, the output.
-fn products(sides: &[Sums; 2]) -> [[f64; COLUMNS]; COLUMNS] {
+fn products(sides: &[SideSums; 2]) -> [[f64; COLUMNS]; COLUMNS] {
     const EFFECT: usize = COLUMNS - 2;
     const OUTPUT: usize = COLUMNS - 1;
     let mut products = [[0.0; COLUMNS]; COLUMNS];
@@ -282,7 +282,7 @@ mod tests {
     use hysid_core::data::record::{ColumnNames, Dataset, Record};
     use hysid_core::elementary::{cos, powi, sin};
 
-    /// A sine at first, and what cubics on both sides of its top answer to it `lag` later, with `beside` added.
+    /// A sine at first, and the response of cubics on both sides of its top, `lag` later, with `beside` added.
     fn around_a_top(lag: f64, beside: impl Fn(f64) -> f64) -> Dataset {
         let time: Vec<f64> = (0..400).map(|k| 0.01 * f64::from(k)).collect();
         let top = 0.5 * std::f64::consts::PI;
@@ -298,9 +298,9 @@ mod tests {
     }
 
     /// Root mean square of what is left around the top.
-    fn left(data: &Dataset, beside: Beside) -> f64 {
+    fn left(data: &Dataset, beside: LagEffect) -> f64 {
         let survey = BranchSet::new(data, &DiagnosisOptions::default());
-        let turn = Turn::between(&survey, &survey.branches[0], &survey.branches[1]).unwrap();
+        let turn = TurnBranches::between(&survey, &survey.branches[0], &survey.branches[1]).unwrap();
         let window = turn.window(0.3, (0.0, 0.03)).unwrap();
         (turn.remainder(&window, beside) / window.len() as f64).sqrt()
     }
@@ -308,8 +308,8 @@ mod tests {
     #[test]
     fn a_law_with_its_own_lag_leaves_nothing() {
         let data = around_a_top(0.023, |_| 0.0);
-        assert!(left(&data, Beside::Lag(0.023)) < 1e-6);
-        for wrong in [Beside::Lag(0.0), Beside::Lag(0.04), Beside::Step, Beside::Rate] {
+        assert!(left(&data, LagEffect::Lag(0.023)) < 1e-6);
+        for wrong in [LagEffect::Lag(0.0), LagEffect::Lag(0.04), LagEffect::Step, LagEffect::Rate] {
             assert!(left(&data, wrong) > 1e-4, "{wrong:?}: {}", left(&data, wrong));
         }
     }
@@ -317,9 +317,9 @@ mod tests {
     #[test]
     fn a_viscous_part_is_no_lag() {
         let data = around_a_top(0.0, |t| 0.05 * cos(t));
-        assert!(left(&data, Beside::Rate) < 1e-5);
+        assert!(left(&data, LagEffect::Rate) < 1e-5);
         for lag in [-0.05, -0.03, -0.01, 0.0] {
-            assert!(left(&data, Beside::Lag(lag)) > 1e-4);
+            assert!(left(&data, LagEffect::Lag(lag)) > 1e-4);
         }
     }
 
@@ -327,7 +327,7 @@ mod tests {
     fn the_remainder_is_that_of_least_squares() {
         // One side only: a straight line through (0, 0), (1, 0), (2, 3), with 1 and q alone, leaves 3/2. The
         // other powers are left out by rows that all have none of them.
-        let mut sides = [Sums::default(); 2];
+        let mut sides = [SideSums::default(); 2];
         for (q, y) in [(0.0, 0.0), (1.0, 0.0), (2.0, 3.0)] {
             sides[0].add(q, 0.0, y);
         }

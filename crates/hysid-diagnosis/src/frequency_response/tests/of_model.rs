@@ -4,7 +4,7 @@ use hysid_core::elementary::{cos, hypot};
 use hysid_core::law::hysteretic_dynamics::{Dynamics, Element, Hold, Mode};
 use hysid_core::law::hysteretic_oscillator::HystereticOscillator;
 use hysid_core::law::{Classical, Law};
-use hysid_core::model::{Found, Model, Predictor};
+use hysid_core::model::{Model, Predictor, ProvenanceDraft};
 use hysid_core::options::FitSpec;
 use hysid_core::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid_core::termination::Termination;
@@ -29,7 +29,7 @@ fn linear() -> Dynamics {
 fn model(dynamics: Dynamics, data: &Dataset) -> Model {
     let law = HystereticOscillator(dynamics).validated().unwrap();
     let options = ClassicalOptions::of(ClassicalModel::HystereticOscillator);
-    let found = Found::of(FitSpec::Classical(options), Termination::Converged);
+    let found = ProvenanceDraft::of(FitSpec::Classical(options), Termination::Converged);
     let body = Predictor::Law(Classical::HystereticOscillator(law));
     Model::new(body, Default::default(), None, data, found).unwrap()
 }
@@ -86,7 +86,8 @@ fn a_slider_moves_the_resonance_with_the_amplitude() {
     let soft = Dynamics { elements: vec![element], direct: 0.0, longest_step: STEP / 16.0, ..linear() };
     let data = dataset(vec![moved(&input)]);
     let found = responses(&model(soft, &data), &data);
-    let [large, middle, small] = [0, 1, 2].map(|k| found.model[k].response.peak(Compared::Output).unwrap());
+    let [large, middle, small] =
+        [0, 1, 2].map(|k| found.model[k].response.peak(ComparedSignal::Output).unwrap());
     // With the spring the square of the frequency is 1.5 times as large: 24.5 Hz. Its lines are 0.5 Hz apart.
     let root = (1.0 + share).sqrt();
     let stiff = LinearOscillator {
@@ -98,7 +99,7 @@ fn a_slider_moves_the_resonance_with_the_amplitude() {
     };
     let frequencies = found.model[2].response.points.iter().map(|point| point.frequency);
     let closed = FrequencyResponse::of_oscillator(&stiff, frequencies);
-    assert_eq!(small.frequency, closed.peak(Compared::Output).unwrap().frequency);
+    assert_eq!(small.frequency, closed.peak(ComparedSignal::Output).unwrap().frequency);
     // A force that is a straight line over each row is weaker by 1.6 % at 35 Hz.
     let below = |point: &&ResponsePoint| point.frequency < 35.0;
     for (a, b) in found.model[2].response.points.iter().filter(below).zip(&closed.points) {

@@ -5,7 +5,7 @@ use hysid_core::error::Result;
 use hysid_core::model::Stepper;
 
 use super::EFFECT;
-use super::pasts::{Past, Way, drive, ways};
+use super::pasts::{ModelPast, PastPath, drive, ways};
 use super::scan::Scan;
 use crate::model::probe::{Probe, STEPS, extent};
 use crate::model::properties::PROTOCOL;
@@ -22,7 +22,7 @@ const LEAST_POINTS: usize = 9;
 const WHOLE: f64 = 1e-9;
 
 #[derive(Debug)]
-pub(super) struct Examined {
+pub(super) struct ExaminedScan {
     pub past: usize,
     /// Time to the next sample; `None` for a model without time, and before the first sample.
     pub time_step: Option<f64>,
@@ -34,8 +34,8 @@ pub(super) struct Examined {
 /// All scans of a model.
 #[derive(Debug)]
 pub(super) struct Examination {
-    pub pasts: Vec<Past>,
-    pub scans: Vec<Examined>,
+    pub pasts: Vec<ModelPast>,
+    pub scans: Vec<ExaminedScan>,
     /// Largest less smallest output of the protocol.
     pub range: f64,
     /// Time step of the probe at the fastest speed. Shorter ones do not decide.
@@ -43,7 +43,7 @@ pub(super) struct Examination {
 }
 
 /// A speed of pasts, and the time steps after them.
-struct Pace {
+struct ProbePace {
     speed: f64,
     time_steps: Vec<f64>,
     is_worn: bool,
@@ -63,7 +63,7 @@ impl Examination {
             fastest_step: row(probe, probe.speeds.tried()[3]),
         };
         let mut stepper = probe.model.stepper();
-        let virgin = Past {
+        let virgin = ModelPast {
             path: "initial state",
             row: None,
             time: 0.0,
@@ -83,8 +83,8 @@ impl Examination {
         &mut self,
         probe: &Probe<'m>,
         stepper: &mut Stepper<'m>,
-        way: &Way,
-        pace: &Pace,
+        way: &PastPath,
+        pace: &ProbePace,
     ) -> Result<()> {
         drive(probe, stepper, way, pace.speed, &mut |stepper, past| {
             self.take(probe, stepper, past, &pace.time_steps)
@@ -96,7 +96,7 @@ impl Examination {
         &mut self,
         probe: &Probe<'m>,
         stepper: &mut Stepper<'m>,
-        past: Past,
+        past: ModelPast,
         time_steps: &[f64],
     ) -> Result<()> {
         let (low, high) = (probe.centre - probe.half, probe.centre + probe.half);
@@ -124,7 +124,7 @@ impl Examination {
             })?;
             let is_whole = scan.width() >= (1.0 - WHOLE) * (high - low);
             let time_step = time_step.filter(|_| probe.speeds.matter());
-            self.scans.push(Examined { past: self.pasts.len(), time_step, is_whole, scan });
+            self.scans.push(ExaminedScan { past: self.pasts.len(), time_step, is_whole, scan });
         }
         stepper.revert();
         self.pasts.push(past);
@@ -137,17 +137,17 @@ fn row(probe: &Probe, speed: f64) -> f64 {
     probe.half / f64::from(probe.steps) / speed
 }
 
-fn paces(probe: &Probe) -> Vec<Pace> {
+fn paces(probe: &Probe) -> Vec<ProbePace> {
     let speeds = &probe.speeds;
     let middle = row(probe, speeds.middle);
     if !speeds.matter() {
-        return vec![Pace { speed: speeds.middle, time_steps: vec![middle], is_worn: true }];
+        return vec![ProbePace { speed: speeds.middle, time_steps: vec![middle], is_worn: true }];
     }
     let steps = DOUBLINGS.map(|power| middle * powi(2.0, power)).collect();
-    let own = |speed: f64| Pace { speed, time_steps: vec![row(probe, speed)], is_worn: false };
+    let own = |speed: f64| ProbePace { speed, time_steps: vec![row(probe, speed)], is_worn: false };
     vec![
         own(speeds.vanishing),
-        Pace { speed: speeds.middle, time_steps: steps, is_worn: true },
+        ProbePace { speed: speeds.middle, time_steps: steps, is_worn: true },
         own(speeds.tried()[3]),
     ]
 }

@@ -21,7 +21,7 @@ const DESCRIBED: usize = 2;
 
 /// A state of the model, with the path that led to it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Past {
+pub(super) struct ModelPast {
     pub path: &'static str,
     /// Row of the path that was the last sample, counted from 0; `None` before the first sample.
     pub row: Option<usize>,
@@ -34,22 +34,22 @@ pub(super) struct Past {
 }
 
 /// A path of the input, in halves of the trained range.
-pub(super) struct Way {
+pub(super) struct PastPath {
     name: &'static str,
     turning: Vec<f64>,
 }
 
-/// The paths. `worn` asks for repeated loops, which wear a model out, in place of a few.
-pub(super) fn ways(worn: bool) -> Vec<Way> {
+/// The paths. `worn` takes repeated loops, which wear a model out, in place of a few.
+pub(super) fn ways(worn: bool) -> Vec<PastPath> {
     let (count, share) = SHRINKING;
     let shrinking = (0..2 * count).map(|turn| powi(-1.0, turn) * powi(share, turn / 2));
     let loops = if worn { repeated_loops() } else { WHOLE_LOOPS.to_vec() };
     vec![
-        Way { name: "protocol", turning: PROTOCOL.to_vec() },
-        Way { name: "shifted loops", turning: SHIFTED.to_vec() },
-        Way { name: if worn { "repeated loops" } else { "whole loops" }, turning: loops },
-        Way { name: "shrinking loops", turning: [0.0].into_iter().chain(shrinking).collect() },
-        Way { name: "random reversals", turning: random_reversals() },
+        PastPath { name: "protocol", turning: PROTOCOL.to_vec() },
+        PastPath { name: "shifted loops", turning: SHIFTED.to_vec() },
+        PastPath { name: if worn { "repeated loops" } else { "whole loops" }, turning: loops },
+        PastPath { name: "shrinking loops", turning: [0.0].into_iter().chain(shrinking).collect() },
+        PastPath { name: "random reversals", turning: random_reversals() },
     ]
 }
 
@@ -67,9 +67,9 @@ fn random_reversals() -> Vec<f64> {
 pub(super) fn drive<'m>(
     probe: &Probe<'m>,
     stepper: &mut Stepper<'m>,
-    way: &Way,
+    way: &PastPath,
     speed: f64,
-    examine: &mut impl FnMut(&mut Stepper<'m>, Past) -> Result<()>,
+    examine: &mut impl FnMut(&mut Stepper<'m>, ModelPast) -> Result<()>,
 ) -> Result<()> {
     let path = probe.path(&way.turning);
     let time = times(&path.x, speed);
@@ -85,7 +85,7 @@ pub(super) fn drive<'m>(
             let before: Vec<f64> =
                 path.turns.iter().filter(|&&turn| turn <= row).map(|&turn| path.x[turn]).collect();
             let turning_points = before[before.len().saturating_sub(DESCRIBED)..].to_vec();
-            examine(stepper, Past { path: way.name, row: Some(row), time, input: x, turning_points })?;
+            examine(stepper, ModelPast { path: way.name, row: Some(row), time, input: x, turning_points })?;
             stepper.revert();
         }
         if moments.peek().is_none() {

@@ -4,7 +4,7 @@ use hysid_core::data::record::ColumnNames;
 use hysid_core::data::unit;
 use hysid_core::significant::Significant;
 
-use super::{Direction, Invertibility, Place, PlaceKind};
+use super::{Invertibility, NonMonotonePlace, OutputDirection, PlaceKind};
 use crate::Verdict;
 
 /// Numbers with the units of the columns.
@@ -35,8 +35,8 @@ impl Words {
     pub fn statement(&self, found: &Invertibility) -> String {
         let tried = found.time_steps.first().map(|at| at.time_step);
         let goes = match found.direction {
-            Direction::Rising => "rises",
-            Direction::Falling => "falls",
+            OutputDirection::Rising => "rises",
+            OutputDirection::Falling => "falls",
         };
         let steps = found.shortest_time_step.map(|shortest| {
             let time = format!("{:.3}{}", Significant(shortest), self.time);
@@ -89,7 +89,7 @@ impl Words {
         statement
     }
 
-    fn place(&self, worst: &Place, direction: Direction) -> String {
+    fn place(&self, worst: &NonMonotonePlace, direction: OutputDirection) -> String {
         let past = self.past(worst);
         let percent = Significant(100.0 * worst.size);
         let step = worst.time_step.map_or_else(String::new, |step| {
@@ -98,8 +98,8 @@ impl Words {
         match worst.kind {
             PlaceKind::Reversal => {
                 let back = match direction {
-                    Direction::Rising => "falls",
-                    Direction::Falling => "rises",
+                    OutputDirection::Rising => "falls",
+                    OutputDirection::Falling => "rises",
                 };
                 format!(
                     "{past}{step}, the output {back} by {percent:.2} % of its range while the input rises from {}: an \
@@ -117,7 +117,7 @@ impl Words {
         }
     }
 
-    fn past(&self, worst: &Place) -> String {
+    fn past(&self, worst: &NonMonotonePlace) -> String {
         let at = |x: f64| format!("{:.4}", Significant(x));
         match worst.turning_points.as_slice() {
             [] => "in the initial state".into(),
@@ -134,7 +134,7 @@ impl Words {
     }
 }
 
-/// Both ends, with as many digits as it takes to tell them apart.
+/// Both ends, with as many digits as it takes to distinguish them.
 fn span((low, high): (f64, f64)) -> String {
     let with =
         |digits: usize| [low, high].map(|value| format!("{value:.digits$}", value = Significant(value)));

@@ -32,7 +32,7 @@ fn near(found: (f64, f64), exact: (f64, f64)) {
 fn plays_with_positive_weights_reach_what_their_states_allow() {
     let (linear, thresholds, weights) = (0.3, [0.4, 1.2, 2.5], [1.0, 0.7, 0.2]);
     let found = plays(linear, &thresholds, &weights);
-    assert_eq!((found.finding.verdict, found.direction), (Verdict::Yes, Direction::Rising));
+    assert_eq!((found.finding.verdict, found.direction), (Verdict::Yes, OutputDirection::Rising));
     // Below the rounding of outputs around 10.
     assert!(found.finding.index.unwrap() < 1e-14 && found.jumps == 0 && found.flat_share == 0.0);
     let of_plays = |x: f64, play: fn(f64, f64) -> f64| {
@@ -60,7 +60,7 @@ fn plays_alone_rest_after_a_reversal() {
 #[test]
 fn plays_with_negative_weights_fall() {
     let found = plays(-0.3, &[0.4, 1.2], &[-1.0, -0.7]);
-    assert_eq!((found.finding.verdict, found.direction), (Verdict::Yes, Direction::Falling));
+    assert_eq!((found.finding.verdict, found.direction), (Verdict::Yes, OutputDirection::Falling));
     let (low, high) = found.always.unwrap();
     assert!(low < 10.0 && high > 10.0);
 }
@@ -69,7 +69,7 @@ fn plays_with_negative_weights_fall() {
 #[test]
 fn a_sum_of_weights_that_turns_negative_is_found_where_it_turns() {
     let found = plays(1.0, &[0.5, 1.5], &[0.8, -2.2]);
-    assert_eq!((found.finding.verdict, found.direction), (Verdict::No, Direction::Rising));
+    assert_eq!((found.finding.verdict, found.direction), (Verdict::No, OutputDirection::Rising));
     let worst = found.worst.unwrap();
     assert_eq!((worst.kind, worst.time_step), (PlaceKind::Reversal, None));
     // By symmetry, to the lowest input or to the highest one.
@@ -119,10 +119,10 @@ fn a_small_network_is_judged_by_its_weights() {
         examined(&network(architecture, parameters, vec![0.0, 1.0]))
     };
     let rising = of(0.5, 0.4);
-    assert_eq!((rising.finding.verdict, rising.direction), (Verdict::Yes, Direction::Rising));
+    assert_eq!((rising.finding.verdict, rising.direction), (Verdict::Yes, OutputDirection::Rising));
     let falling = of(-0.5, -0.1);
     // The stop of weight 6 slips soon; before it does, it outweighs the others.
-    assert_eq!((falling.finding.verdict, falling.direction), (Verdict::No, Direction::Falling));
+    assert_eq!((falling.finding.verdict, falling.direction), (Verdict::No, OutputDirection::Falling));
     // A stop against the spring: backwards as long as it sticks.
     assert_eq!(of(0.5, -0.9).finding.verdict, Verdict::No);
 }
@@ -133,7 +133,7 @@ fn a_lag_needs_long_time_steps() {
     let (k, c) = (1.5, 0.2);
     let lag = |c: f64| BoucWen { damping: -c, ..BoucWen::new(k, 0.0, 1.0).unwrap() };
     let found = of_law(lag(c), ClassicalModel::BoucWen, true);
-    assert_eq!((found.finding.verdict, found.direction), (Verdict::No, Direction::Rising));
+    assert_eq!((found.finding.verdict, found.direction), (Verdict::No, OutputDirection::Rising));
     // Time steps that were tried are twice as long as the one before.
     let shortest = found.shortest_time_step.unwrap();
     assert!(shortest > c / k && shortest <= 2.0 * c / k, "{shortest}");

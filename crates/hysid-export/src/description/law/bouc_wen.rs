@@ -4,10 +4,10 @@ mod degradation;
 
 use hysid_core::law::bouc_wen::BoucWen;
 
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::Builder;
 use crate::program::expression::{Real, RealVariable, Whole};
-use degradation::{Element, Properties};
+use degradation::{DegradingElement, ElementProperties};
 
 // Numbers of the library's solver.
 const LONGEST_PART: f64 = 0.1;
@@ -16,7 +16,7 @@ const YIELDED: f64 = 1.0 - 1e-14;
 const MOST_PARTS: f64 = 600.0;
 
 /// `y = c0 + α k x + (1 - α) k z + c x'` (theory.md (8.4))
-pub(super) fn step(builder: &mut Builder, name: &str, law: &BoucWen, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &BoucWen, sample: &PartInputs) -> Real {
     let last = builder.state(&format!("{name}_input"), vec![0.0]);
     let z_of = builder.state(&format!("{name}_z"), vec![0.0]);
     let energy = law.degradation.map(|_| builder.state(&format!("{name}_energy"), vec![0.0]));
@@ -60,7 +60,7 @@ fn upwards(builder: &mut Builder, law: &BoucWen, (z, e): (RealVariable, RealVari
             });
         }
         Some(degradation) => {
-            let element = Element { degradation, n: law.n };
+            let element = DegradingElement { degradation, n: law.n };
             let quicker = element.quickness(builder, &z.into(), &e.into());
             let quickness = builder.value(quickness(law) * quicker);
             let longest = builder.value(LONGEST_PART / quickness.max(element.narrowness()));
@@ -87,7 +87,7 @@ fn quickness(law: &BoucWen) -> f64 {
 fn degrading_upwards(
     builder: &mut Builder,
     law: &BoucWen,
-    element: &Element<'_>,
+    element: &DegradingElement<'_>,
     (z, e): (RealVariable, RealVariable),
     (part, by): (&Real, &Real),
 ) {
@@ -190,7 +190,7 @@ fn part(builder: &mut Builder, law: &BoucWen, start: (&Real, &Real), by: &Real) 
 fn runge_kutta(builder: &mut Builder, law: &BoucWen, (z, e): (&Real, &Real), by: &Real) -> (Real, Real) {
     let properties = law.degradation.as_ref().map(|degradation| {
         let energy = builder.value(e + 0.5 * by * z);
-        Element { degradation, n: law.n }.properties(builder, &energy)
+        DegradingElement { degradation, n: law.n }.properties(builder, &energy)
     });
     let within = |builder: &mut Builder, z: Real| {
         let z = builder.value(z);
@@ -216,7 +216,7 @@ fn runge_kutta(builder: &mut Builder, law: &BoucWen, (z, e): (&Real, &Real), by:
 }
 
 /// `dz/dx` on the way up (theory.md (8.5), (8.6)).
-fn slope(builder: &mut Builder, law: &BoucWen, properties: Option<&Properties>, z: &Real) -> Real {
+fn slope(builder: &mut Builder, law: &BoucWen, properties: Option<&ElementProperties>, z: &Real) -> Real {
     let share = z.below(0.0).choose(1.0 - 2.0 * law.b, 1.0);
     let softening = builder.value(z.abs().powf(law.n) * share);
     match properties {

@@ -4,7 +4,7 @@ use hysid_core::law::duhem_nn::DuhemNn;
 
 use super::prandtl_ishlinskii::follow;
 use super::tanh_layer::{Slice, layer, partial_sums, product};
-use crate::description::Sample;
+use crate::description::PartInputs;
 use crate::description::network::tanh;
 use crate::program::expression::{Real, Whole, fused};
 use crate::program::{Array, Builder};
@@ -13,7 +13,7 @@ use crate::program::{Array, Builder};
 const LARGEST_INPUT: f64 = 1e6;
 
 /// theory.md (8.29) to (8.32)
-pub(super) fn step(builder: &mut Builder, name: &str, law: &DuhemNn, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &DuhemNn, sample: &PartInputs) -> Real {
     let (cell, shape) = (&law.cell, law.cell.shape());
     let scaled = |builder: &mut Builder, value: Real, scale: f64| {
         let value = builder.value(value / scale);

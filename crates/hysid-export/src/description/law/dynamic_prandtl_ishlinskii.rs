@@ -3,10 +3,10 @@
 use hysid_core::law::dynamic_prandtl_ishlinskii::{DeadZone, DynamicPrandtlIshlinskii, Resonance};
 use hysid_core::law::hysteretic_dynamics::Mode;
 
-use super::hysteretic_dynamics::Factors;
+use super::hysteretic_dynamics::ModeFactors;
 use super::modified_prandtl_ishlinskii::add_dead_zones;
 use super::prandtl_ishlinskii::sum_of_plays;
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::Builder;
 use crate::program::expression::{Real, Whole};
 
@@ -15,7 +15,7 @@ pub(super) fn step(
     builder: &mut Builder,
     name: &str,
     law: &DynamicPrandtlIshlinskii,
-    sample: &Sample,
+    sample: &PartInputs,
 ) -> Real {
     let before = builder.state(&format!("{name}_before"), vec![0.0; 3]);
     let x = limited(builder, &sample.inputs[0]);
@@ -81,11 +81,11 @@ fn moved(
     builder: &mut Builder,
     name: &str,
     Resonance { frequency, damping }: Resonance,
-    sample: &Sample,
+    sample: &PartInputs,
     [f_before, f]: [&Real; 2],
 ) -> Real {
     let mode = Mode { frequency, damping, gain: 1.0, velocity_in_output: 0.0 };
-    let factors = Factors::new(builder, name, &[mode]);
+    let factors = ModeFactors::new(builder, name, &[mode]);
     let motion = builder.state(&format!("{name}_motion"), vec![0.0; 2]);
     builder.when_else(
         sample.is_first.clone(),

@@ -2,7 +2,7 @@
 
 use hysid_core::law::generalized_prandtl_ishlinskii::{Envelope, GeneralizedPrandtlIshlinskii};
 
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::Builder;
 use crate::program::expression::Real;
 
@@ -11,7 +11,7 @@ pub(super) fn step(
     builder: &mut Builder,
     name: &str,
     law: &GeneralizedPrandtlIshlinskii,
-    sample: &Sample,
+    sample: &PartInputs,
 ) -> Real {
     let count = law.weights.plays();
     let plays = builder.state(&format!("{name}_play"), vec![law.initial; count]);

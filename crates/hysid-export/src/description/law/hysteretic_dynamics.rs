@@ -7,21 +7,21 @@ mod propagation;
 
 use hysid_core::law::hysteretic_dynamics::Dynamics;
 
-use crate::description::Sample;
+use crate::description::PartInputs;
 use crate::program::expression::{Real, Whole, fused};
 use crate::program::{Array, Builder};
 use element::ElementParts;
 use input::Steps;
-pub(super) use propagation::Factors;
+pub(super) use propagation::ModeFactors;
 
 /// Scaled inputs are limited to this magnitude, as in the library.
 const LARGEST_INPUT: f64 = 1e6;
 
 /// theory.md (15.1) to (15.11)
-pub(super) fn step(builder: &mut Builder, name: &str, law: &Dynamics, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &Dynamics, sample: &PartInputs) -> Real {
     let u = builder.value(&sample.inputs[0] / law.input_scale);
     let u = builder.value(u.clamp(-LARGEST_INPUT, LARGEST_INPUT));
-    let parts = Parts::new(builder, name, law);
+    let parts = DynamicsParts::new(builder, name, law);
     builder.when(sample.is_first.clone(), |builder| parts.start(builder));
     let steps = Steps::of_row(builder, name, law, &u, sample);
     builder.when(Whole::from(steps.count).above(0_usize), |builder| {
@@ -37,25 +37,25 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &Dynamics, sample: &S
 }
 
 /// The arrays of a model.
-struct Parts<'l> {
+struct DynamicsParts<'l> {
     law: &'l Dynamics,
     modes: usize,
     /// Displacement `q` and velocity `p` of each mode.
     displacements: Array,
     velocities: Array,
-    /// What they are without the forces at the end of a step.
+    /// Displacements without the forces at the end of a step.
     displacements_alone: Array,
     velocities_alone: Array,
     gains: Array,
-    factors: Factors,
-    elements: Option<Elements<'l>>,
+    factors: ModeFactors,
+    elements: Option<DynamicsElements<'l>>,
 }
 
-struct Elements<'l> {
+struct DynamicsElements<'l> {
     each: Vec<ElementParts<'l>>,
     /// For each mode the displacement under a unit force of each element, with its sign in the equation of motion.
     compliances: Array,
-    /// Forces as the modes feel them, at the end and at the beginning of a step.
+    /// Forces as they act on the modes, at the end and at the beginning of a step.
     forces: Array,
     forces_before: Array,
     following: Array,
@@ -70,7 +70,7 @@ struct Elements<'l> {
     probed: Array,
 }
 
-impl<'l> Elements<'l> {
+impl<'l> DynamicsElements<'l> {
     fn new(builder: &mut Builder, name: &str, law: &'l Dynamics) -> Option<Self> {
         let count = law.elements.len();
         if count == 0 {
@@ -98,7 +98,7 @@ impl<'l> Elements<'l> {
     }
 }
 
-impl<'l> Parts<'l> {
+impl<'l> DynamicsParts<'l> {
     fn new(builder: &mut Builder, name: &str, law: &'l Dynamics) -> Self {
         let modes = law.modes.len();
         let gains = law.modes.iter().map(|mode| mode.gain).collect();
@@ -110,8 +110,8 @@ impl<'l> Parts<'l> {
             displacements_alone: builder.scratch(&format!("{name}_displacement_alone"), modes),
             velocities_alone: builder.scratch(&format!("{name}_velocity_alone"), modes),
             gains: builder.constants(&format!("{name}_gain"), gains),
-            factors: Factors::new(builder, name, &law.modes),
-            elements: Elements::new(builder, name, law),
+            factors: ModeFactors::new(builder, name, &law.modes),
+            elements: DynamicsElements::new(builder, name, law),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use hysid_core::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::Builder;
 use crate::program::expression::Real;
 
@@ -11,14 +11,14 @@ const LONGEST_PART: f64 = 0.05;
 const MOST_PARTS: f64 = 4000.0;
 const SATURATED: f64 = 300.0;
 
-/// Steps of at most so many parts have the slope of the parts.
+/// Most parts of a step that has the slope of the parts.
 const PARTS_WITH_SLOPE: f64 = 200.0;
 
 const LEAST_PINNING: f64 = 0.02;
 const LARGEST_FEEDBACK: f64 = 0.98;
 
 /// `y = c0 + μ H + M` (theory.md (8.22))
-pub(super) fn step(builder: &mut Builder, name: &str, law: &JilesAtherton, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &JilesAtherton, sample: &PartInputs) -> Real {
     let field = builder.state(&format!("{name}_field"), vec![0.0]);
     let magnetisation = builder.state(&format!("{name}_magnetisation"), vec![0.0]);
     let h = limited(builder, &sample.inputs[0]);

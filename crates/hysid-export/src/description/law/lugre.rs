@@ -2,12 +2,12 @@
 
 use hysid_core::law::lugre::Lugre;
 
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::Builder;
 use crate::program::expression::Real;
 
 /// `y = c0 + k x + σ0 z + σ1 dz/dt + σ2 v` (theory.md (8.27), (8.28))
-pub(super) fn step(builder: &mut Builder, name: &str, law: &Lugre, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &Lugre, sample: &PartInputs) -> Real {
     let last = builder.state(&format!("{name}_input"), vec![0.0]);
     let deflection = builder.state(&format!("{name}_deflection"), vec![0.0]);
     let x = limited(builder, &sample.inputs[0]);

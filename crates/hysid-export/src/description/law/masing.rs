@@ -3,14 +3,14 @@
 use hysid_core::law::masing::Masing;
 
 use super::turning_points::{TurningPoints, partition_point};
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::expression::{Real, Whole};
 use crate::program::{Array, Builder};
 
 /// `y = c + g(x)`, or `y = y* + 2 g((x - x*)/2)` from a turning point (theory.md (7.3))
-pub(super) fn step(builder: &mut Builder, name: &str, law: &Masing, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &Masing, sample: &PartInputs) -> Real {
     let points = TurningPoints::new(builder, name);
-    let curve = Curve::new(builder, name, law);
+    let curve = MasingCurve::new(builder, name, law);
     let x = limited(builder, &sample.inputs[0]);
     let n = Whole::from(points.advance(builder, &x));
     let y = builder.variable(0.0);
@@ -33,14 +33,14 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &Masing, sample: &Sam
 }
 
 /// The virgin curve: bends with the heights there, 0 first, and slopes.
-struct Curve {
+struct MasingCurve {
     bends: Array,
     heights: Array,
     slopes: Array,
     thresholds: usize,
 }
 
-impl Curve {
+impl MasingCurve {
     fn new(builder: &mut Builder, name: &str, law: &Masing) -> Self {
         let with_zero = |values: &[f64]| [&[0.0], values].concat();
         Self {

@@ -3,7 +3,7 @@
 use hysid_core::law::menegotto_pinto::MenegottoPinto;
 
 use super::yield_curve::yielding;
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::expression::{Real, Whole};
 use crate::program::{Array, Builder};
 
@@ -16,8 +16,8 @@ const STEPS_AHEAD: f64 = 8.0;
 const MOST_BRANCHES: usize = 8;
 
 /// `y = c0 + k x + F q` (theory.md (8.47))
-pub(super) fn step(builder: &mut Builder, name: &str, law: &MenegottoPinto, sample: &Sample) -> Real {
-    let state = State::new(builder, name, law);
+pub(super) fn step(builder: &mut Builder, name: &str, law: &MenegottoPinto, sample: &PartInputs) -> Real {
+    let state = SteelState::new(builder, name, law);
     let x = limited(builder, &sample.inputs[0]);
     let d = builder.value(&x / law.yield_displacement);
     let d = builder.value(d.clamp(-LARGEST_DISPLACEMENT, LARGEST_DISPLACEMENT));
@@ -46,7 +46,7 @@ fn sign_of(builder: &mut Builder, direction: &Whole) -> Real {
 }
 
 /// The branches upwards, then those downwards, [`MOST_BRANCHES`] places each; the present point; the extremes.
-struct State {
+struct SteelState {
     from: Array,
     start: Array,
     room: Array,
@@ -64,7 +64,7 @@ struct State {
     isotropic: Array,
 }
 
-impl State {
+impl SteelState {
     fn new(builder: &mut Builder, name: &str, law: &MenegottoPinto) -> Self {
         let (ratio, isotropic) = law.down.map_or((1.0, law.isotropic), |down| (down.ratio, down.isotropic));
         let mut state = |part: &str, initial: Vec<f64>| builder.state(&format!("{name}_{part}"), initial);

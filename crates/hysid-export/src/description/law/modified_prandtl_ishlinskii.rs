@@ -3,7 +3,7 @@
 use hysid_core::law::modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii;
 
 use super::prandtl_ishlinskii;
-use crate::description::Sample;
+use crate::description::PartInputs;
 use crate::program::Builder;
 use crate::program::expression::{Real, RealVariable};
 
@@ -12,7 +12,7 @@ pub(super) fn step(
     builder: &mut Builder,
     name: &str,
     law: &ModifiedPrandtlIshlinskii,
-    sample: &Sample,
+    sample: &PartInputs,
 ) -> Real {
     let z = prandtl_ishlinskii::step(builder, name, law.hysteresis(), sample);
     let parts = law.superposition().parts();

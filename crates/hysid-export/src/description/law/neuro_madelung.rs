@@ -3,7 +3,7 @@
 use hysid_core::law::neuro_madelung::NeuroMadelung;
 
 use super::turning_points::TurningPoints;
-use crate::description::Sample;
+use crate::description::PartInputs;
 use crate::program::Builder;
 use crate::program::expression::{Real, Whole};
 
@@ -11,7 +11,7 @@ use crate::program::expression::{Real, Whole};
 const LARGEST_INPUT: f64 = 1e6;
 
 /// `y = y_t + (x - x_t) N(x, x_t, y_t[, x'])` (theory.md (8.19))
-pub(super) fn step(builder: &mut Builder, name: &str, law: &NeuroMadelung, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &NeuroMadelung, sample: &PartInputs) -> Real {
     let points = TurningPoints::new(builder, name);
     let mut scaled = |value: &Real, scale: f64| {
         let value = builder.value(value / scale);

@@ -3,7 +3,7 @@
 use hysid_core::law::peak_oriented::{Degradation, PeakOriented};
 
 use super::yield_curve::yielding;
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::expression::{Real, Whole, WholeVariable};
 use crate::program::{Array, Builder};
 
@@ -21,8 +21,8 @@ const GAUSS_WEIGHTS: [f64; 5] = [
 ];
 
 /// `y = c0 + k x + F_s s f` (theory.md (8.37))
-pub(super) fn step(builder: &mut Builder, name: &str, law: &PeakOriented, sample: &Sample) -> Real {
-    let member = Member::new(builder, name, law);
+pub(super) fn step(builder: &mut Builder, name: &str, law: &PeakOriented, sample: &PartInputs) -> Real {
+    let member = PeakOrientedMember::new(builder, name, law);
     let x = limited(builder, &sample.inputs[0]);
     let side = builder.counter(member.side, 0_usize, -1.0, 1.0);
     builder.when(Whole::from(side).below(0_usize), |builder| {
@@ -40,7 +40,7 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &PeakOriented, sample
 }
 
 /// The law with its state.
-struct Member<'a> {
+struct PeakOrientedMember<'a> {
     law: &'a PeakOriented,
     yield_displacement: Array,
     /// 0 for positive forces, 1 for negative ones; -1 before the first movement.
@@ -59,9 +59,9 @@ struct Member<'a> {
 }
 
 /// The branch from zero force to its target: `d_0`, `d_t`, `σ E(d_t)`, the height of the pinch point and `σ`.
-struct Loading([Real; 5]);
+struct LoadingPath([Real; 5]);
 
-impl<'a> Member<'a> {
+impl<'a> PeakOrientedMember<'a> {
     fn new(builder: &mut Builder, name: &str, law: &'a PeakOriented) -> Self {
         let displacements = [law.up, law.down.unwrap_or(law.up)].map(|side| side.yield_displacement);
         let yield_displacement =
@@ -134,8 +134,8 @@ impl<'a> Member<'a> {
         f.into()
     }
 
-    fn present(&self, builder: &mut Builder) -> Loading {
-        Loading(self.loading.map(|array| builder.value(array.at(0_usize))))
+    fn present(&self, builder: &mut Builder) -> LoadingPath {
+        LoadingPath(self.loading.map(|array| builder.value(array.at(0_usize))))
     }
 
     /// `E(d)` for `d ≥ 0` (theory.md (8.38), (8.39)).
@@ -213,8 +213,8 @@ impl<'a> Member<'a> {
     }
 
     /// The force on a branch at `d`, beyond its beginning.
-    fn force(&self, builder: &mut Builder, loading: &Loading, d: &Real) -> Real {
-        let Loading([from, target, top, height, strength]) = loading;
+    fn force(&self, builder: &mut Builder, loading: &LoadingPath, d: &Real) -> Real {
+        let LoadingPath([from, target, top, height, strength]) = loading;
         let f = builder.variable(0.0);
         builder.when_else(
             d.at_least(target),
@@ -296,7 +296,7 @@ impl<'a> Member<'a> {
     fn dissipated(&self, builder: &mut Builder) -> Real {
         let loading = self.present(builder);
         let [turned, force, zero, curvature] = self.unloading.map(|array| builder.value(array.at(0_usize)));
-        let Loading([from, target, ..]) = &loading;
+        let LoadingPath([from, target, ..]) = &loading;
         let middle = builder.value(target.clamp(from, &turned));
         // Apart, because the force bends at the target and at the yield point.
         let yielded = builder.value(middle.max(1.0));
@@ -314,7 +314,7 @@ impl<'a> Member<'a> {
         builder.value(work.max(0.0))
     }
 
-    fn area(&self, builder: &mut Builder, loading: &Loading, from: &Real, to: &Real) -> Real {
+    fn area(&self, builder: &mut Builder, loading: &LoadingPath, from: &Real, to: &Real) -> Real {
         let sum = builder.variable(-0.0);
         builder.when(to.above(from), |builder| {
             builder.each(0_usize, GAUSS_NODES.len(), |builder, k| {

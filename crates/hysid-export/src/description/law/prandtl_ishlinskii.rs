@@ -2,7 +2,7 @@
 
 use hysid_core::law::prandtl_ishlinskii::PrandtlIshlinskii;
 
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::expression::{Real, Whole};
 use crate::program::{Array, Builder};
 
@@ -10,7 +10,7 @@ use crate::program::{Array, Builder};
 const LANES: usize = 8;
 
 /// `y = c + w_0 x + Σ_i w_i p_{r_i}[x]` (theory.md (7.4))
-pub(super) fn step(builder: &mut Builder, name: &str, law: &PrandtlIshlinskii, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &PrandtlIshlinskii, sample: &PartInputs) -> Real {
     let x = limited(builder, &sample.inputs[0]);
     let sum = sum_of_plays(builder, name, law.thresholds(), law.weights(), &x);
     builder.value(law.constant() + law.linear() * x + sum)

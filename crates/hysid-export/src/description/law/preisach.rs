@@ -3,14 +3,14 @@
 use hysid_core::law::preisach::Preisach;
 
 use super::turning_points::{TurningPoints, partition_point};
-use crate::description::{Sample, limited};
+use crate::description::{PartInputs, limited};
 use crate::program::expression::{Real, Whole};
 use crate::program::{Array, Builder};
 
 /// `y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]` (theory.md (7.8))
-pub(super) fn step(builder: &mut Builder, name: &str, law: &Preisach, sample: &Sample) -> Real {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &Preisach, sample: &PartInputs) -> Real {
     let points = TurningPoints::new(builder, name);
-    let plane = Plane::new(builder, name, law);
+    let plane = PlaneTables::new(builder, name, law);
     let x = limited(builder, &sample.inputs[0]);
     let n = Whole::from(points.advance(builder, &x));
     let place = plane.place(builder, &x);
@@ -58,25 +58,25 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &Preisach, sample: &S
 }
 
 /// Place of an input among the lines: interval, and share of it below.
-struct Place {
+struct InputPlace {
     interval: Whole,
     share: Real,
 }
 
 /// Tables of the Everett function and of the reversible part.
-struct Plane {
+struct PlaneTables {
     intervals: usize,
     lines: Array,
     weight: Array,
     inner: Array,
     along_row: Array,
     along_column: Array,
-    virgin: [VirginCurve; 2],
+    virgin: [VirginTables; 2],
     reversible: Array,
     reversible_weights: Array,
 }
 
-impl Plane {
+impl PlaneTables {
     fn new(builder: &mut Builder, name: &str, law: &Preisach) -> Self {
         let tables = law.tables();
         let mut of_cells = |part: &str, index: usize| {
@@ -87,7 +87,7 @@ impl Plane {
         let (along_row, along_column) = (of_cells("along_row", 2), of_cells("along_column", 3));
         let [up, down] = tables.virgin;
         let virgin = [("virgin_up", up), ("virgin_down", down)].map(|(part, (knots, pieces))| {
-            VirginCurve::new(builder, &format!("{name}_{part}"), knots, &pieces)
+            VirginTables::new(builder, &format!("{name}_{part}"), knots, &pieces)
         });
         let weights = law.weights();
         Self {
@@ -105,15 +105,15 @@ impl Plane {
     }
 
     /// Place of an input; one beyond the plane is at its edge.
-    fn place(&self, builder: &mut Builder, x: &Real) -> Place {
+    fn place(&self, builder: &mut Builder, x: &Real) -> InputPlace {
         let interval = partition_point(builder, self.lines, 1, self.intervals - 1, x);
         let low = builder.value(self.lines.at(&interval));
         let share = builder.value((x - &low) / (self.lines.at(&interval + 1) - &low));
-        Place { interval, share: builder.value(share.clamp(0.0, 1.0)) }
+        InputPlace { interval, share: builder.value(share.clamp(0.0, 1.0)) }
     }
 
     /// `E(a, b)`, 0 unless `a > b` (theory.md (7.10)).
-    fn everett(&self, builder: &mut Builder, a: &Place, b: &Place) -> Real {
+    fn everett(&self, builder: &mut Builder, a: &InputPlace, b: &InputPlace) -> Real {
         let (i, j) = (&a.interval, &b.interval);
         let s = &a.share;
         let value = builder.variable(0.0);
@@ -146,14 +146,14 @@ impl Plane {
     }
 }
 
-/// What the virgin curve switches on one side of 0.
-struct VirginCurve {
+/// Output along the virgin curve on one side of 0.
+struct VirginTables {
     knots: Array,
     length: usize,
     coefficients: [Array; 3],
 }
 
-impl VirginCurve {
+impl VirginTables {
     fn new(builder: &mut Builder, name: &str, knots: Vec<f64>, pieces: &[[f64; 3]]) -> Self {
         let coefficients = [0, 1, 2].map(|power| {
             builder.constants(&format!("{name}_{power}"), pieces.iter().map(|piece| piece[power]).collect())

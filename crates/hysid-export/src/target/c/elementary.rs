@@ -7,21 +7,21 @@ use crate::program::expression::{Binary, Unary};
 use crate::program::uses::Uses;
 
 /// A part of `elementary.c.txt`.
-struct Section {
+struct SourceSection {
     name: &'static str,
     needs: Vec<&'static str>,
     text: &'static str,
 }
 
 /// All parts, each behind those that it needs.
-fn sections() -> Vec<Section> {
+fn sections() -> Vec<SourceSection> {
     include_str!("elementary.c.txt")
         .split("@@ ")
         .skip(1)
         .map(|section| {
             let (head, text) = section.split_once('\n').expect("a line with the name");
             let (name, needs) = head.split_once(": ").unwrap_or((head, ""));
-            Section { name, needs: needs.split_whitespace().collect(), text }
+            SourceSection { name, needs: needs.split_whitespace().collect(), text }
         })
         .collect()
 }

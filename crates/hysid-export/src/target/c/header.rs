@@ -1,11 +1,11 @@
 //! The header file: types, functions, and what the model is.
 
 use crate::program::Precision;
-use crate::subject::Subject;
+use crate::subject::ExportSubject;
 use crate::target::template::filled;
 
 /// The text of the header file.
-pub(super) fn header(subject: &Subject<'_>) -> String {
+pub(super) fn header(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let upper = name.to_uppercase();
     let real = match subject.precision() {

@@ -3,10 +3,10 @@
 use hysid_core::model::MOST_TRIALS;
 
 use crate::description::Argument;
-use crate::inverse::Inverse;
+use crate::inverse::ExportedInverse;
 use crate::manifest::token_of;
 use crate::program::Precision;
-use crate::subject::Subject;
+use crate::subject::ExportSubject;
 use crate::target::c::source::EXACT;
 use crate::target::template::filled;
 
@@ -25,7 +25,7 @@ static void narrowed(const NAME_inverse *inverse, real way, real *low, real *hig
 ";
 
 /// The texts of both files.
-pub(super) fn header_and_source(subject: &Subject<'_>, inverse: &Inverse) -> [String; 2] {
+pub(super) fn header_and_source(subject: &ExportSubject<'_>, inverse: &ExportedInverse) -> [String; 2] {
     let name = subject.name();
     let upper = name.to_uppercase();
     let names = inverse.argument_names();
@@ -112,7 +112,7 @@ pub(super) fn literal(precision: Precision, value: f64) -> String {
 }
 
 /// How to use it.
-pub(super) fn usage(name: &str, inverse: &Inverse) -> String {
+pub(super) fn usage(name: &str, inverse: &ExportedInverse) -> String {
     let further: String = inverse.argument_names().iter().map(|name| format!(", {name}")).collect();
     filled(include_str!("inverse_usage.md.txt"), &[("NAME", name), ("@further@", &further)])
 }

@@ -1,12 +1,12 @@
 //! The part of the self-test that runs the inverse.
 
-use crate::inverse::Inverse;
+use crate::inverse::ExportedInverse;
 use crate::program::Precision;
-use crate::subject::Subject;
+use crate::subject::ExportSubject;
 use crate::target::c::inverse::literal;
 use crate::target::template::filled;
 
-/// What the self-test prints.
+/// Code that prints the results of the self-test, in double and in single precision.
 const SAID: &str = r#"    printf("%d of %d numbers of the inverse differ, its outputs by at most %.1e of half the trained range; "
            "%d endings differ; %d outputs are not those of the model\n",
            different, compared, (double)largest, reaches, wrong);
@@ -18,7 +18,7 @@ const SAID_SINGLE: &str = r#"    printf("the inverse in single precision: %d num
 "#;
 
 /// The text of its function `test_inverse`.
-pub(super) fn inverse_test(subject: &Subject<'_>, inverse: &Inverse) -> String {
+pub(super) fn inverse_test(subject: &ExportSubject<'_>, inverse: &ExportedInverse) -> String {
     let precision = subject.precision();
     let number = |value: f64| literal(precision, value);
     let count = inverse.arguments.len() + 1;

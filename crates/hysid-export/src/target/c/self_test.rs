@@ -1,13 +1,13 @@
 //! A program that runs the test vectors.
 
 use crate::program::Precision;
-use crate::subject::Subject;
+use crate::subject::ExportSubject;
 use crate::target::c::inverse_test::inverse_test;
 use crate::target::template::filled;
 use crate::vectors::Action;
 
 /// The text of the program.
-pub(super) fn self_test(subject: &Subject<'_>) -> String {
+pub(super) fn self_test(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let upper = name.to_uppercase();
     let count = subject.argument_names().len();

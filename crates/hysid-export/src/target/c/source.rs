@@ -9,7 +9,7 @@ use crate::program::expression::{Binary, Unary};
 use crate::program::unused::used_arrays;
 use crate::program::uses::Uses;
 use crate::program::{Array, Declaration, Precision, Program, Storage};
-use crate::subject::Subject;
+use crate::subject::ExportSubject;
 use crate::target::c::elementary;
 use crate::target::printer::{Binding, Language, Printer, Syntax, rows_of_numbers};
 use crate::target::template::filled;
@@ -24,7 +24,7 @@ pub(super) const EXACT: &str = include_str!("exact.c.txt");
 const FUSED: &str = include_str!("fused.c.txt");
 
 /// The text of the source file.
-pub(super) fn source(subject: &Subject<'_>) -> String {
+pub(super) fn source(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let (step, tangent) = (subject.program(), subject.tangent());
     let c = C { precision: subject.precision(), arguments: subject.argument_names() };
@@ -66,7 +66,7 @@ real {name}_half_width(const {name}_model *model)
 }
 
 /// True if the code has products and sums in one rounding.
-pub(super) fn is_fused(subject: &Subject<'_>) -> bool {
+pub(super) fn is_fused(subject: &ExportSubject<'_>) -> bool {
     subject.precision() == Precision::Double && Uses::of(&[subject.program()]).fused
 }
 

@@ -7,10 +7,14 @@ use std::process::{Command, Stdio};
 
 use crate::error::Error;
 use crate::options::FmiVersion;
-use crate::subject::File;
+use crate::subject::ExportFile;
 
 /// The library with its path in the FMU; `None` without a C compiler. `sources` are the C files.
-pub(super) fn binary(name: &str, version: FmiVersion, sources: &[File]) -> Result<Option<File>, Error> {
+pub(super) fn binary(
+    name: &str,
+    version: FmiVersion,
+    sources: &[ExportFile],
+) -> Result<Option<ExportFile>, Error> {
     let Some(compiler) = compiler() else { return Ok(None) };
     let folder = tempfile::tempdir().map_err(|error| Error::Compiler(error.to_string()))?;
     for source in sources {
@@ -34,7 +38,7 @@ pub(super) fn binary(name: &str, version: FmiVersion, sources: &[File]) -> Resul
     }
     let content =
         fs::read(folder.path().join(&library)).map_err(|error| Error::Compiler(error.to_string()))?;
-    Ok(Some(File::new(format!("binaries/{}/{library}", platform(version)), content)))
+    Ok(Some(ExportFile::new(format!("binaries/{}/{library}", platform(version)), content)))
 }
 
 /// The compiler of the environment variable `CC`, or the first that this machine has.

@@ -6,7 +6,7 @@ use hysid_core::data::unit;
 
 use crate::description::Argument;
 use crate::options::FmiVersion;
-use crate::subject::Subject;
+use crate::subject::ExportSubject;
 use crate::target::template::filled;
 
 /// Value references: the time has 0, then come the inputs, in the order of the step's arguments without the time step.
@@ -21,14 +21,14 @@ pub(super) const HALF_WIDTH: usize = 1001;
 pub(super) const MODEL_OUTPUT: usize = 1002;
 pub(super) const REACH: usize = 1003;
 
-struct Variable {
+struct FmuVariable {
     name: String,
     unit: Option<String>,
     description: String,
 }
 
 /// Values of the inputs before they are set: within the trained ranges, next to 0.
-pub(super) fn start_values(subject: &Subject<'_>) -> Vec<f64> {
+pub(super) fn start_values(subject: &ExportSubject<'_>) -> Vec<f64> {
     let ranges = subject.model().trained_ranges();
     let of = |argument: &Argument| match *argument {
         Argument::Input(input) => {
@@ -47,22 +47,22 @@ const REACHES: &str = "whether the wanted output was reached: 0 reached, 1 beyon
                        it, -1 invalid time step";
 
 /// The inputs, the outputs and, if there is a band, half its width.
-fn variables(subject: &Subject<'_>) -> Vec<Variable> {
+fn variables(subject: &ExportSubject<'_>) -> Vec<FmuVariable> {
     let names = subject.names();
     let time = names.time.as_deref().and_then(unit::of_column);
     let of = |argument: &Argument| match *argument {
-        Argument::Input(0) if subject.inverse().is_some() => Some(Variable {
+        Argument::Input(0) if subject.inverse().is_some() => Some(FmuVariable {
             name: format!("wanted {}", names.output),
             unit: unit::of_column(&names.output),
             description: "wanted output".into(),
         }),
-        Argument::Input(input) => Some(Variable {
+        Argument::Input(input) => Some(FmuVariable {
             name: names.inputs[input].clone(),
             unit: unit::of_column(&names.inputs[input]),
             description: format!("input {}", input + 1),
         }),
         Argument::TimeStep => None,
-        Argument::Rate => Some(Variable {
+        Argument::Rate => Some(FmuVariable {
             name: format!("rate of {}", names.inputs[0]),
             unit: match (unit::of_column(&names.inputs[0]), &time) {
                 (Some(of), Some(time)) => Some(format!("{of}/{time}")),
@@ -71,24 +71,24 @@ fn variables(subject: &Subject<'_>) -> Vec<Variable> {
             description: "rate of the first input per unit of time".into(),
         }),
     };
-    let mut all: Vec<Variable> = subject.description().arguments.iter().filter_map(of).collect();
+    let mut all: Vec<FmuVariable> = subject.description().arguments.iter().filter_map(of).collect();
     if subject.inverse().is_some() {
-        all.push(Variable {
+        all.push(FmuVariable {
             name: names.inputs[0].clone(),
             unit: unit::of_column(&names.inputs[0]),
             description: "input 1, for which the model has the wanted output or the nearest".into(),
         });
     }
-    all.push(Variable {
+    all.push(FmuVariable {
         name: names.output.clone(),
         unit: unit::of_column(&names.output),
         description: "output".into(),
     });
     if subject.inverse().is_some() {
-        all.push(Variable { name: "reach".into(), unit: None, description: REACHES.into() });
+        all.push(FmuVariable { name: "reach".into(), unit: None, description: REACHES.into() });
     }
     if subject.half_width().is_some() {
-        all.push(Variable {
+        all.push(FmuVariable {
             name: format!("half width of {}", names.output),
             unit: unit::of_column(&names.output),
             description: "half the width of the prediction band".into(),
@@ -103,13 +103,13 @@ fn variables(subject: &Subject<'_>) -> Vec<Variable> {
     all
 }
 
-pub(super) fn variable_names(subject: &Subject<'_>) -> (Vec<String>, Vec<String>) {
+pub(super) fn variable_names(subject: &ExportSubject<'_>) -> (Vec<String>, Vec<String>) {
     let inputs = start_values(subject).len();
     let mut names = variables(subject).into_iter().map(|variable| variable.name);
     (names.by_ref().take(inputs).collect(), names.collect())
 }
 
-fn outputs(subject: &Subject<'_>) -> Vec<usize> {
+fn outputs(subject: &ExportSubject<'_>) -> Vec<usize> {
     let of_inverse = subject.inverse().map(|_| [MODEL_OUTPUT, REACH]);
     [OUTPUT]
         .into_iter()
@@ -118,14 +118,14 @@ fn outputs(subject: &Subject<'_>) -> Vec<usize> {
         .collect()
 }
 
-pub(super) fn model_description(subject: &Subject<'_>, version: FmiVersion, token: &str) -> String {
+pub(super) fn model_description(subject: &ExportSubject<'_>, version: FmiVersion, token: &str) -> String {
     match version {
         FmiVersion::Three => version_three(subject, token),
         FmiVersion::Two => version_two(subject, token),
     }
 }
 
-fn version_three(subject: &Subject<'_>, token: &str) -> String {
+fn version_three(subject: &ExportSubject<'_>, token: &str) -> String {
     let variables = variables(subject);
     let mut lines = vec![
         "    <Float64 name=\"time\" valueReference=\"0\" causality=\"independent\" variability=\"continuous\"/>"
@@ -170,7 +170,7 @@ fn version_three(subject: &Subject<'_>, token: &str) -> String {
     )
 }
 
-fn version_two(subject: &Subject<'_>, token: &str) -> String {
+fn version_two(subject: &ExportSubject<'_>, token: &str) -> String {
     let variables = variables(subject);
     let name = subject.name();
     let lines: Vec<String> = variables
@@ -219,7 +219,7 @@ fn version_two(subject: &Subject<'_>, token: &str) -> String {
 }
 
 /// `sources/buildDescription.xml` of version 3.
-pub(super) fn build_description(subject: &Subject<'_>) -> String {
+pub(super) fn build_description(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let inverse = match subject.inverse() {
         None => String::new(),
@@ -229,7 +229,7 @@ pub(super) fn build_description(subject: &Subject<'_>) -> String {
 }
 
 /// Causality, variability and start value of each variable.
-fn kinds(subject: &Subject<'_>) -> Vec<String> {
+fn kinds(subject: &ExportSubject<'_>) -> Vec<String> {
     let input = |start: &f64| format!("causality=\"input\" variability=\"continuous\" start=\"{start:?}\"");
     let mut kinds: Vec<String> = start_values(subject).iter().map(input).collect();
     let output = || "causality=\"output\" variability=\"continuous\" initial=\"calculated\"".to_string();
@@ -237,16 +237,16 @@ fn kinds(subject: &Subject<'_>) -> Vec<String> {
     kinds
 }
 
-fn reference(subject: &Subject<'_>, index: usize) -> usize {
+fn reference(subject: &ExportSubject<'_>, index: usize) -> usize {
     let inputs = start_values(subject).len();
     if index < inputs { FIRST_INPUT + index } else { outputs(subject)[index - inputs] }
 }
 
-fn unit_of(variable: &Variable) -> String {
+fn unit_of(variable: &FmuVariable) -> String {
     variable.unit.as_ref().map_or(String::new(), |unit| format!(" unit=\"{}\"", escaped(unit)))
 }
 
-fn units(variables: &[Variable]) -> String {
+fn units(variables: &[FmuVariable]) -> String {
     let units: BTreeSet<&String> = variables.iter().filter_map(|variable| variable.unit.as_ref()).collect();
     if units.is_empty() {
         return String::new();
@@ -257,7 +257,7 @@ fn units(variables: &[Variable]) -> String {
 }
 
 /// The facts about the model, in a line.
-fn summary(subject: &Subject<'_>) -> String {
+fn summary(subject: &ExportSubject<'_>) -> String {
     let facts: Vec<String> = subject.facts().iter().map(|(fact, text)| format!("{fact}: {text}")).collect();
     let what = if subject.inverse().is_some() { "The inverse of a model" } else { "A model" };
     escaped(&format!("{what} of hysteresis, written by Hysid. {}", facts.join("; ")))

@@ -1,11 +1,11 @@
 //! A program that runs the test vectors with FMPy.
 
 use crate::description::Argument;
-use crate::inverse::Inverse;
-use crate::subject::Subject;
+use crate::inverse::ExportedInverse;
+use crate::subject::ExportSubject;
 use crate::target::template::filled;
 
-pub(super) fn self_test(subject: &Subject<'_>) -> String {
+pub(super) fn self_test(subject: &ExportSubject<'_>) -> String {
     let arguments = &subject.description().arguments;
     let time_step = arguments.iter().position(|argument| *argument == Argument::TimeStep);
     let inputs: Vec<String> = (0..arguments.len())
@@ -26,7 +26,7 @@ pub(super) fn self_test(subject: &Subject<'_>) -> String {
 }
 
 /// The text of the program for a unit of an inverse.
-pub(super) fn of_inverse(subject: &Subject<'_>, inverse: &Inverse) -> String {
+pub(super) fn of_inverse(subject: &ExportSubject<'_>, inverse: &ExportedInverse) -> String {
     let time_step = inverse.arguments.iter().position(|argument| *argument == Argument::TimeStep);
     let (low, high) = subject.model().trained_ranges().output;
     filled(

@@ -5,14 +5,14 @@
 //! before.
 
 use crate::description::Argument;
-use crate::inverse::Inverse;
+use crate::inverse::ExportedInverse;
 use crate::options::FmiVersion;
-use crate::subject::Subject;
+use crate::subject::ExportSubject;
 use crate::target::fmu::description::{FIRST_INPUT, HALF_WIDTH, MODEL_OUTPUT, OUTPUT, REACH, start_values};
 use crate::target::template::filled;
 
 /// The text of `fmi3.c` or `fmi2.c`.
-pub(super) fn wrapper(subject: &Subject<'_>, version: FmiVersion, token: &str) -> String {
+pub(super) fn wrapper(subject: &ExportSubject<'_>, version: FmiVersion, token: &str) -> String {
     let functions = match version {
         FmiVersion::Three => include_str!("fmi3.c.txt"),
         FmiVersion::Two => include_str!("fmi2.c.txt"),
@@ -42,7 +42,7 @@ pub(super) fn wrapper(subject: &Subject<'_>, version: FmiVersion, token: &str) -
 }
 
 /// The model as `instance.c.txt` uses it.
-fn of_model(subject: &Subject<'_>) -> String {
+fn of_model(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let half_width = match subject.half_width() {
         None => String::new(),
@@ -59,7 +59,7 @@ fn of_model(subject: &Subject<'_>) -> String {
 }
 
 /// The inverse of the model as `instance.c.txt` uses it.
-fn of_inverse(subject: &Subject<'_>, inverse: &Inverse) -> String {
+fn of_inverse(subject: &ExportSubject<'_>, inverse: &ExportedInverse) -> String {
     let name = subject.name();
     let half_width = match subject.half_width() {
         None => String::new(),

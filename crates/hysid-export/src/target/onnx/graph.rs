@@ -4,14 +4,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::program::expression::{
-    Binary, Comparison, Real, RealVariable, Truth, Unary, Whole, WholeVariable,
-};
+use crate::program::expression::{Binary, Real, RealVariable, Relation, Truth, Unary, Whole, WholeVariable};
 use crate::program::{Array, Program, Statement, Storage, every};
 use crate::target::onnx::lanes;
-use crate::target::onnx::messages::{Attribute, BOOL, DOUBLE, Graph, INT64, Node, Tensor, ValueInfo};
+use crate::target::onnx::messages::{Attribute, BOOL, DOUBLE, Graph, INT64, OnnxNode, Tensor, ValueInfo};
 
-/// Loops of at most so many passes are unrolled.
+/// Most passes of a loop that is unrolled.
 const UNROLLED: i64 = 64;
 
 /// Names of the graph's inputs and outputs.
@@ -55,7 +53,7 @@ pub(super) fn step(program: &Program, arguments: &[String], with_slope: bool) ->
     Graph { name: "step".into(), initializers, inputs, outputs, nodes }
 }
 
-fn names_read<'n>(nodes: &'n [Node], names: &mut BTreeSet<&'n str>) {
+fn names_read<'n>(nodes: &'n [OnnxNode], names: &mut BTreeSet<&'n str>) {
     for node in nodes {
         names.extend(node.inputs.iter().map(String::as_str));
         let graphs = node.attributes.iter().filter_map(|attribute| attribute.graph.as_ref());
@@ -79,7 +77,7 @@ fn row_of_wholes(name: &str, values: &[i64]) -> Tensor {
 
 /// Names of the present values.
 #[derive(Clone, Default)]
-struct Values {
+struct GraphValues {
     reals: BTreeMap<RealVariable, String>,
     wholes: BTreeMap<WholeVariable, String>,
     arrays: BTreeMap<Array, String>,
@@ -91,7 +89,7 @@ struct Values {
 
 /// A value that a subgraph changes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Changed {
+enum ChangedValue {
     Real(RealVariable),
     Whole(WholeVariable),
     Array(Array),
@@ -101,12 +99,12 @@ struct Compiler<'a> {
     program: &'a Program,
     arguments: &'a [String],
     /// Nodes of the graphs that are open, outermost first.
-    nodes: Vec<Vec<Node>>,
+    nodes: Vec<Vec<OnnxNode>>,
     initializers: Vec<Tensor>,
     /// Constants by their bits, whole ones by their value.
     constants: BTreeMap<(bool, u64), String>,
     names: usize,
-    values: Values,
+    values: GraphValues,
 }
 
 impl<'a> Compiler<'a> {
@@ -118,7 +116,7 @@ impl<'a> Compiler<'a> {
             initializers: Vec::new(),
             constants: BTreeMap::new(),
             names: 0,
-            values: Values::default(),
+            values: GraphValues::default(),
         };
         for (index, declaration) in program.arrays.iter().enumerate() {
             let values = match &declaration.storage {
@@ -152,7 +150,7 @@ impl<'a> Compiler<'a> {
 
     fn add(&mut self, operation: &str, inputs: &[&str], outputs: Vec<String>, attributes: Vec<Attribute>) {
         let inputs = inputs.iter().map(ToString::to_string).collect();
-        let node = Node { inputs, outputs, operation: operation.into(), attributes };
+        let node = OnnxNode { inputs, outputs, operation: operation.into(), attributes };
         if let Some(nodes) = self.nodes.last_mut() {
             nodes.push(node);
         }
@@ -319,7 +317,7 @@ impl<'a> Compiler<'a> {
             }
         }
         let arrays = std::mem::take(&mut self.values.arrays);
-        self.values = Values { arrays, ..before };
+        self.values = GraphValues { arrays, ..before };
         self.values.reals.extend(sums);
     }
 
@@ -415,58 +413,58 @@ impl<'a> Compiler<'a> {
     }
 
     /// The values from outside that statements change.
-    fn changed(&self, statements: &[Statement]) -> Vec<Changed> {
+    fn changed(&self, statements: &[Statement]) -> Vec<ChangedValue> {
         let mut all = Vec::new();
         every(statements, &mut |statement| match statement {
-            Statement::Assign(variable, _) => all.push(Changed::Real(*variable)),
-            Statement::AssignWhole(variable, _) => all.push(Changed::Whole(*variable)),
-            Statement::Set(array, _, _) => all.push(Changed::Array(*array)),
+            Statement::Assign(variable, _) => all.push(ChangedValue::Real(*variable)),
+            Statement::AssignWhole(variable, _) => all.push(ChangedValue::Whole(*variable)),
+            Statement::Set(array, _, _) => all.push(ChangedValue::Array(*array)),
             _ => {}
         });
         all.retain(|value| match value {
-            Changed::Real(variable) => self.values.reals.contains_key(variable),
-            Changed::Whole(variable) => self.values.wholes.contains_key(variable),
-            Changed::Array(_) => true,
+            ChangedValue::Real(variable) => self.values.reals.contains_key(variable),
+            ChangedValue::Whole(variable) => self.values.wholes.contains_key(variable),
+            ChangedValue::Array(_) => true,
         });
         all.sort_unstable();
         all.dedup();
         all
     }
 
-    fn present(&self, value: Changed) -> String {
+    fn present(&self, value: ChangedValue) -> String {
         match value {
-            Changed::Real(variable) => self.values.reals[&variable].clone(),
-            Changed::Whole(variable) => self.values.wholes[&variable].clone(),
-            Changed::Array(array) => self.values.arrays[&array].clone(),
+            ChangedValue::Real(variable) => self.values.reals[&variable].clone(),
+            ChangedValue::Whole(variable) => self.values.wholes[&variable].clone(),
+            ChangedValue::Array(array) => self.values.arrays[&array].clone(),
         }
     }
 
-    fn replace(&mut self, value: Changed, name: String) {
+    fn replace(&mut self, value: ChangedValue, name: String) {
         match value {
-            Changed::Real(variable) => {
+            ChangedValue::Real(variable) => {
                 self.values.reals.insert(variable, name);
             }
-            Changed::Whole(variable) => {
+            ChangedValue::Whole(variable) => {
                 self.values.wholes.insert(variable, name);
                 self.values.known.remove(&variable);
             }
-            Changed::Array(array) => {
+            ChangedValue::Array(array) => {
                 self.values.arrays.insert(array, name);
             }
         }
     }
 
-    fn info(&self, value: Changed, name: &str) -> ValueInfo {
+    fn info(&self, value: ChangedValue, name: &str) -> ValueInfo {
         match value {
-            Changed::Real(_) => ValueInfo::scalar(name, DOUBLE),
-            Changed::Whole(_) => ValueInfo::scalar(name, INT64),
-            Changed::Array(array) => ValueInfo::row(name, self.program.declaration(array).storage.len()),
+            ChangedValue::Real(_) => ValueInfo::scalar(name, DOUBLE),
+            ChangedValue::Whole(_) => ValueInfo::scalar(name, INT64),
+            ChangedValue::Array(array) => ValueInfo::row(name, self.program.declaration(array).storage.len()),
         }
     }
 
     /// The outputs of a subgraph: each is made inside it.
-    fn outputs(&mut self, changed: &[Changed]) -> Vec<ValueInfo> {
-        let one = |value: &Changed| {
+    fn outputs(&mut self, changed: &[ChangedValue]) -> Vec<ValueInfo> {
+        let one = |value: &ChangedValue| {
             let inside = self.present(*value);
             let name = self.node("Identity", &[&inside]);
             self.info(*value, &name)
@@ -669,10 +667,10 @@ impl<'a> Compiler<'a> {
     }
 
     fn truth(&mut self, condition: &Truth) -> String {
-        let operation = |comparison: &Comparison| match comparison {
-            Comparison::Below => "Less",
-            Comparison::AtMost => "LessOrEqual",
-            Comparison::Equal => "Equal",
+        let operation = |comparison: &Relation| match comparison {
+            Relation::Below => "Less",
+            Relation::AtMost => "LessOrEqual",
+            Relation::Equal => "Equal",
         };
         match condition {
             Truth::Real(comparison, a, b) => {

@@ -1,6 +1,6 @@
 //! Which loops can be computed for all numbers at once.
 
-use crate::program::expression::{Binary, Part, Real, RealVariable, Whole, WholeVariable};
+use crate::program::expression::{AnyExpression, Binary, Real, RealVariable, Whole, WholeVariable};
 use crate::program::uses::Uses;
 use crate::program::{Array, Statement};
 
@@ -32,7 +32,7 @@ fn sums_are_apart(body: &[Statement]) -> bool {
     sums.iter().all(|sum| is_distinct(sum) && !body.iter().any(|statement| reads(statement, *sum)))
 }
 
-/// What a sum adds: `E` of `v + E` or `E + v`, and `a * b` of `a * b + v`.
+/// Addend of a sum: `E` of `v + E` or `E + v`, and `a * b` of `a * b + v`.
 pub(super) fn addend(variable: RealVariable, value: &Real) -> Option<Real> {
     let is_it = |value: &Real| *value == Real::Variable(variable);
     match value {
@@ -121,16 +121,16 @@ impl Lanes {
     fn reads_only_its_own(&self, statement: &Statement) -> bool {
         match statement {
             Statement::Let(_, value) | Statement::Assign(_, value) | Statement::Set(_, _, value) => {
-                self.reads_own(Part::Real(value))
+                self.reads_own(AnyExpression::Real(value))
             }
             _ => true,
         }
     }
 
     /// True if each element of an array that a pass writes is the one that this pass writes.
-    fn reads_own(&self, part: Part<'_>) -> bool {
+    fn reads_own(&self, part: AnyExpression<'_>) -> bool {
         let is_own = match part {
-            Part::Real(Real::Element(array, index)) => {
+            AnyExpression::Real(Real::Element(array, index)) => {
                 self.written.iter().all(|(written, place)| written != array || place == &**index)
             }
             _ => true,

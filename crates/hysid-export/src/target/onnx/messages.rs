@@ -8,7 +8,7 @@ pub(super) const INT64: i32 = 7;
 pub(super) const DOUBLE: i32 = 11;
 
 #[derive(Clone, PartialEq, Message)]
-pub(super) struct Model {
+pub(super) struct OnnxModel {
     #[prost(int64, tag = "1")]
     pub ir_version: i64,
     #[prost(string, tag = "2")]
@@ -22,7 +22,7 @@ pub(super) struct Model {
     #[prost(message, repeated, tag = "8")]
     pub opset_import: Vec<OperatorSet>,
     #[prost(message, repeated, tag = "14")]
-    pub metadata: Vec<Entry>,
+    pub metadata: Vec<OnnxEntry>,
 }
 
 #[derive(Clone, PartialEq, Message)]
@@ -34,7 +34,7 @@ pub(super) struct OperatorSet {
 }
 
 #[derive(Clone, PartialEq, Message)]
-pub(super) struct Entry {
+pub(super) struct OnnxEntry {
     #[prost(string, tag = "1")]
     pub key: String,
     #[prost(string, tag = "2")]
@@ -44,7 +44,7 @@ pub(super) struct Entry {
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct Graph {
     #[prost(message, repeated, tag = "1")]
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<OnnxNode>,
     #[prost(string, tag = "2")]
     pub name: String,
     #[prost(message, repeated, tag = "5")]
@@ -56,7 +56,7 @@ pub(super) struct Graph {
 }
 
 #[derive(Clone, PartialEq, Message)]
-pub(super) struct Node {
+pub(super) struct OnnxNode {
     #[prost(string, repeated, tag = "1")]
     pub inputs: Vec<String>,
     #[prost(string, repeated, tag = "2")]
@@ -125,17 +125,17 @@ pub(super) struct TensorType {
     #[prost(int32, tag = "1")]
     pub data_type: i32,
     #[prost(message, optional, tag = "2")]
-    pub shape: Option<Shape>,
+    pub shape: Option<OnnxShape>,
 }
 
 #[derive(Clone, PartialEq, Message)]
-pub(super) struct Shape {
+pub(super) struct OnnxShape {
     #[prost(message, repeated, tag = "1")]
-    pub dims: Vec<Dimension>,
+    pub dims: Vec<OnnxDimension>,
 }
 
 #[derive(Clone, PartialEq, Message)]
-pub(super) struct Dimension {
+pub(super) struct OnnxDimension {
     #[prost(int64, optional, tag = "1")]
     pub value: Option<i64>,
     #[prost(string, optional, tag = "2")]
@@ -149,16 +149,16 @@ impl ValueInfo {
 
     pub fn row(name: &str, length: usize) -> Self {
         let value = Some(i64::try_from(length).unwrap_or(i64::MAX));
-        Self::of(name, DOUBLE, vec![Dimension { value, name: None }])
+        Self::of(name, DOUBLE, vec![OnnxDimension { value, name: None }])
     }
 
     /// A number for each row of a record.
     pub fn record(name: &str) -> Self {
-        Self::of(name, DOUBLE, vec![Dimension { value: None, name: Some("rows".into()) }])
+        Self::of(name, DOUBLE, vec![OnnxDimension { value: None, name: Some("rows".into()) }])
     }
 
-    fn of(name: &str, data_type: i32, dims: Vec<Dimension>) -> Self {
-        let tensor = Some(TensorType { data_type, shape: Some(Shape { dims }) });
+    fn of(name: &str, data_type: i32, dims: Vec<OnnxDimension>) -> Self {
+        let tensor = Some(TensorType { data_type, shape: Some(OnnxShape { dims }) });
         Self { name: name.into(), kind: Some(Type { tensor }), doc_string: String::new() }
     }
 }

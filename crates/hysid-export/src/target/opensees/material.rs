@@ -1,18 +1,18 @@
 //! The C++ class.
 
 use crate::description::Argument;
-use crate::subject::Subject;
+use crate::subject::ExportSubject;
 use crate::target::template::filled;
 
 /// The header file.
-pub(super) fn header(subject: &Subject<'_>) -> String {
+pub(super) fn header(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let upper = name.to_uppercase();
     filled(include_str!("material.h.txt"), &[("NAME", name), ("UPPER", &upper)])
 }
 
 /// The source file.
-pub(super) fn source(subject: &Subject<'_>) -> String {
+pub(super) fn source(subject: &ExportSubject<'_>) -> String {
     let name = subject.name();
     let upper = name.to_uppercase();
     let given = |zero: bool| -> String {

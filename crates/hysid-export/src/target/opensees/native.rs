@@ -19,7 +19,7 @@ pub(super) struct Native {
     arguments: Vec<(&'static str, f64)>,
     /// Whole numbers behind them.
     iterations: Option<u32>,
-    /// What is added to the input and to the stress.
+    /// Constants added to the input and to the stress.
     origin: f64,
     offset: f64,
 }
@@ -79,7 +79,7 @@ impl Native {
         self.command
     }
 
-    /// What the constants mean.
+    /// Explains the constants.
     pub fn constants(&self) -> String {
         let strain = if self.origin == 0.0 { "x".into() } else { format!("x - {:?}", self.origin) };
         format!("Its strain is `{strain}` and its stress is `y - {:?}`.", self.offset)
@@ -110,7 +110,7 @@ impl Native {
         )
     }
 
-    /// Tolerance and iterations, where the command asks for them.
+    /// Tolerance and iterations, where the command takes them.
     fn last(&self, name: &str, before: &str) -> (String, String) {
         match self.iterations {
             None => (String::new(), String::new()),

@@ -2,7 +2,7 @@
 
 use hysid::Model;
 use hysid_core::elementary::exp;
-use hysid_core::law::hysteretic_dynamics::{Dynamics, Element, Hold, Mode, Shape};
+use hysid_core::law::hysteretic_dynamics::{Dynamics, Element, ElementShape, Hold, Mode};
 use hysid_core::law::hysteretic_oscillator::HystereticOscillator;
 use hysid_core::law::hysteretic_state_space::HystereticStateSpace;
 use hysid_core::law::{Classical, Law as _};
@@ -10,9 +10,9 @@ use hysid_core::model::Predictor;
 
 use super::data;
 
-struct Numbers(u64);
+struct RandomNumbers(u64);
 
-impl Numbers {
+impl RandomNumbers {
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
@@ -23,8 +23,8 @@ impl Numbers {
     }
 }
 
-fn element(numbers: &mut Numbers, shape: Shape, modes: usize) -> Element {
-    let Shape { stops, states, neurons, deteriorates } = shape;
+fn element(numbers: &mut RandomNumbers, shape: ElementShape, modes: usize) -> Element {
+    let ElementShape { stops, states, neurons, deteriorates } = shape;
     Element {
         of_displacements: numbers.many(modes, 1.0),
         of_velocities: numbers.many(modes, 0.3),
@@ -53,9 +53,15 @@ fn element(numbers: &mut Numbers, shape: Shape, modes: usize) -> Element {
 }
 
 /// Modes of 4, 11, ... radians per unit of time, the first lightly damped, the second one that creeps.
-fn dynamics(modes: usize, elements: usize, shape: Shape, hold: Hold, begins_under_input: bool) -> Dynamics {
-    let mut numbers = Numbers((10 * modes + elements) as u64);
-    let mode = |i: usize, numbers: &mut Numbers| Mode {
+fn dynamics(
+    modes: usize,
+    elements: usize,
+    shape: ElementShape,
+    hold: Hold,
+    begins_under_input: bool,
+) -> Dynamics {
+    let mut numbers = RandomNumbers((10 * modes + elements) as u64);
+    let mode = |i: usize, numbers: &mut RandomNumbers| Mode {
         frequency: 4.0 + 7.0 * i as f64,
         damping: [0.06, 1.5][i % 2],
         gain: 1.0 + 0.5 * numbers.next(),
@@ -76,9 +82,9 @@ fn dynamics(modes: usize, elements: usize, shape: Shape, hold: Hold, begins_unde
 
 /// Both laws, with all variants that differ in code. The model gives them its ranges.
 pub fn variants(of: &Model) -> Vec<(String, Model)> {
-    let shape = |stops, states, neurons| Shape { stops, states, neurons, deteriorates: false };
+    let shape = |stops, states, neurons| ElementShape { stops, states, neurons, deteriorates: false };
     let deteriorating =
-        |stops, states, neurons| Shape { deteriorates: true, ..shape(stops, states, neurons) };
+        |stops, states, neurons| ElementShape { deteriorates: true, ..shape(stops, states, neurons) };
     let oscillator =
         |dynamics| Classical::HystereticOscillator(HystereticOscillator(dynamics).validated().unwrap());
     let state_space =

@@ -11,7 +11,7 @@ use hysid_export::{Error, InverseOptions, Options, Precision, Target, export};
 use serde_json::json;
 use tempfile::TempDir;
 
-use super::case::{Case, MODELS, NAME, written};
+use super::case::{MODELS, NAME, StepCase, written};
 use super::tools::{gcc, succeeds, tool};
 use crate::models::{data, path, time_step};
 
@@ -111,7 +111,7 @@ fn outputs_equal_those_of_the_library_to_the_last_bit() {
     let rows = std::env::var("HYSID_ROWS").map_or(5_000, |rows| rows.parse().unwrap());
     let Some(compiler) = compilers().into_iter().next() else { return };
     for (name, model) in MODELS.iter() {
-        let case = Case::of(model, rows);
+        let case = StepCase::of(model, rows);
         let folder = written(model, Target::C, &Options::named(NAME));
         fs::write(folder.path().join("driver.c"), driver(case.arguments.len(), OUTPUTS)).unwrap();
         let files = ["actuator.c", "driver.c", "-lm", "-o", "driver"];
@@ -155,7 +155,7 @@ fn soak(kinds: &[Argument]) -> String {
         .replace("@given@", &given)
 }
 
-/// Runs so many steps of a program with all sanitizers.
+/// Runs a number of steps of a program with all sanitizers.
 pub fn must_survive(name: &str, compiler: &str, folder: &TempDir, sources: &[&str], steps: &str) {
     let sanitizers = ["-O1", "-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
     let mut command = Command::new(compiler);
@@ -173,7 +173,7 @@ fn random_steps_survive_the_sanitizers() {
     let steps = std::env::var("HYSID_SOAK_STEPS").unwrap_or_else(|_| "20000".into());
     for (name, model) in MODELS.iter() {
         let folder = written(model, Target::C, &Options::named(NAME));
-        fs::write(folder.path().join("soak.c"), soak(&Case::of(model, 1).arguments)).unwrap();
+        fs::write(folder.path().join("soak.c"), soak(&StepCase::of(model, 1).arguments)).unwrap();
         must_survive(name, &compiler, &folder, &["actuator.c", "soak.c"], &steps);
         println!("{name}: {steps} steps");
     }

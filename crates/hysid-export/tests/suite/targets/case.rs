@@ -19,14 +19,14 @@ pub static MODELS: LazyLock<Vec<(String, Model)>> = LazyLock::new(all);
 pub const NAME: &str = "actuator";
 
 /// The arguments of steps, and the outputs of the library.
-pub struct Case {
+pub struct StepCase {
     pub arguments: Vec<Argument>,
     pub rows: Vec<Vec<f64>>,
     pub expected: Vec<f64>,
 }
 
-impl Case {
-    /// A path of so many rows, with rates by backward differences.
+impl StepCase {
+    /// A path of `rows` rows, with rates by backward differences.
     pub fn of(model: &Model, rows: usize) -> Self {
         let arguments = Description::of(model, RateSource::Backward, Precision::Double).arguments;
         let mut stepper = model.stepper();
@@ -78,7 +78,7 @@ impl Case {
 
 /// Runs a program that reads the rows of a case in a folder and writes outputs there, which must be the library's but for
 /// roundings.
-pub fn must_agree(name: &str, case: &Case, folder: &TempDir, program: &mut Command) {
+pub fn must_agree(name: &str, case: &StepCase, folder: &TempDir, program: &mut Command) {
     fs::write(folder.path().join("rows"), case.bytes()).unwrap();
     succeeds(program.current_dir(folder));
     let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use hysid_export::{FmiVersion, Options, Target};
 
-use super::case::{Case, MODELS, NAME, must_agree, written};
+use super::case::{MODELS, NAME, StepCase, must_agree, written};
 use super::tools::{python, succeeds, tool};
 
 /// Validates a unit, and reads rows of arguments in binary.
@@ -28,7 +28,7 @@ fn importers_find_nothing_wrong_and_outputs_equal_those_of_the_library() {
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(text.starts_with("0 of "), "{name}, {fmi:?}: {text}");
 
-        let case = Case::of(model, ROWS);
+        let case = StepCase::of(model, ROWS);
         let driver = format!("{OPENED}{DRIVER}");
         let arguments = ["-c", &driver, &case.arguments.len().to_string(), &case.has_time().to_string()];
         // The importer adds up the time steps, whose roundings reach rates.

@@ -7,7 +7,7 @@ use std::process::Command;
 use hysid_export::{Options, Target};
 
 use super::c::{OUTPUTS, STRICT, compilers, driver};
-use super::case::{Case, MODELS, NAME, written};
+use super::case::{MODELS, NAME, StepCase, written};
 use super::tools::succeeds;
 
 /// Kinds of models whose kernels fuse, and one that has some of them as members.
@@ -37,7 +37,7 @@ fn ways() -> Vec<&'static [&'static str]> {
 fn outputs_do_not_depend_on_the_instruction() {
     for kind in FUSING {
         let (name, model) = MODELS.iter().find(|(name, _)| name.starts_with(kind)).unwrap();
-        let case = Case::of(model, 2000);
+        let case = StepCase::of(model, 2000);
         let folder = written(model, Target::C, &Options::named(NAME));
         fs::write(folder.path().join("driver.c"), driver(case.arguments.len(), OUTPUTS)).unwrap();
         let input = folder.path().join("rows");

@@ -6,7 +6,7 @@ use std::process::Command;
 use hysid_export::{Options, Target};
 
 use super::c::compilers;
-use super::case::{Case, MODELS, NAME, written};
+use super::case::{MODELS, NAME, StepCase, written};
 use super::tools::{gcc, python, succeeds};
 
 /// A program that makes steps with NaN and infinite arguments between others, which must not notice them, and trials after
@@ -55,7 +55,7 @@ fn program(arguments: usize) -> String {
 fn invalid_arguments_change_nothing_and_slopes_after_short_steps_are_finite() {
     let Some(compiler) = gcc() else { return };
     for (label, model) in MODELS.iter() {
-        let arguments = Case::of(model, 1).arguments.len();
+        let arguments = StepCase::of(model, 1).arguments.len();
         let folder = written(model, Target::C, &Options::named(NAME));
         fs::write(folder.path().join("main.c"), program(arguments)).unwrap();
         println!("{label}");
@@ -69,7 +69,7 @@ fn invalid_arguments_change_nothing_and_slopes_after_short_steps_are_finite() {
 fn invalid_arguments_change_nothing_in_python() {
     let Some(python) = python("exports to Python", &["numpy"]) else { return };
     for (label, model) in MODELS.iter() {
-        let more = ", 0.01".repeat(Case::of(model, 1).arguments.len() - 1);
+        let more = ", 0.01".repeat(StepCase::of(model, 1).arguments.len() - 1);
         let folder = written(model, Target::Python, &Options::named(NAME));
         let program = format!(
             "import math, actuator

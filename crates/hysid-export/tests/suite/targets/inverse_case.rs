@@ -8,7 +8,7 @@ use hysid_export::program::Precision;
 
 use crate::models::time_step;
 
-/// What a step of an inverse gives; `None` for an invalid one.
+/// Result of a step of an inverse; `None` for an invalid one.
 pub type Given = Option<(f64, f64, Reach, usize)>;
 
 /// The arguments of the steps of an inverse, and what the library gives.

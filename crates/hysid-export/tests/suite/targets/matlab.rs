@@ -5,7 +5,7 @@ use std::process::Command;
 
 use hysid_export::{Options, Target};
 
-use super::case::{Case, MODELS, NAME, must_agree, written};
+use super::case::{MODELS, NAME, StepCase, must_agree, written};
 use super::tools::tool;
 
 /// Simulates rows of arguments in binary, and writes outputs in binary.
@@ -32,7 +32,7 @@ fn outputs_are_those_of_the_library() {
     let Some(octave) = tool("exports to MATLAB", "octave-cli", &["--version"], install) else { return };
     for (name, model) in MODELS.iter() {
         let folder = written(model, Target::Matlab, &Options::named(NAME));
-        let case = Case::of(model, ROWS);
+        let case = StepCase::of(model, ROWS);
         fs::write(folder.path().join("driver.m"), driver(case.arguments.len())).unwrap();
         let arguments = ["--no-gui", "--norc", "--quiet", "driver.m"];
         must_agree(name, &case, &folder, Command::new(&octave).args(arguments));

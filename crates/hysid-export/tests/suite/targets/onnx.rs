@@ -4,7 +4,7 @@ use std::process::Command;
 
 use hysid_export::{Options, Target};
 
-use super::case::{Case, MODELS, NAME, must_agree, written};
+use super::case::{MODELS, NAME, StepCase, must_agree, written};
 use super::tools::{python, succeeds};
 
 /// Checks the models, simulates rows of arguments in binary, and writes outputs in binary.
@@ -27,7 +27,7 @@ fn outputs_are_those_of_the_library() {
     let Some(python) = python("exports to ONNX", &["numpy", "onnx", "onnxruntime"]) else { return };
     for (name, model) in MODELS.iter() {
         let folder = written(model, Target::Onnx, &Options::named(NAME));
-        let case = Case::of(model, ROWS);
+        let case = StepCase::of(model, ROWS);
         let arguments = ["-c", DRIVER, &case.arguments.len().to_string()];
         must_agree(name, &case, &folder, Command::new(&python).args(arguments));
         succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));

@@ -11,7 +11,7 @@ use hysid_core::law::{Classical, Law as _};
 use hysid_core::model::Predictor;
 use hysid_export::{Error, Options, Target, export};
 
-use super::case::{Case, MODELS, NAME, written};
+use super::case::{MODELS, NAME, StepCase, written};
 use super::tools::{python, succeeds, tool};
 use crate::models::data;
 
@@ -44,7 +44,7 @@ fn the_class_passes_the_test_vectors() {
         let folder = written(model, Target::OpenSees, &Options::named(NAME));
         INTERFACE.iter().for_each(|(path, text)| fs::write(folder.path().join(path), text).unwrap());
         fs::write(folder.path().join("driver.cpp"), DRIVER).unwrap();
-        let has_time = Case::of(model, 1).has_time().to_string();
+        let has_time = StepCase::of(model, 1).has_time().to_string();
         let c = ["-x", "c", "-std=c99", "-ffp-contract=off", "-c", "actuator.c"];
         succeeds(Command::new(&compiler).current_dir(&folder).args(c));
         let arguments =

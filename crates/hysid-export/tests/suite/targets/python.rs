@@ -4,7 +4,7 @@ use std::process::Command;
 
 use hysid_export::{Error, Options, Precision, Target, export};
 
-use super::case::{Case, MODELS, NAME, must_agree, written};
+use super::case::{MODELS, NAME, StepCase, must_agree, written};
 use super::tools::{python, succeeds};
 
 /// Simulates rows of arguments in binary, and writes outputs in binary.
@@ -24,7 +24,7 @@ fn outputs_are_those_of_the_library() {
     for (name, model) in MODELS.iter() {
         let folder = written(model, Target::Python, &Options::named(NAME));
         succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));
-        let case = Case::of(model, ROWS);
+        let case = StepCase::of(model, ROWS);
         let arguments = ["-c", DRIVER, &case.arguments.len().to_string()];
         // Python rounds products and sums one by one, and has its own `exp` and its like.
         must_agree(name, &case, &folder, Command::new(&python).args(arguments));

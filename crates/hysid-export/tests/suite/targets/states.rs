@@ -7,7 +7,7 @@ use std::process::Command;
 use hysid::Model;
 use hysid_export::{InverseOptions, Options, Target};
 
-use super::case::{Case, MODELS, NAME, write, written};
+use super::case::{MODELS, NAME, StepCase, write, written};
 use super::tools::{at_length, gcc, succeeds};
 
 /// Models whose states have counters, and those whose loops depend on the state.
@@ -40,7 +40,7 @@ fn damaged_states_are_refused_and_forged_ones_write_nowhere_else() {
     let mut count = 0;
     for (label, model) in models() {
         let folder = written(model, Target::C, &Options::named(NAME));
-        fs::write(folder.path().join("main.c"), program(Case::of(model, 1).arguments.len())).unwrap();
+        fs::write(folder.path().join("main.c"), program(StepCase::of(model, 1).arguments.len())).unwrap();
         run(folder.path(), &["actuator.c", "main.c"]);
         println!("{label}");
         count += 1;

@@ -7,7 +7,7 @@
 use flate2::read::ZlibDecoder;
 
 use super::super::budget::{Budget, DAMAGED, too_much};
-use super::{DEEPEST, Variable};
+use super::{DEEPEST, MatVariable};
 
 const HEADER: usize = 128;
 
@@ -24,13 +24,13 @@ const NUMBERS: std::ops::RangeInclusive<u32> = 6..=15;
 const COMPLEX: u32 = 1 << 11;
 
 /// All numeric variables of a file.
-pub fn variables(bytes: &[u8], budget: Budget) -> Result<Vec<Variable>, String> {
+pub fn variables(bytes: &[u8], budget: Budget) -> Result<Vec<MatVariable>, String> {
     let order = match bytes.get(126..HEADER) {
         Some(b"IM") => Order::Little,
         Some(b"MI") => Order::Big,
         _ => return Err(DAMAGED.into()),
     };
-    let mut elements = Elements { bytes: &bytes[HEADER..], order };
+    let mut elements = MatElements { bytes: &bytes[HEADER..], order };
     let mut found = Vec::new();
     let (mut unpacked, mut left) = (0, budget.numbers());
     while let Some(element) = elements.next()? {
@@ -40,7 +40,7 @@ pub fn variables(bytes: &[u8], budget: Budget) -> Result<Vec<Variable>, String> 
             if unpacked > budget.bytes() {
                 return Err(too_much());
             }
-            let mut inner = Elements { bytes: &plain, order };
+            let mut inner = MatElements { bytes: &plain, order };
             if let Some(element) = inner.next()? {
                 collect(&element, order, None, DEEPEST, &mut left, &mut found)?;
             }
@@ -73,18 +73,18 @@ impl Order {
     }
 }
 
-struct Element<'b> {
+struct MatElement<'b> {
     kind: u32,
     bytes: &'b [u8],
 }
 
-struct Elements<'b> {
+struct MatElements<'b> {
     bytes: &'b [u8],
     order: Order,
 }
 
-impl<'b> Elements<'b> {
-    fn next(&mut self) -> Result<Option<Element<'b>>, String> {
+impl<'b> MatElements<'b> {
+    fn next(&mut self) -> Result<Option<MatElement<'b>>, String> {
         if self.bytes.is_empty() {
             return Ok(None);
         }
@@ -104,10 +104,10 @@ impl<'b> Elements<'b> {
         let bytes = self.bytes.get(start..end).ok_or(DAMAGED)?;
         // The last element may lack its padding.
         self.bytes = self.bytes.get(start.saturating_add(padded)..).unwrap_or_default();
-        Ok(Some(Element { kind, bytes }))
+        Ok(Some(MatElement { kind, bytes }))
     }
 
-    fn required(&mut self) -> Result<Element<'b>, String> {
+    fn required(&mut self) -> Result<MatElement<'b>, String> {
         self.next()?.ok_or_else(|| DAMAGED.into())
     }
 }
@@ -115,17 +115,17 @@ impl<'b> Elements<'b> {
 /// Collects the numbers of a matrix, or of the fields of a structure. `field` is the name of a field, which has none
 /// of its own.
 fn collect(
-    element: &Element<'_>,
+    element: &MatElement<'_>,
     order: Order,
     field: Option<&str>,
     depth: usize,
     left: &mut u64,
-    found: &mut Vec<Variable>,
+    found: &mut Vec<MatVariable>,
 ) -> Result<(), String> {
     if element.kind != MATRIX || element.bytes.is_empty() {
         return Ok(());
     }
-    let mut parts = Elements { bytes: element.bytes, order };
+    let mut parts = MatElements { bytes: element.bytes, order };
     let flags = parts.required()?;
     if flags.bytes.len() < 4 {
         return Err(DAMAGED.into());
@@ -146,7 +146,7 @@ fn collect(
         let count = (stored.bytes.len() / size) as u64;
         *left = left.checked_sub(count).ok_or("it has more numbers than a file of its size should")?;
         let values = numbers(&stored, order)?;
-        found.extend(Variable::new(name, &sizes, values));
+        found.extend(MatVariable::new(name, &sizes, values));
         return Ok(());
     }
     // An array of structures has no columns.
@@ -167,7 +167,7 @@ fn collect(
 }
 
 /// Numbers are stored in the smallest type that holds them.
-fn numbers(element: &Element<'_>, order: Order) -> Result<Vec<f64>, String> {
+fn numbers(element: &MatElement<'_>, order: Order) -> Result<Vec<f64>, String> {
     let of =
         |size: usize, number: &dyn Fn(&[u8]) -> f64| element.bytes.chunks_exact(size).map(number).collect();
     Ok(match element.kind {

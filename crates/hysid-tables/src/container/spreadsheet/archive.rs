@@ -20,7 +20,7 @@ const MOST_ROWS: u64 = 1 << 20;
 const MOST_COLUMNS: u64 = 1 << 14;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum SpreadsheetKind {
     /// Excel's, `.xlsx`.
     Excel,
     /// LibreOffice's, `.ods`.
@@ -30,8 +30,8 @@ pub enum Kind {
 /// The same archive, without compression and what is not needed, and its kind.
 ///
 /// # Errors
-/// No archive of a spreadsheet; parts that unpack to more than the budget, or ask for more than they hold.
-pub fn checked(bytes: &[u8]) -> Result<(Vec<u8>, Kind), String> {
+/// No archive of a spreadsheet; parts that unpack to more than the budget, or declare more than they hold.
+pub fn checked(bytes: &[u8]) -> Result<(Vec<u8>, SpreadsheetKind), String> {
     let budget = Budget::of(bytes.len());
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|_| DAMAGED)?;
     if archive.len() > MOST_PARTS {
@@ -56,12 +56,12 @@ pub fn checked(bytes: &[u8]) -> Result<(Vec<u8>, Kind), String> {
     let has = |name: &str| parts.iter().any(|(part, _)| part.eq_ignore_ascii_case(name));
     let kind =
         match (has("content.xml"), parts.iter().any(|(part, _)| part.to_lowercase().contains("workbook"))) {
-            (_, true) => Kind::Excel,
-            (true, false) => Kind::OpenDocument,
+            (_, true) => SpreadsheetKind::Excel,
+            (true, false) => SpreadsheetKind::OpenDocument,
             _ => return Err("it is of an unknown kind".into()),
         };
     let mut strings = None;
-    if kind == Kind::Excel {
+    if kind == SpreadsheetKind::Excel {
         for (_, content) in parts.iter().filter(|(_, content)| mentions(content, "sst")) {
             if strings.replace(lengths_of_strings(content, budget)?).is_some() {
                 return Err("it has two lists of texts".into());
@@ -69,14 +69,14 @@ pub fn checked(bytes: &[u8]) -> Result<(Vec<u8>, Kind), String> {
         }
     }
     let strings = strings.unwrap_or_default();
-    let mut asked = Asked { budget, cells: 0, bytes: 0 };
+    let mut asked = SheetTotals { budget, cells: 0, bytes: 0 };
     for (name, content) in &parts {
         if name.to_lowercase().ends_with("mimetype") {
             continue;
         }
         match kind {
-            Kind::Excel => asked.of_sheet(content, &strings)?,
-            Kind::OpenDocument => asked.of_tables(content)?,
+            SpreadsheetKind::Excel => asked.of_sheet(content, &strings)?,
+            SpreadsheetKind::OpenDocument => asked.of_tables(content)?,
         }
     }
     Ok((packed(&parts)?, kind))
@@ -98,7 +98,7 @@ fn packed(parts: &[(String, Vec<u8>)]) -> Result<Vec<u8>, String> {
 }
 
 /// Calls for each element that begins, with its name and attributes, for each text, and for each element that ends.
-fn each(content: &[u8], mut call: impl FnMut(&Piece<'_>) -> Result<(), String>) -> Result<(), String> {
+fn each(content: &[u8], mut call: impl FnMut(&XmlPiece<'_>) -> Result<(), String>) -> Result<(), String> {
     let text = std::str::from_utf8(content).map_err(|_| DAMAGED)?;
     let mut reader = Reader::from_str(text.trim_start_matches('\u{feff}'));
     reader.config_mut().expand_empty_elements = true;
@@ -110,13 +110,13 @@ fn each(content: &[u8], mut call: impl FnMut(&Piece<'_>) -> Result<(), String>) 
                 if depth > DEEPEST {
                     return Err("its elements are nested too deeply".into());
                 }
-                call(&Piece::Begin(&element))?;
+                call(&XmlPiece::Begin(&element))?;
             }
             Event::End(element) => {
                 depth = depth.checked_sub(1).ok_or(DAMAGED)?;
-                call(&Piece::End(element.local_name().as_ref()))?;
+                call(&XmlPiece::End(element.local_name().as_ref()))?;
             }
-            Event::Text(text) => call(&Piece::Text(&text))?,
+            Event::Text(text) => call(&XmlPiece::Text(&text))?,
             Event::Eof if depth == 0 => return Ok(()),
             Event::Eof => return Err(DAMAGED.into()),
             _ => {}
@@ -125,13 +125,13 @@ fn each(content: &[u8], mut call: impl FnMut(&Piece<'_>) -> Result<(), String>) 
 }
 
 /// A piece of a text of XML.
-enum Piece<'p> {
+enum XmlPiece<'p> {
     Begin(&'p BytesStart<'p>),
     Text(&'p str),
     End(&'p str),
 }
 
-impl Piece<'_> {
+impl XmlPiece<'_> {
     fn begins(&self, name: &str) -> bool {
         matches!(self, Self::Begin(element) if element.local_name().as_ref() == name)
     }
@@ -163,7 +163,7 @@ fn lengths_of_strings(content: &[u8], budget: Budget) -> Result<Vec<u64>, String
             claimed = piece.attribute("uniqueCount").map_or(0, |count| count.parse().unwrap_or(u64::MAX));
         } else if piece.begins("si") {
             lengths.push(0);
-        } else if let (Piece::Text(text), Some(last)) = (piece, lengths.last_mut()) {
+        } else if let (XmlPiece::Text(text), Some(last)) = (piece, lengths.last_mut()) {
             *last += text.len() as u64;
         }
         Ok(())
@@ -175,14 +175,14 @@ fn lengths_of_strings(content: &[u8], budget: Budget) -> Result<Vec<u64>, String
     Ok(lengths)
 }
 
-/// What the sheets ask for so far.
-struct Asked {
+/// Cells and bytes of the sheets so far, within the budget.
+struct SheetTotals {
     budget: Budget,
     cells: u64,
     bytes: u64,
 }
 
-impl Asked {
+impl SheetTotals {
     fn add_cells(&mut self, cells: u64) -> Result<(), String> {
         self.cells = self.cells.saturating_add(cells);
         if self.cells > self.budget.cells() {
@@ -201,7 +201,7 @@ impl Asked {
 
     /// A sheet of Excel, if the part is one.
     fn of_sheet(&mut self, content: &[u8], strings: &[u64]) -> Result<(), String> {
-        let mut within = Within::default();
+        let mut within = CellArea::default();
         let (mut row, mut column, mut is_shared, mut is_value) = (0, 0, false, false);
         each(content, |piece| {
             if piece.begins("row") {
@@ -220,7 +220,7 @@ impl Asked {
                 is_value = true;
             } else if piece.ends("v") {
                 is_value = false;
-            } else if let (Piece::Text(text), true) = (piece, is_shared && is_value) {
+            } else if let (XmlPiece::Text(text), true) = (piece, is_shared && is_value) {
                 let length = text.trim().parse().ok().and_then(|place: usize| strings.get(place));
                 self.add_bytes(length.copied().unwrap_or(0))?;
             }
@@ -251,7 +251,7 @@ impl Asked {
             } else if piece.begins("s") {
                 cell.bytes = cell.bytes.saturating_add(piece.count("c")?);
                 self.add_bytes(cell.bytes)?;
-            } else if let Piece::Text(text) = piece {
+            } else if let XmlPiece::Text(text) = piece {
                 cell.is_filled |= !text.trim().is_empty();
                 cell.bytes += text.len() as u64;
             } else if piece.ends("table-cell") || piece.ends("covered-table-cell") {
@@ -301,11 +301,11 @@ struct CellOfTable {
 
 /// The rectangle that holds all cells.
 #[derive(Default)]
-pub struct Within {
+pub struct CellArea {
     bounds: Option<[u64; 4]>,
 }
 
-impl Within {
+impl CellArea {
     /// Adds a cell, whose row and column count from 1.
     pub fn add(&mut self, row: u64, column: u64) -> Result<(), String> {
         if row == 0 || column == 0 || row > MOST_ROWS || column > MOST_COLUMNS {

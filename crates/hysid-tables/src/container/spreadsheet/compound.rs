@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::super::budget::{Budget, DAMAGED, too_much};
-use super::archive::Within;
+use super::archive::CellArea;
 
 /// Bytes of the header, which has 109 places of the table of sectors.
 const HEADER: usize = 512;
@@ -19,7 +19,7 @@ const ENTRY: usize = 128;
 
 const MOST_SHEETS: usize = 256;
 
-/// Refuses a file that asks for more than it holds.
+/// Rejects a file that declares more than it holds.
 pub fn check(bytes: &[u8]) -> Result<(), String> {
     let file = Compound::of(bytes)?;
     let directory = file.chain(file.number(48)?)?;
@@ -204,7 +204,7 @@ fn check_workbook(stream: &[u8], budget: Budget) -> Result<(), String> {
 
 /// Cells that a sheet spans, and cells with a text of the list.
 fn check_sheet(stream: &[u8], budget: Budget) -> Result<(u64, u64), String> {
-    let mut within = Within::default();
+    let mut within = CellArea::default();
     let (mut texts, mut claimed) = (0, 0_u64);
     let mut depth = 0_usize;
     for (kind, content) in records(stream) {

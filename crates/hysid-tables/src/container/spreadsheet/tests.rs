@@ -1,4 +1,4 @@
-//! Small files that ask for much.
+//! Small files that declare much.
 
 use std::io::Write as _;
 

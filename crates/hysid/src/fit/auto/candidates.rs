@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::diagnosis::resonance::{Compared, Resonance};
+use crate::diagnosis::resonance::{ComparedSignal, Resonance};
 use crate::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
 use crate::fit::initial_state;
 use crate::law::duhem_nn::MOST_NEURONS;
@@ -23,7 +23,7 @@ use crate::options::{FitSpec, ModelName};
 
 /// A kind of candidates. The best of each kind pass the first folds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum CandidateKind {
     Networks,
     RandomStops,
     /// Classical models: relays, plays and the like.
@@ -32,37 +32,42 @@ pub(super) enum Kind {
     Dynamic,
 }
 
-impl Kind {
-    pub const ALL: [Kind; 5] =
-        [Kind::Classical, Kind::Networks, Kind::RandomStops, Kind::Recurrent, Kind::Dynamic];
+impl CandidateKind {
+    pub const ALL: [CandidateKind; 5] = [
+        CandidateKind::Classical,
+        CandidateKind::Networks,
+        CandidateKind::RandomStops,
+        CandidateKind::Recurrent,
+        CandidateKind::Dynamic,
+    ];
 
     fn of(request: &FitSpec) -> Self {
         match request {
-            FitSpec::Network(_) => Kind::Networks,
+            FitSpec::Network(_) => CandidateKind::Networks,
             FitSpec::Classical(options) => match options.model {
-                ClassicalModel::RandomStops => Kind::RandomStops,
-                ClassicalModel::DuhemNn => Kind::Recurrent,
-                model if model.has_inertia() => Kind::Dynamic,
-                _ => Kind::Classical,
+                ClassicalModel::RandomStops => CandidateKind::RandomStops,
+                ClassicalModel::DuhemNn => CandidateKind::Recurrent,
+                model if model.has_inertia() => CandidateKind::Dynamic,
+                _ => CandidateKind::Classical,
             },
-            FitSpec::Auto(_) => Kind::Classical,
+            FitSpec::Auto(_) => CandidateKind::Classical,
         }
     }
 
     pub fn name(self) -> &'static str {
         match self {
-            Kind::Networks => "networks",
-            Kind::RandomStops => "random stops",
-            Kind::Classical => "classical",
-            Kind::Recurrent => "recurrent",
-            Kind::Dynamic => "dynamic",
+            CandidateKind::Networks => "networks",
+            CandidateKind::RandomStops => "random stops",
+            CandidateKind::Classical => "classical",
+            CandidateKind::Recurrent => "recurrent",
+            CandidateKind::Dynamic => "dynamic",
         }
     }
 }
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Candidate {
-    pub kind: Kind,
+    pub kind: CandidateKind,
     request: FitSpec,
 }
 
@@ -101,10 +106,10 @@ const THIN: usize = 1500;
 impl Candidate {
     /// A model that the user has decided for.
     pub fn alone(request: &FitSpec) -> Self {
-        Self { kind: Kind::of(request), request: request.clone() }
+        Self { kind: CandidateKind::of(request), request: request.clone() }
     }
 
-    /// The same with so many rows of each record that only drive the memory.
+    /// The same with this number of rows of each record that only drive the memory.
     pub fn warmed_up(&self, rows: usize) -> Self {
         let mut warmed = self.clone();
         match &mut warmed.request {
@@ -126,12 +131,12 @@ impl Candidate {
         }
     }
 
-    /// What is asked for.
+    /// Specification of the first start.
     pub fn asked(&self) -> &FitSpec {
         &self.request
     }
 
-    /// What is asked for, for a start of its own.
+    /// Specification of one of its starts.
     pub fn request(&self, start: usize) -> FitSpec {
         let mut request = self.request.clone();
         let seed = match &mut request {
@@ -185,7 +190,7 @@ impl Candidate {
 
     /// True for a model with inertia, which is fitted to rows without gaps.
     pub fn is_dynamic(&self) -> bool {
-        self.kind == Kind::Dynamic
+        self.kind == CandidateKind::Dynamic
     }
 
     /// True for a model with inertia whose force follows from displacement and velocity alone.
@@ -230,7 +235,7 @@ impl Candidate {
         Cow::Borrowed(data)
     }
 
-    /// What it is, in a few words.
+    /// Name of the candidate, in a few words.
     pub fn name(&self) -> String {
         self.request.label()
     }
@@ -367,7 +372,11 @@ fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
 
 /// Models with inertia, a network and a recurrent network. With degradation if only changes show the resonance
 /// (yielding).
-fn candidates_with_inertia(data: &Dataset, options: &AutoOptions, compared: Compared) -> Vec<Candidate> {
+fn candidates_with_inertia(
+    data: &Dataset,
+    options: &AutoOptions,
+    compared: ComparedSignal,
+) -> Vec<Candidate> {
     use ClassicalModel::{HystereticOscillator, HystereticStateSpace};
     let of = |model: ClassicalModel, modes: usize| ClassicalOptions {
         modes: Some(options.modes.unwrap_or(modes)),
@@ -383,14 +392,14 @@ fn candidates_with_inertia(data: &Dataset, options: &AutoOptions, compared: Comp
         ClassicalOptions { states: Some(0), operators: Some(0), ..of(HystereticStateSpace, 1) };
     let may_have_no_stops = options.operators.is_none_or(|stops| stops == 0);
     let wanted = match compared {
-        Compared::Output => vec![
+        ComparedSignal::Output => vec![
             Some(of(HystereticOscillator, 1)),
             Some(of(HystereticStateSpace, 1)),
             Some(of(HystereticStateSpace, 2)),
             may_have_no_stops.then_some(without_memory),
             (options.deterioration == Some(true)).then(|| degrading(1)),
         ],
-        Compared::Changes => {
+        ComparedSignal::Changes => {
             vec![Some(degrading(1)), Some(of(HystereticOscillator, 1)), Some(degrading(2))]
         }
     };

@@ -5,9 +5,9 @@
 use hysid_core::elementary::{exp, ln};
 
 use crate::error::Result;
-use crate::fit::auto::prior::{self, Evidence};
+use crate::fit::auto::prior::{self, LoopEvidence};
 use crate::fit::auto::score::{Score, weights};
-use crate::fit::auto::trial::{HeldOut, Rows, Trial};
+use crate::fit::auto::trial::{FoldRows, HeldOut, Trial};
 use crate::model::{
     Ensemble, Group, HeldOutRow, MedianBuffers, Model, Node, NodeKind, Provenance, Weights, disagreement,
 };
@@ -44,15 +44,15 @@ impl Combination {
     pub fn of(
         trials: &[Trial],
         folds: &[HeldOut],
-        evidence: Evidence,
+        evidence: LoopEvidence,
         counted: impl Fn(usize) -> bool + Copy,
     ) -> Option<Self> {
         let places: Vec<usize> = (0..trials.len()).filter(|&place| trials[place].is_complete()).collect();
         let scores: Vec<Score> =
             places.iter().map(|&place| trials[place].score(folds, evidence, counted)).collect();
         let power = match evidence {
-            Evidence::SeveralLoops => POWER,
-            Evidence::OneLoop(_) => prior::POWER,
+            LoopEvidence::SeveralLoops => POWER,
+            LoopEvidence::OneLoop(_) => prior::POWER,
         };
         let weights = weights(&scores, power, MOST_CANDIDATES);
         let sum = |weight: fn(&Weights) -> f64| weights.iter().map(weight).sum::<f64>();
@@ -86,7 +86,7 @@ impl Combination {
         self.leaves.iter().filter(|leaf| leaf.place == place).count()
     }
 
-    /// What each candidate counts in the whole, by its place.
+    /// Weights of the candidates in the ensemble, each with the candidate's place.
     pub fn shares(&self) -> Vec<(usize, Weights)> {
         let mut shares: Vec<(usize, Weights)> = Vec::new();
         for (leaf, weights) in self.group.shares() {
@@ -117,7 +117,7 @@ impl Combination {
     }
 
     /// The error to be expected on loops that the data do not show: the geometric mean of those of its candidates.
-    pub fn unseen_error(&self, trials: &[Trial], evidence: Evidence) -> f64 {
+    pub fn unseen_error(&self, trials: &[Trial], evidence: LoopEvidence) -> f64 {
         let of_candidate = |(place, share): (usize, Weights)| {
             share.inside * ln(trials[place].unseen_error(evidence).max(f64::MIN_POSITIVE))
         };
@@ -128,7 +128,7 @@ impl Combination {
         }
     }
 
-    /// What it predicts of the rows of each fold.
+    /// Predictions of the ensemble for the rows of each fold.
     pub fn predictions(&self, trials: &[Trial], folds: &[HeldOut]) -> Vec<Vec<f64>> {
         let of_leaf = |leaf: usize, fold: usize, row: usize| self.predicted(trials, leaf, fold)[row];
         predictions(&self.group, of_leaf, folds)
@@ -149,7 +149,7 @@ impl Combination {
         &self,
         trials: &[Trial],
         folds: &[HeldOut],
-        evidence: Evidence,
+        evidence: LoopEvidence,
         counted: impl Fn(usize) -> bool + Copy,
         most: usize,
     ) -> Option<Self> {
@@ -201,7 +201,7 @@ impl Combination {
 
     /// Rows of a fold with their errors and the disagreement of all leaves.
     pub fn rows(&self, trials: &[Trial], folds: &[HeldOut], fold: usize) -> Vec<HeldOutRow> {
-        let Rows { measured, outside, .. } = &folds[fold].rows;
+        let FoldRows { measured, outside, .. } = &folds[fold].rows;
         let mut medians = MedianBuffers::new(&self.group);
         let row = |row: usize| {
             let of_leaf = |leaf: usize| self.predicted(trials, leaf, fold)[row];
@@ -216,7 +216,7 @@ impl Combination {
     }
 }
 
-/// What a tree predicts of the rows of each fold; `of_member` gives that of a member, by fold and row.
+/// Predictions of a tree for the rows of each fold; `of_member` gives those of a member, by fold and row.
 fn predictions(
     group: &Group,
     of_member: impl Fn(usize, usize, usize) -> f64,
@@ -244,7 +244,7 @@ mod tests {
     use super::*;
     use crate::data::record::{ColumnNames, Dataset, Record};
     use crate::fit::auto::candidates::Candidate;
-    use crate::fit::auto::trial::OnFold;
+    use crate::fit::auto::trial::FoldTrial;
     use crate::fit::one_model::identify;
     use crate::network::Family;
     use crate::options::FitSpec;
@@ -278,7 +278,7 @@ mod tests {
                 };
                 let of_folds = folds.iter().map(predicted);
                 trial.add_start(
-                    of_folds.map(|predicted| OnFold { model: model.clone(), predicted }).collect(),
+                    of_folds.map(|predicted| FoldTrial { model: model.clone(), predicted }).collect(),
                 );
                 trial.members.insert(start, model.clone());
             }
@@ -287,7 +287,7 @@ mod tests {
         (0..count).map(one).collect()
     }
 
-    /// However many members may stay, what stays is an ensemble that answers what was validated.
+    /// However many members may stay, the result is the ensemble that was validated.
     #[test]
     fn any_number_of_members_is_an_ensemble() {
         let data = data();
@@ -301,7 +301,7 @@ mod tests {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(7);
         for _ in 0..100 {
             let trials = trials(&model, &folds, &mut generator);
-            let evidence = Evidence::SeveralLoops;
+            let evidence = LoopEvidence::SeveralLoops;
             let all = Combination::of(&trials, &folds, evidence, |_| true).unwrap();
             let error = all.score(&trials, &folds).sum();
             for most in 1..=12 {

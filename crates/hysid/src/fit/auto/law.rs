@@ -2,9 +2,9 @@
 //! candidates, on the data and on the folds. Whatever the data do not show, it predicts better than a combination of
 //! networks: its numbers cannot follow the data by chance, and a Preisach plane wipes out and is congruent everywhere.
 
-use super::Chosen;
+use super::EnsembleSelection;
 use crate::error::Result;
-use crate::fit::auto::candidates::Kind;
+use crate::fit::auto::candidates::CandidateKind;
 use crate::fit::auto::trial::Trial;
 use crate::fit::progress::Fitted;
 use crate::model::selection::SingleModel;
@@ -23,15 +23,15 @@ const ABOUT_THE_LOWEST_OF_PREISACH: f64 = 2.0;
 /// not those of relays. Designed.
 const LEFT_BY_PREISACH: f64 = 0.05;
 
-/// Least error of such a Preisach model on the folds, relative to its training error: the folds ask for more than the data
-/// show. Where they do not, they can tell candidates apart by themselves. Designed.
+/// Least error of such a Preisach model on the folds, relative to its training error: the folds need more than the data
+/// show. Where they do not, they can distinguish candidates by themselves. Designed.
 const ASKS_FOR_MORE: f64 = 5.0;
 
-/// Scores of laws, relative to the lowest, that tell nothing apart: the law with the fewest numbers is taken. Designed.
+/// Ratio of scores to the lowest up to which laws count as equal: the law with the fewest numbers is taken. Designed.
 const ALIKE: f64 = 1.05;
 
 /// A candidate with its errors on the data and on the folds.
-struct Judged {
+struct ScoredCandidate {
     place: usize,
     is_law: bool,
     is_preisach: bool,
@@ -40,24 +40,25 @@ struct Judged {
     score: f64,
 }
 
-impl Chosen<'_, '_, '_> {
+impl EnsembleSelection<'_, '_, '_> {
     /// The place of the best such law; `None` if there is none, if the user decided, or for one loop, on which laws that
     /// differ elsewhere are alike.
     pub(super) fn place_of_law(&self) -> Option<usize> {
         if self.options.only.is_some() || self.evidence.is_one_loop() {
             return None;
         }
-        let judged: Vec<Judged> = (self.trials.iter().enumerate())
+        let judged: Vec<ScoredCandidate> = (self.trials.iter().enumerate())
             .filter(|(_, trial)| trial.is_complete())
             .map(|(place, trial)| self.judged(place, trial))
             .collect();
-        let lowest = |error: fn(&Judged) -> f64| judged.iter().map(error).fold(f64::INFINITY, f64::min);
+        let lowest =
+            |error: fn(&ScoredCandidate) -> f64| judged.iter().map(error).fold(f64::INFINITY, f64::min);
         let least = lowest(|one| one.training) * lowest(|one| one.score);
-        let is_about = |most: f64| move |one: &&Judged| one.training * one.score <= most * least;
+        let is_about = |most: f64| move |one: &&ScoredCandidate| one.training * one.score <= most * least;
         let few = judged.iter().filter(|one| one.is_law && one.numbers <= FEW_NUMBERS);
-        let mut laws: Vec<&Judged> = few.filter(is_about(ABOUT_THE_LOWEST)).collect();
+        let mut laws: Vec<&ScoredCandidate> = few.filter(is_about(ABOUT_THE_LOWEST)).collect();
         if laws.is_empty() {
-            let asks_for_more = |one: &&Judged| 0.01 * one.score >= ASKS_FOR_MORE * one.training;
+            let asks_for_more = |one: &&ScoredCandidate| 0.01 * one.score >= ASKS_FOR_MORE * one.training;
             let preisach = judged.iter().filter(|one| one.is_preisach && one.training <= LEFT_BY_PREISACH);
             let preisach = preisach.filter(asks_for_more);
             laws = preisach.filter(is_about(ABOUT_THE_LOWEST_OF_PREISACH)).collect();
@@ -67,10 +68,10 @@ impl Chosen<'_, '_, '_> {
         alike.min_by(|a, b| a.numbers.cmp(&b.numbers).then(a.score.total_cmp(&b.score))).map(|law| law.place)
     }
 
-    fn judged(&self, place: usize, trial: &Trial) -> Judged {
-        Judged {
+    fn judged(&self, place: usize, trial: &Trial) -> ScoredCandidate {
+        ScoredCandidate {
             place,
-            is_law: trial.candidate.kind == Kind::Classical,
+            is_law: trial.candidate.kind == CandidateKind::Classical,
             is_preisach: trial.candidate.asked().model() == ModelName::Classical(ClassicalModel::Preisach),
             numbers: trial.members.values().map(|model| model.parameters()).max().unwrap_or(usize::MAX),
             training: trial.training_error(),

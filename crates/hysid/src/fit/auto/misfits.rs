@@ -4,10 +4,10 @@
 //! training error at most [`FITS`] times that of the candidate that fits best, unless the ensemble predicts held-out
 //! rows better than that candidate. Otherwise the candidates that are worse are dropped, in two steps.
 //!
-//! Where even the best candidate misses held-out rows by half of their standard deviation, the folds tell nothing: each
-//! asks for more than the others show. Candidates that do not fit the data are then left out before all else.
+//! Where even the best candidate misses held-out rows by half of their standard deviation, the folds show nothing: each
+//! needs more than the others show. Candidates that do not fit the data are then left out before all else.
 
-use super::{Assembled, Chosen, Trial, errors_held_out};
+use super::{EnsembleSelection, Trial, ValidatedEnsemble, errors_held_out};
 use crate::fit::auto::score::Score;
 
 /// Training error of an ensemble, relative to that of the candidate that fits best. Designed.
@@ -20,20 +20,20 @@ const SLACK_OF_ONE_LOOP: f64 = 0.5;
 /// Designed.
 const CLEARLY_BETTER: f64 = 0.9;
 
-/// Lowest score, in percent of the standard deviation, at which the folds tell nothing. Designed.
+/// Lowest score, in percent of the standard deviation, at which the folds show nothing. Designed.
 const TELLS_NOTHING: f64 = 50.0;
 
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step {
+pub(super) struct MisfitStep {
     /// Held-out errors of candidates that stay beside the preferred one, relative to its own. Designed.
     about_as_good: f64,
     /// True if a candidate that does not fit well stays where it predicts better than the one that fits best.
     keeps_better_predictors: bool,
 }
 
-pub(super) const STEPS: [Step; 2] = [
-    Step { about_as_good: 1.2, keeps_better_predictors: true },
-    Step { about_as_good: 1.0, keeps_better_predictors: false },
+pub(super) const STEPS: [MisfitStep; 2] = [
+    MisfitStep { about_as_good: 1.2, keeps_better_predictors: true },
+    MisfitStep { about_as_good: 1.0, keeps_better_predictors: false },
 ];
 
 #[derive(Debug, Clone, Copy)]
@@ -44,9 +44,9 @@ struct Fitness {
     score: f64,
 }
 
-impl Chosen<'_, '_, '_> {
+impl EnsembleSelection<'_, '_, '_> {
     /// Drops candidates that make the ensemble worse than one of them; false if there are none, or the user decided.
-    pub(super) fn drops_misfits(&mut self, ensemble: &Assembled, step: Step) -> bool {
+    pub(super) fn drops_misfits(&mut self, ensemble: &ValidatedEnsemble, step: MisfitStep) -> bool {
         let all: Vec<Option<Fitness>> = self.trials.iter().map(|trial| self.fitness(trial)).collect();
         let least = |figure: fn(&Fitness) -> f64| {
             all.iter().flatten().copied().min_by(|a, b| figure(a).total_cmp(&figure(b)))
@@ -75,7 +75,7 @@ impl Chosen<'_, '_, '_> {
         true
     }
 
-    /// Leaves out candidates that do not fit the data, where the folds tell nothing.
+    /// Leaves out candidates that do not fit the data, where the folds show nothing.
     pub(super) fn drops_what_does_not_fit(&mut self) {
         if self.options.only.is_some() {
             return;
@@ -108,7 +108,7 @@ impl Chosen<'_, '_, '_> {
         })
     }
 
-    fn fitness_of_ensemble(&self, ensemble: &Assembled) -> Option<Fitness> {
+    fn fitness_of_ensemble(&self, ensemble: &ValidatedEnsemble) -> Option<Fitness> {
         let provenance = ensemble.model.provenance();
         Some(Fitness {
             training: provenance.trained_error().nrmse_std_percent?,

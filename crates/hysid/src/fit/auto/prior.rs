@@ -1,4 +1,4 @@
-//! What is known of candidates that the data cannot distinguish.
+//! Prior preference among candidates that the data cannot distinguish.
 //!
 //! Data of one loop between two ends contain no information about smaller loops inside it: candidates with equal errors on
 //! the loop differ by factors of a hundred there. The error to be expected inside the loop follows from the family of
@@ -40,19 +40,19 @@ const OF_NETWORKS: ErrorsInside = ErrorsInside { softening: 0.25, sigmoid: 0.25,
 
 const PARTS: usize = 10;
 
-/// A part of a branch is steeper than another if its slope is so many times as large. Designed.
+/// Ratio of slopes from which on a part of a branch is steeper than another. Designed.
 const STEEPER: f64 = 2.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Evidence {
+pub(super) enum LoopEvidence {
     /// The data hold loops of several sizes, or one at several speeds.
     SeveralLoops,
     /// All reversals of the first input lie at the ends of its range, and all records have one speed.
-    OneLoop(Shape),
+    OneLoop(LoopShape),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shape {
+pub(super) enum LoopShape {
     /// Steepest after the reversal, and never much steeper again.
     Softening,
     /// Flat at both ends, and steep between.
@@ -60,7 +60,7 @@ pub(super) enum Shape {
     Other,
 }
 
-impl Evidence {
+impl LoopEvidence {
     /// That of a data set.
     pub fn of(data: &Dataset) -> Self {
         let (low, high) = data.input_range(0);
@@ -89,9 +89,9 @@ impl Evidence {
             Self::OneLoop(shape) => {
                 let errors = errors_inside(candidate);
                 match shape {
-                    Shape::Softening => errors.softening,
-                    Shape::Sigmoid => errors.sigmoid,
-                    Shape::Other => errors.other,
+                    LoopShape::Softening => errors.softening,
+                    LoopShape::Sigmoid => errors.sigmoid,
+                    LoopShape::Other => errors.other,
                 }
             }
         }
@@ -99,7 +99,7 @@ impl Evidence {
 }
 
 /// The shape of the longest branches of the data, by a majority of them.
-fn shape(data: &Dataset) -> Shape {
+fn shape(data: &Dataset) -> LoopShape {
     let (low, high) = data.input_range(0);
     let mut counts = [0; 3];
     for record in data.records() {
@@ -114,9 +114,9 @@ fn shape(data: &Dataset) -> Shape {
     }
     let most = counts.iter().copied().max().unwrap_or(0);
     match counts {
-        [softening, ..] if softening == most && most > 0 => Shape::Softening,
-        [_, sigmoid, _] if sigmoid == most && most > 0 => Shape::Sigmoid,
-        _ => Shape::Other,
+        [softening, ..] if softening == most && most > 0 => LoopShape::Softening,
+        [_, sigmoid, _] if sigmoid == most && most > 0 => LoopShape::Sigmoid,
+        _ => LoopShape::Other,
     }
 }
 
@@ -140,11 +140,11 @@ fn slopes(x: &[f64], y: &[f64], first: usize, last: usize, range: f64) -> Option
     Some(means?.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect())
 }
 
-fn shape_of(slopes: &[f64]) -> Shape {
+fn shape_of(slopes: &[f64]) -> LoopShape {
     let steepest = slopes.iter().copied().fold(0.0, |a: f64, b| a.max(b.abs()));
     let (first, last) = (slopes[0].abs(), slopes[slopes.len() - 1].abs());
     if STEEPER * first < steepest && STEEPER * last < steepest {
-        return Shape::Sigmoid;
+        return LoopShape::Sigmoid;
     }
     // Slopes below a share of the steepest differ by noise.
     let least = 0.02 * steepest;
@@ -153,7 +153,7 @@ fn shape_of(slopes: &[f64]) -> Shape {
         flattest = flattest.min(slope.abs().max(least));
         slope.abs() > STEEPER * flattest
     });
-    if steepens || last > first { Shape::Other } else { Shape::Softening }
+    if steepens || last > first { LoopShape::Other } else { LoopShape::Softening }
 }
 
 fn differ_in_speed(data: &Dataset) -> bool {
@@ -188,8 +188,8 @@ mod tests {
         Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap()
     }
 
-    fn evidence(turning: &[f64]) -> Evidence {
-        Evidence::of(&data(turning))
+    fn evidence(turning: &[f64]) -> LoopEvidence {
+        LoopEvidence::of(&data(turning))
     }
 
     #[test]
@@ -215,12 +215,15 @@ mod tests {
             shape(&data.of_record(record.clone().with_output(output).unwrap()))
         };
         // Coercive field 0.3; a stop that yields after a tenth, and one beside a spring that stiffens.
-        assert_eq!(shape_of(&|x, side| tanh(8.0 * (x + 0.3 * side))), Shape::Sigmoid);
+        assert_eq!(shape_of(&|x, side| tanh(8.0 * (x + 0.3 * side))), LoopShape::Sigmoid);
         let yields = |x: f64, side: f64| side * (1.0 - 2.0 * (1.0 - exp(-(1.0 - side * x) / 0.3)));
-        assert_eq!(shape_of(&yields), Shape::Softening);
+        assert_eq!(shape_of(&yields), LoopShape::Softening);
         // A play, which is free after a reversal.
-        assert_eq!(shape_of(&|x, side| x + 0.3 * side * (1.0 - exp(-(1.0 - side * x) / 0.3))), Shape::Other);
-        assert_eq!(shape_of(&|x, side| 0.3 * yields(x, side) + powi(x, 3)), Shape::Other);
+        assert_eq!(
+            shape_of(&|x, side| x + 0.3 * side * (1.0 - exp(-(1.0 - side * x) / 0.3))),
+            LoopShape::Other
+        );
+        assert_eq!(shape_of(&|x, side| 0.3 * yields(x, side) + powi(x, 3)), LoopShape::Other);
     }
 
     #[test]
@@ -233,16 +236,16 @@ mod tests {
         let evidence = |steps: &[f64]| {
             let records = steps.iter().map(|&step| record(step)).collect();
             let names = ColumnNames { time: Some("t".into()), ..ColumnNames::plain(1) };
-            Evidence::of(&Dataset::new(names, records).unwrap())
+            LoopEvidence::of(&Dataset::new(names, records).unwrap())
         };
         assert!(evidence(&[1.0, 1.2]).is_one_loop());
-        assert_eq!(evidence(&[1.0, 1.2, 0.1]), Evidence::SeveralLoops);
+        assert_eq!(evidence(&[1.0, 1.2, 0.1]), LoopEvidence::SeveralLoops);
     }
 
     #[test]
     fn smaller_loops_and_reversal_curves_are_more() {
-        assert_eq!(evidence(&[0.0, 1.0, -1.0, 0.5, -0.5, 0.5, -0.5]), Evidence::SeveralLoops);
-        assert_eq!(evidence(&[1.0, -0.2, 1.0, 0.3, 1.0, -1.0]), Evidence::SeveralLoops);
-        assert_eq!(evidence(&[0.0, 0.2, -0.3, 0.5, -0.7, 1.0]), Evidence::SeveralLoops);
+        assert_eq!(evidence(&[0.0, 1.0, -1.0, 0.5, -0.5, 0.5, -0.5]), LoopEvidence::SeveralLoops);
+        assert_eq!(evidence(&[1.0, -0.2, 1.0, 0.3, 1.0, -1.0]), LoopEvidence::SeveralLoops);
+        assert_eq!(evidence(&[0.0, 0.2, -0.3, 0.5, -0.7, 1.0]), LoopEvidence::SeveralLoops);
     }
 }

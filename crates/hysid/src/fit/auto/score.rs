@@ -7,7 +7,7 @@
 
 use hysid_core::elementary::{exp, hypot, ln};
 
-use crate::fit::auto::trial::{HeldOut, Rows};
+use crate::fit::auto::trial::{FoldRows, HeldOut};
 use crate::model::Weights;
 
 /// Rows of a class in a fold below which it says nothing of the class.
@@ -16,10 +16,10 @@ const FEWEST_ROWS: usize = 5;
 /// Share of a fold's rows below which a class says nothing.
 const LEAST_SHARE: f64 = 0.05;
 
-/// What the rows of its own class count for a score; the rest goes to the other class. Designed.
+/// Weight of the rows of the own class in a score; the rest is the other class's. Designed.
 const OWN_CLASS: f64 = 0.75;
 
-/// Errors that scores tell apart, as shares of the standard deviation.
+/// Bounds of errors in a score, as shares of the standard deviation.
 const ERRORS: (f64, f64) = (1e-12, 1e150);
 
 /// Weight of a fold that holds out records beyond the others; that of any other fold is 1. Designed.
@@ -104,7 +104,7 @@ impl Score {
 }
 
 /// Squared error of each row, and how far outside the trained range it is.
-fn squares<'a>(predicted: &'a [f64], fold: &'a Rows) -> impl Iterator<Item = (f64, f64)> + 'a {
+fn squares<'a>(predicted: &'a [f64], fold: &'a FoldRows) -> impl Iterator<Item = (f64, f64)> + 'a {
     let rows = predicted.iter().zip(&fold.measured).zip(&fold.outside);
     rows.map(|((predicted, measured), outside)| ((predicted - measured) * (predicted - measured), *outside))
 }

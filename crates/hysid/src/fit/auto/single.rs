@@ -16,13 +16,13 @@ use hysid_core::elementary::{exp, ln};
 
 use crate::data::record::{Dataset, Record, Thinning};
 use crate::error::Result;
-use crate::fit::auto::candidates::{Candidate, Kind};
+use crate::fit::auto::candidates::{Candidate, CandidateKind};
 use crate::fit::auto::combination::Combination;
 use crate::fit::auto::errors_held_out;
-use crate::fit::auto::prior::Evidence;
+use crate::fit::auto::prior::LoopEvidence;
 use crate::fit::auto::score::Score;
-use crate::fit::auto::trial::{Bench, HeldOut, OnFold, Rows, Trial, fit_members};
-use crate::fit::auto::work::Work;
+use crate::fit::auto::trial::{FoldBench, FoldRows, FoldTrial, HeldOut, Trial, fit_members};
+use crate::fit::auto::work::AutoWork;
 use crate::fit::law::search::spread;
 use crate::model::input_transform::{InputTransform, origin};
 use crate::model::selection::SingleModel;
@@ -38,7 +38,7 @@ const STARTS_ON_A_FOLD: usize = 4;
 const SHARES: [f64; 2] = [0.5, 0.75];
 
 /// A single model, and what models made in the same way predict on the folds.
-pub(super) struct Single {
+pub(super) struct SingleCandidate {
     pub model: Model,
     pub predicted: Vec<Vec<f64>>,
     pub how: SingleModel,
@@ -54,12 +54,12 @@ struct Plain {
     error: f64,
 }
 
-struct Taught {
+struct DistillationData {
     records: Vec<Record>,
     predicted: Vec<Vec<f64>>,
 }
 
-impl Taught {
+impl DistillationData {
     fn of(records: Vec<Record>, ensemble: &Model) -> Result<Self> {
         let predicted = parallel::each(&records, |record| ensemble.simulate(record))
             .into_iter()
@@ -110,18 +110,18 @@ fn closest_to_training(trial: &Trial) -> Option<&Model> {
     trial.members.values().min_by(|a, b| error(a).total_cmp(&error(b)))
 }
 
-pub(super) struct Makers<'w, 'o, 'a> {
+pub(super) struct SingleSources<'w, 'o, 'a> {
     pub trials: &'w mut Vec<Trial>,
-    pub bench: Bench<'w, 'o, 'a>,
+    pub bench: FoldBench<'w, 'o, 'a>,
     pub combination: &'w Combination,
-    pub evidence: Evidence,
+    pub evidence: LoopEvidence,
     pub options: &'w AutoOptions,
 }
 
-impl Makers<'_, '_, '_> {
+impl SingleSources<'_, '_, '_> {
     /// The single model; `None` if no candidate is small, or there was no time.
-    pub fn single(mut self, ensemble: &Model) -> Result<Option<Single>> {
-        let unmeasured = Taught::unmeasured(self.bench.data, ensemble)?;
+    pub fn single(mut self, ensemble: &Model) -> Result<Option<SingleCandidate>> {
+        let unmeasured = DistillationData::unmeasured(self.bench.data, ensemble)?;
         let deviation = deviation(self.bench.data);
         // Data cannot tell what a model does on paths that were not measured; the ensemble is the best that is known.
         let error = |score: Score, model: &Model| -> Result<f64> {
@@ -132,7 +132,7 @@ impl Makers<'_, '_, '_> {
         };
         let mut plain: Vec<Plain> = Vec::new();
         for (place, trial) in self.trials.iter().enumerate() {
-            if !trial.is_complete() || trial.candidate.kind == Kind::RandomStops {
+            if !trial.is_complete() || trial.candidate.kind == CandidateKind::RandomStops {
                 continue;
             }
             let Some(model) = closest_to_training(trial) else { continue };
@@ -162,12 +162,12 @@ impl Makers<'_, '_, '_> {
         if let (Some((model, predicted)), Some(of_distilled)) = (distilled, of_distilled)
             && error(of_distilled.with_unseen(best.unseen), &model)? <= best.error
         {
-            return Ok(Some(Single { model, predicted, how }));
+            return Ok(Some(SingleCandidate { model, predicted, how }));
         }
         how.distilled = false;
         let (place, predicted) = (best.place, best.predicted.clone());
         let model = self.plain(place);
-        Ok(model.map(|model| Single { model, predicted, how }))
+        Ok(model.map(|model| SingleCandidate { model, predicted, how }))
     }
 
     /// Error on all held-out rows together, in percent of the standard deviation.
@@ -187,7 +187,7 @@ impl Makers<'_, '_, '_> {
         &self,
         candidate: &Candidate,
         ensemble: &Model,
-        unmeasured: &Taught,
+        unmeasured: &DistillationData,
     ) -> Result<Option<(Model, Vec<Vec<f64>>)>> {
         let starts = if candidate.is_random() { STARTS } else { 1 };
         let mut predicted = Vec::new();
@@ -204,14 +204,14 @@ impl Makers<'_, '_, '_> {
                 ensemble.provenance().clone().into(),
             )?;
             let starts = starts.min(STARTS_ON_A_FOLD);
-            let unmeasured = Taught::unmeasured(training, &of_fold)?;
+            let unmeasured = DistillationData::unmeasured(training, &of_fold)?;
             let Some(model) = distilled(&of_fold, candidate, starts, training, &unmeasured, self.bench.work)?
             else {
                 return Ok(None);
             };
             predicted.push(held_out.fold.predicted_by(&model)?);
         }
-        let Bench { data, work, .. } = self.bench;
+        let FoldBench { data, work, .. } = self.bench;
         let model = distilled(ensemble, candidate, starts, data, unmeasured, work)?;
         Ok(model.map(|model| (model, predicted)))
     }
@@ -224,14 +224,14 @@ fn deviation(data: &Dataset) -> f64 {
     spread(&measured).1.max(f64::MIN_POSITIVE)
 }
 
-/// What the start with the lowest training error predicts on each fold.
+/// Predictions for each fold by the start with the lowest training error.
 fn plain_predictions(trial: &Trial) -> Vec<Vec<f64>> {
     let lowest = |fold: usize| {
         let starts = trial.starts.iter().map(|folds| &folds[fold]);
         starts.min_by(|a, b| a.training_error().total_cmp(&b.training_error()))
     };
     let folds = 0..trial.starts.first().map_or(0, Vec::len);
-    folds.filter_map(lowest).map(|start: &OnFold| start.predicted.clone()).collect()
+    folds.filter_map(lowest).map(|start: &FoldTrial| start.predicted.clone()).collect()
 }
 
 /// A record whose first input goes a share of its way from an origin.
@@ -257,11 +257,11 @@ fn distilled(
     candidate: &Candidate,
     starts: usize,
     data: &Dataset,
-    unmeasured: &Taught,
-    work: &Work,
+    unmeasured: &DistillationData,
+    work: &AutoWork,
 ) -> Result<Option<Model>> {
     let taught = unmeasured.beside(data)?;
-    let measured = Taught::of(data.records().to_vec(), ensemble)?;
+    let measured = DistillationData::of(data.records().to_vec(), ensemble)?;
     let distance = |model: &Model| -> Result<f64> {
         Ok(measured.square_distance(model)? + unmeasured.square_distance(model)?)
     };
@@ -277,7 +277,7 @@ fn distilled(
 
 pub(super) fn rows_held_out(predicted: &[Vec<f64>], folds: &[HeldOut]) -> Vec<Vec<HeldOutRow>> {
     let of_fold = |(predicted, fold): (&Vec<f64>, &HeldOut)| -> Vec<HeldOutRow> {
-        let Rows { measured, outside, .. } = &fold.rows;
+        let FoldRows { measured, outside, .. } = &fold.rows;
         let rows = predicted.iter().zip(measured).zip(outside);
         rows.map(|((predicted, measured), outside)| HeldOutRow {
             error: measured - predicted,

@@ -5,11 +5,11 @@
 
 use hysid_core::elementary::{exp, ln};
 
-use crate::fit::auto::candidates::{Candidate, Kind};
+use crate::fit::auto::candidates::{Candidate, CandidateKind};
 use crate::fit::auto::combination::Combination;
-use crate::fit::auto::prior::Evidence;
+use crate::fit::auto::prior::LoopEvidence;
 use crate::fit::auto::score::Score;
-use crate::fit::auto::trial::{Bench, Trial};
+use crate::fit::auto::trial::{FoldBench, Trial};
 use crate::fit::progress::{Standing, Tried};
 use crate::model::Model;
 use crate::optimise::parallel;
@@ -22,10 +22,10 @@ const SIDE_BY_SIDE: usize = 4;
 const HOPELESS: f64 = 3.0;
 const HOPEFUL_OF_KIND: usize = 6;
 
-/// A model with inertia that has fewer parts is enough if its error is at most so many times that of the best.
+/// Largest error, relative to the best, of a model with inertia that has fewer parts and is enough.
 const ABOUT_AS_GOOD: f64 = 1.2;
 
-/// With so many folds at most, all are first folds.
+/// Number of folds up to which all are first folds.
 const FEW_FOLDS: usize = 3;
 
 /// A law passes screening if its training error is at most this many times the best held-out error.
@@ -43,9 +43,9 @@ const REFINED: usize = 2;
 const WITHOUT_NOISE: f64 = 0.01;
 
 pub(super) struct Stages<'w, 'o, 'a> {
-    pub bench: Bench<'w, 'o, 'a>,
+    pub bench: FoldBench<'w, 'o, 'a>,
     pub options: &'w AutoOptions,
-    pub evidence: Evidence,
+    pub evidence: LoopEvidence,
     pub trials: Vec<Trial>,
     /// Candidates that were dropped.
     pub dropped: Vec<Candidate>,
@@ -132,7 +132,7 @@ impl Stages<'_, '_, '_> {
         if has_inertia { 1 } else { SIDE_BY_SIDE }
     }
 
-    /// Ends the starts of some candidates that are under way, and tells what came of them.
+    /// Ends the starts of some candidates that are under way, and reports their results.
     fn end_start(&mut self, places: &[usize]) {
         self.bench.end_start(&mut self.trials, places);
         for &place in places {
@@ -142,7 +142,7 @@ impl Stages<'_, '_, '_> {
     }
 
     fn tell(&self, places: &[usize], standing: Standing) {
-        let Bench { folds, work, .. } = self.bench;
+        let FoldBench { folds, work, .. } = self.bench;
         for trial in places.iter().map(|&place| &self.trials[place]) {
             let (predicted, judged) = match standing {
                 Standing::Complete => (trial.predicted.clone(), (0..folds.len()).collect()),
@@ -175,7 +175,7 @@ impl Stages<'_, '_, '_> {
         let above = |score: &Score| (score.inside - best.inside).min(score.outside - best.outside);
         scored.retain(|(_, score)| above(score) <= ln(HOPELESS));
         scored.sort_by(|(_, a), (_, b)| above(a).total_cmp(&above(b)));
-        let mut of_kinds = [0; Kind::ALL.len()];
+        let mut of_kinds = [0; CandidateKind::ALL.len()];
         scored.retain(|(place, _)| {
             let of_kind = &mut of_kinds[self.trials[*place].candidate.kind as usize];
             *of_kind += 1;
@@ -201,13 +201,13 @@ impl Stages<'_, '_, '_> {
     }
 
     /// The folds on which a candidate shows whether it is hopeless, and the others. Of a single record the first
-    /// is a forecast, the last a block from its middle. Few folds are all needed to tell.
+    /// is a forecast, the last a block from its middle. Few folds are all needed.
     fn first_folds(&self) -> (Vec<usize>, Vec<usize>) {
         let last = self.bench.folds.len() - 1;
         (0..=last).partition(|&fold| fold == 0 || fold == last || last < FEW_FOLDS)
     }
 
-    /// The best networks so far with other penalties, unless the user decided or one loop cannot tell.
+    /// The best networks so far with other penalties, unless the user decided or one loop cannot distinguish them.
     fn refined(&self) -> Vec<Candidate> {
         let Self { options, .. } = self;
         if self.evidence.is_one_loop()
@@ -217,7 +217,8 @@ impl Stages<'_, '_, '_> {
         {
             return Vec::new();
         }
-        let is_network = |trial: &&Trial| trial.is_complete() && trial.candidate.kind == Kind::Networks;
+        let is_network =
+            |trial: &&Trial| trial.is_complete() && trial.candidate.kind == CandidateKind::Networks;
         let score = |trial: &&Trial| Score::of(&trial.predicted, self.bench.folds, |_| true).sum();
         let mut networks: Vec<&Trial> = self.trials.iter().filter(is_network).collect();
         networks.sort_by(|a, b| score(a).total_cmp(&score(b)));
@@ -230,7 +231,7 @@ impl Stages<'_, '_, '_> {
     fn screened(&mut self, laws: Vec<Candidate>) -> Vec<Trial> {
         let all: Vec<usize> = (0..self.bench.folds.len()).collect();
         let Some(best) = self.best(&all) else { return laws.into_iter().map(Trial::of).collect() };
-        let (Bench { data, work, .. }, evidence) = (self.bench, self.evidence);
+        let (FoldBench { data, work, .. }, evidence) = (self.bench, self.evidence);
         let least = if best.inside < ln(WITHOUT_NOISE) { NEARLY_EXACT } else { 0.0 };
         let most_percent = |law: &Candidate| {
             let (most, unseen) = (WORTH_A_TRIAL * exp(best.inside), evidence.unseen_error(law.asked()));
@@ -258,7 +259,7 @@ impl Stages<'_, '_, '_> {
         worth
     }
 
-    /// Drops a law that was judged on no fold.
+    /// Drops a law that was validated on no fold.
     fn drop_unjudged(&mut self, law: Candidate, model: Option<&Model>) {
         let tried = Tried {
             name: law.name(),
@@ -273,7 +274,7 @@ impl Stages<'_, '_, '_> {
     }
 
     fn further_starts(&mut self) {
-        let Bench { folds, work, .. } = self.bench;
+        let FoldBench { folds, work, .. } = self.bench;
         let Some(combination) = Combination::of(&self.trials, folds, self.evidence, |_| true) else { return };
         let is_random = |place: &usize| self.trials[*place].candidate.is_random();
         let places = combination.shares().into_iter().map(|(place, _)| place);

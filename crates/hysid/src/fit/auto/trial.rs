@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::data::record::Dataset;
 use crate::fit::auto::candidates::Candidate;
-use crate::fit::auto::prior::Evidence;
+use crate::fit::auto::prior::LoopEvidence;
 use crate::fit::auto::score::Score;
-use crate::fit::auto::work::Work;
+use crate::fit::auto::work::AutoWork;
 use crate::fit::law::search::spread;
 use crate::model::{Excursion, Model, Predictions};
 use crate::optimise::parallel;
@@ -15,20 +15,20 @@ use crate::validation::Fold;
 #[derive(Debug, Clone)]
 pub(super) struct HeldOut {
     pub fold: Fold,
-    pub rows: Rows,
+    pub rows: FoldRows,
     /// True if what is held out lies beyond the training data.
     pub is_beyond: bool,
 }
 
 impl HeldOut {
     pub fn of(fold: Fold) -> Self {
-        Self { rows: Rows::of(&fold), is_beyond: fold.is_beyond(), fold }
+        Self { rows: FoldRows::of(&fold), is_beyond: fold.is_beyond(), fold }
     }
 }
 
 /// The held-out rows of a fold that have an output.
 #[derive(Debug, Clone)]
-pub(super) struct Rows {
+pub(super) struct FoldRows {
     /// Measured output of each row.
     pub measured: Vec<f64>,
     /// How far outside the fold's training range the record has been there, 0 to 1.
@@ -37,7 +37,7 @@ pub(super) struct Rows {
     pub deviation: f64,
 }
 
-impl Rows {
+impl FoldRows {
     fn of(fold: &Fold) -> Self {
         let range = fold.train.input_range(0);
         let (mut measured, mut outside) = (Vec::new(), Vec::new());
@@ -57,13 +57,13 @@ impl Rows {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct OnFold {
+pub(super) struct FoldTrial {
     pub model: Model,
-    /// What it predicts of each row held out.
+    /// Prediction of each held-out row.
     pub predicted: Vec<f64>,
 }
 
-impl OnFold {
+impl FoldTrial {
     /// Error on what it was fitted to, in percent of the standard deviation.
     pub fn training_error(&self) -> f64 {
         self.model.provenance().trained_error().nrmse_std_percent.unwrap_or(f64::INFINITY)
@@ -75,13 +75,13 @@ impl OnFold {
 pub(super) struct Trial {
     pub candidate: Candidate,
     /// The models of each start, fold by fold.
-    pub starts: Vec<Vec<OnFold>>,
+    pub starts: Vec<Vec<FoldTrial>>,
     /// The median of what the starts predict, fold by fold.
     pub predicted: Vec<Vec<f64>>,
     /// Fits to everything, by their start.
     pub members: BTreeMap<usize, Model>,
     /// The models of the start that is under way, fold by fold.
-    under_way: Vec<Option<OnFold>>,
+    under_way: Vec<Option<FoldTrial>>,
 }
 
 impl Trial {
@@ -102,7 +102,7 @@ impl Trial {
     }
 
     /// The error of the candidate to be expected on loops that the data do not show.
-    pub fn unseen_error(&self, evidence: Evidence) -> f64 {
+    pub fn unseen_error(&self, evidence: LoopEvidence) -> f64 {
         evidence.unseen_error(self.candidate.asked())
     }
 
@@ -114,7 +114,7 @@ impl Trial {
     }
 
     /// Its score on the folds that are `counted`, with what is known of it beside.
-    pub fn score(&self, folds: &[HeldOut], evidence: Evidence, counted: impl Fn(usize) -> bool) -> Score {
+    pub fn score(&self, folds: &[HeldOut], evidence: LoopEvidence, counted: impl Fn(usize) -> bool) -> Score {
         let on_folds = Score::of(&self.predicted, folds, counted);
         on_folds.at_least(self.training_error()).with_unseen(self.unseen_error(evidence))
     }
@@ -123,7 +123,7 @@ impl Trial {
     /// fold.
     pub fn predicted_so_far(&self, wanted: &[usize]) -> Option<Vec<Vec<f64>>> {
         let is_there = |fold: &usize| self.under_way.get(*fold).is_some_and(Option::is_some);
-        let predicted = |on_fold: &Option<OnFold>| on_fold.as_ref().map(|fold| fold.predicted.clone());
+        let predicted = |on_fold: &Option<FoldTrial>| on_fold.as_ref().map(|fold| fold.predicted.clone());
         wanted
             .iter()
             .all(is_there)
@@ -144,14 +144,14 @@ impl Trial {
     /// Ends the start that is under way: it counts if it has been fitted to every fold.
     fn end_start(&mut self, folds: usize) {
         let under_way = std::mem::take(&mut self.under_way);
-        let of_folds: Option<Vec<OnFold>> = under_way.into_iter().collect();
+        let of_folds: Option<Vec<FoldTrial>> = under_way.into_iter().collect();
         if let Some(of_folds) = of_folds.filter(|of_folds| of_folds.len() == folds) {
             self.add_start(of_folds);
         }
     }
 
     /// Adds a start that has been fitted to every fold.
-    pub fn add_start(&mut self, of_folds: Vec<OnFold>) {
+    pub fn add_start(&mut self, of_folds: Vec<FoldTrial>) {
         let folds = of_folds.len();
         self.starts.push(of_folds);
         let median = |fold: usize| {
@@ -183,19 +183,19 @@ struct Job {
 }
 
 #[allow(clippy::large_enum_variant)]
-enum Tried {
-    OnFold(OnFold),
+enum TrialOutcome {
+    OnFold(FoldTrial),
     OnEverything(Model),
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct Bench<'w, 'o, 'a> {
+pub(super) struct FoldBench<'w, 'o, 'a> {
     pub data: &'w Dataset,
     pub folds: &'w [HeldOut],
-    pub work: &'w Work<'o, 'a>,
+    pub work: &'w AutoWork<'o, 'a>,
 }
 
-impl Bench<'_, '_, '_> {
+impl FoldBench<'_, '_, '_> {
     /// Tries a start of some candidates, given by their places, on all folds.
     pub fn try_start(&self, trials: &mut [Trial], places: &[usize], start: usize) {
         let all: Vec<usize> = (0..self.folds.len()).collect();
@@ -222,15 +222,15 @@ impl Bench<'_, '_, '_> {
             }))
         };
         let jobs: Vec<Job> = places.iter().flat_map(of_trial).collect();
-        let fitted: Vec<Option<Tried>> = parallel::each(&jobs, |job| self.run(trials, job));
+        let fitted: Vec<Option<TrialOutcome>> = parallel::each(&jobs, |job| self.run(trials, job));
         for (job, fitted) in jobs.iter().zip(fitted) {
             let trial = &mut trials[job.trial];
             match (fitted, job.fold) {
-                (Some(Tried::OnFold(on_fold)), Some(fold)) => {
+                (Some(TrialOutcome::OnFold(on_fold)), Some(fold)) => {
                     trial.under_way.resize(self.folds.len(), None);
                     trial.under_way[fold] = Some(on_fold);
                 }
-                (Some(Tried::OnEverything(model)), _) => {
+                (Some(TrialOutcome::OnEverything(model)), _) => {
                     trial.members.insert(job.start, model);
                 }
                 _ => {}
@@ -243,23 +243,23 @@ impl Bench<'_, '_, '_> {
         places.iter().for_each(|&place| trials[place].end_start(self.folds.len()));
     }
 
-    fn run(&self, trials: &[Trial], job: &Job) -> Option<Tried> {
+    fn run(&self, trials: &[Trial], job: &Job) -> Option<TrialOutcome> {
         let candidate = &trials[job.trial].candidate;
         // A candidate that fails on a fold is none; why, its name alone would not tell the user.
         let Some(fold) = job.fold else {
             let fitted = self.work.fit(candidate, self.data, job.start).ok().flatten()?;
-            return Some(Tried::OnEverything(fitted.model));
+            return Some(TrialOutcome::OnEverything(fitted.model));
         };
         let fold = &self.folds[fold].fold;
         let model = self.work.fit(&candidate.on_a_fold(), &fold.train, job.start).ok().flatten()?.model;
         let predicted = fold.predicted_by(&model).ok()?;
         let is_sound = predicted.iter().all(|y| y.is_finite());
-        is_sound.then_some(Tried::OnFold(OnFold { model, predicted }))
+        is_sound.then_some(TrialOutcome::OnFold(FoldTrial { model, predicted }))
     }
 }
 
 /// Fits candidates to everything, each given by its place and start, unless that has been done.
-pub(super) fn fit_members(trials: &mut [Trial], wanted: &[(usize, usize)], data: &Dataset, work: &Work) {
+pub(super) fn fit_members(trials: &mut [Trial], wanted: &[(usize, usize)], data: &Dataset, work: &AutoWork) {
     let is_missing = |(place, start): &&(usize, usize)| !trials[*place].members.contains_key(start);
     let missing: Vec<&(usize, usize)> = wanted.iter().filter(is_missing).collect();
     let fit = |&&(place, start): &&(usize, usize)| {

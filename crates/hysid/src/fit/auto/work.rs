@@ -11,25 +11,25 @@ use crate::fit::one_model::identify;
 use crate::fit::progress::{Fitted, Observer, Progress, SharedObserver, Tried};
 use crate::model::Model;
 
-pub(super) struct Work<'o, 'a> {
+pub(super) struct AutoWork<'o, 'a> {
     observer: SharedObserver<'o, 'a>,
-    fits: Mutex<Fits>,
+    fits: Mutex<FitCount>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Fits {
+struct FitCount {
     done: usize,
     expected: usize,
-    /// The share of the work that was told last: it never falls.
+    /// The share of the work that was reported last: it never falls.
     told: f64,
 }
 
-impl<'o, 'a> Work<'o, 'a> {
-    /// Work of about so many fits.
+impl<'o, 'a> AutoWork<'o, 'a> {
+    /// Work of about this number of fits.
     pub fn new(observer: &'o mut Observer<'a>, expected: usize) -> Self {
         Self {
             observer: SharedObserver::new(observer, None),
-            fits: Mutex::new(Fits { done: 0, expected: expected.max(1), told: 0.0 }),
+            fits: Mutex::new(FitCount { done: 0, expected: expected.max(1), told: 0.0 }),
         }
     }
 
@@ -90,7 +90,7 @@ impl<'o, 'a> Work<'o, 'a> {
         fits.told
     }
 
-    fn fits(&self) -> std::sync::MutexGuard<'_, Fits> {
+    fn fits(&self) -> std::sync::MutexGuard<'_, FitCount> {
         self.fits.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }

@@ -17,12 +17,12 @@ use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
 use crate::fit::initial_state::quick;
-use crate::fit::law::preisach::Problem;
-use crate::fit::law::random_stops::Drawn;
-use crate::fit::sums::{Gatherer, Sums};
+use crate::fit::law::preisach::PreisachProblem;
+use crate::fit::law::random_stops::DrawnStops;
+use crate::fit::sums::{SumGatherer, Sums};
 use crate::law::facts::Origin;
 use crate::law::series::Series;
-use crate::model::input_transform::Transformed;
+use crate::model::input_transform::TransformedData;
 use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::Penalty;
 use crate::optimise::parallel;
@@ -63,24 +63,24 @@ pub(super) fn lead_ins(
     let scored: Vec<usize> =
         (0..data.records().len()).filter(|&index| data.records()[index].scored() > 0).collect();
     let mut found = vec![Vec::new(); data.records().len()];
-    let mut before: Option<Before> = None;
+    let mut before: Option<EarlierRecords> = None;
     for records in scored.chunks(TOGETHER) {
         let part = data.partition(|index| records.binary_search(&index).is_ok()).0;
         let sums = match features.sums(&part, &tried, stop) {
             Err(Error::Stopped) => return Ok(None),
             sums => sums?,
         };
-        let search = Search { features: &features, sums: &sums, before: before.as_ref(), stop };
+        let search = StateSearch { features: &features, sums: &sums, before: before.as_ref(), stop };
         let Some(chosen) = search.lowest() else { return Ok(None) };
         for (&record, &place) in records.iter().zip(&chosen) {
             found[record].clone_from(&tried[place]);
         }
-        before = Some(Before { total: search.total(&chosen), most_frequent: most_frequent(&chosen) });
+        before = Some(EarlierRecords { total: search.total(&chosen), most_frequent: most_frequent(&chosen) });
     }
     Ok(Some(found))
 }
 
-struct Before {
+struct EarlierRecords {
     total: Sums,
     /// Lead-in of most records of the last part.
     most_frequent: usize,
@@ -89,17 +89,18 @@ struct Before {
 struct Features {
     rate: Option<RateMethod>,
     scaling: Scaling,
-    drawn: Drawn,
-    relays: Problem,
+    drawn: DrawnStops,
+    relays: PreisachProblem,
     penalty: Penalty,
 }
 
 impl Features {
     fn of(data: &Dataset, rate: Option<RateMethod>, seed: u64) -> Result<Self> {
-        let seen = Transformed::of(data, &InputOptions::default(), rate, Origin::OfData)?;
+        let seen = TransformedData::of(data, &InputOptions::default(), rate, Origin::OfData)?;
         let options = ClassicalOptions { rate: seen.rate, seed, operators: Some(STOPS), ..quick() };
-        let drawn = Drawn::of(&seen.data, &options)?;
-        let relays = Problem::of(&Series::all(&seen.data, None)?, seen.data.input_range(0), INTERVALS);
+        let drawn = DrawnStops::of(&seen.data, &options)?;
+        let relays =
+            PreisachProblem::of(&Series::all(&seen.data, None)?, seen.data.input_range(0), INTERVALS);
         let features = drawn.features() + relays.features() - 1;
         let penalty = Penalty::ridge((0..features).map(|i| f64::from(u8::from(i > 0))));
         Ok(Self { rate, scaling: Scaling::of(&seen.data, seen.rate)?, drawn, relays, penalty })
@@ -108,7 +109,7 @@ impl Features {
     fn sums(&self, data: &Dataset, tried: &[Vec<f64>], stop: StopCheck<'_>) -> Result<Vec<Vec<Sums>>> {
         let with = |lead_in: &Vec<f64>| -> Result<Vec<Sums>> {
             let begun = data.clone().with_lead_ins(|_, _| lead_in.clone())?;
-            let seen = Transformed::of(&begun, &InputOptions::default(), self.rate, Origin::OfData)?;
+            let seen = TransformedData::of(&begun, &InputOptions::default(), self.rate, Origin::OfData)?;
             seen.data.records().iter().map(|record| self.sums_of(record, seen.rate, stop)).collect()
         };
         let by_lead_in: Vec<Vec<Sums>> = parallel::each(tried, with).into_iter().collect::<Result<_>>()?;
@@ -121,7 +122,7 @@ impl Features {
         let stops = self.drawn.rows(record, &self.scaling, rate, stop)?;
         let relays = self.relays.rows(&Series::of(record, None)?, &self.scaling, stop)?;
         let features = self.drawn.features();
-        let mut gatherer = Gatherer::new(features + self.relays.features() - 1, &RowFolds::one(), stop);
+        let mut gatherer = SumGatherer::new(features + self.relays.features() - 1, &RowFolds::one(), stop);
         let mut both = vec![0.0; features + self.relays.features() - 1];
         for (row, of_relays) in relays.iter().enumerate() {
             both.iter_mut().zip(&stops[..features]).for_each(|(value, column)| *value = column[row]);
@@ -142,15 +143,15 @@ impl Features {
     }
 }
 
-struct Search<'s> {
+struct StateSearch<'s> {
     features: &'s Features,
     /// Of each record with each lead-in.
     sums: &'s [Vec<Sums>],
-    before: Option<&'s Before>,
+    before: Option<&'s EarlierRecords>,
     stop: StopCheck<'s>,
 }
 
-impl Search<'_> {
+impl StateSearch<'_> {
     /// The places of the lead-ins with the lowest `J` of all beginnings; `None` once stopped.
     fn lowest(&self) -> Option<Vec<usize>> {
         let beginnings = match self.before {

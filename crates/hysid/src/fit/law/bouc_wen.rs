@@ -5,7 +5,7 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
+use crate::fit::law::search::{FeatureColumns, MemoryKind, SearchFamily, SearchVariable, Unknowns, thinned};
 use crate::law::Sample;
 use crate::law::bouc_wen::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
 use crate::law::series::Series;
@@ -15,41 +15,41 @@ use crate::options::classical::ClassicalOptions;
 const OPERATIONS_A_ROW: usize = 5000;
 
 impl SearchedLaw for BoucWen {
-    type Family = Elements;
+    type Family = BoucWenFamily;
 
-    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Elements, Vec<Series>)> {
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(BoucWenFamily, Vec<Series>)> {
         // The rate only adds to the output, so it is no part of the memory.
-        let series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
+        let series = thinned(Series::all(data, options.rate)?, MemoryKind::TurningPoints);
         let (low, high) = data.input_range(0);
         // The element starts at 0: an input far from it is reached by yielding.
         let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
-        Ok((Elements::new(range, options), series))
+        Ok((BoucWenFamily::new(range, options), series))
     }
 }
 
-pub(crate) struct Elements {
+pub(crate) struct BoucWenFamily {
     degradation: bool,
     unknowns: Unknowns,
 }
 
-impl Elements {
+impl BoucWenFamily {
     fn new(range: f64, options: &ClassicalOptions) -> Self {
         let mut variables = vec![
-            Variable::logarithmic(0.005 * range, 2.0 * range),
-            Variable::linear(B_BOUNDS.0, 2.0),
-            Variable::logarithmic(1.0, 8.0),
+            SearchVariable::logarithmic(0.005 * range, 2.0 * range),
+            SearchVariable::linear(B_BOUNDS.0, 2.0),
+            SearchVariable::logarithmic(1.0, 8.0),
         ];
         if options.degradation {
             variables.extend([
-                Variable::logarithmic(1e-6, 0.1),
-                Variable::logarithmic(1e-5, 1.0),
-                Variable::logarithmic(1e-5, 1.0),
-                Variable::linear(0.0, 0.99),
-                Variable::logarithmic(1e-3, 10.0),
-                Variable::linear(-0.5, 1.0),
-                Variable::logarithmic(0.03, 3.0),
-                Variable::logarithmic(1e-5, 0.1),
-                Variable::logarithmic(0.03, 3.0),
+                SearchVariable::logarithmic(1e-6, 0.1),
+                SearchVariable::logarithmic(1e-5, 1.0),
+                SearchVariable::logarithmic(1e-5, 1.0),
+                SearchVariable::linear(0.0, 0.99),
+                SearchVariable::logarithmic(1e-3, 10.0),
+                SearchVariable::linear(-0.5, 1.0),
+                SearchVariable::logarithmic(0.03, 3.0),
+                SearchVariable::logarithmic(1e-5, 0.1),
+                SearchVariable::logarithmic(0.03, 3.0),
             ]);
         }
         let columns = if options.rate.is_some() { 4 } else { 3 };
@@ -75,7 +75,7 @@ impl Elements {
     }
 }
 
-impl LawFamily for Elements {
+impl LawFamily for BoucWenFamily {
     type Law = BoucWen;
 
     fn whole(&self, searched: &[f64], weights: &[f64]) -> BoucWen {
@@ -94,12 +94,12 @@ impl LawFamily for Elements {
     }
 }
 
-impl Family for Elements {
+impl SearchFamily for BoucWenFamily {
     fn unknowns(&self) -> &Unknowns {
         &self.unknowns
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>) {
         let law = self.law(parameters);
         let mut state = BoucWenState::default();
         columns.run(series, OPERATIONS_A_ROW, |&Sample { x, rate, .. }| {

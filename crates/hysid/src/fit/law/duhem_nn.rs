@@ -19,16 +19,18 @@ use crate::data::record::Dataset;
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::grids::spaced;
-use crate::fit::law::search::{Identified, Memory, check_effort, measured, spread, thinned_to};
-use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
+use crate::fit::law::search::{IdentifiedLaw, MemoryKind, check_effort, measured, spread, thinned_to};
+use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
 use crate::fit::sums::output_weights::{OutputProblem, OutputSolution};
 use crate::law::Law;
-use crate::law::duhem_nn::{DuhemNn, Input, LARGEST_WEIGHT, Layout, Run, Shape};
+use crate::law::duhem_nn::{CellLayout, CellRun, CellShape, DuhemNn, Input, LARGEST_WEIGHT};
 use crate::law::series::Series;
 use crate::linear_algebra::{Gram, Symmetric};
 use crate::model::input_transform::common_magnitude;
-use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, step_within};
-use crate::optimise::multi_start::{MultiStart, Plan, Start};
+use crate::optimise::levenberg_marquardt::{
+    DescentSettings, LeastSquaresProblem, LevenbergMarquardt, Slope, step_within,
+};
+use crate::optimise::multi_start::{MultiStart, RoundPlan, SearchStart};
 use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalOptions;
@@ -38,7 +40,7 @@ use crate::termination::Termination;
 use hysid_core::elementary::ln;
 use rand::RngExt;
 
-/// Share of the data that judges the starts.
+/// Share of the data that the starts are validated on.
 const HELD_OUT: f64 = 0.25;
 
 /// λ: penalty on the squared output weights.
@@ -50,7 +52,7 @@ const DECAY: f64 = 1e-5;
 /// Rows compared with the measured output at most.
 const MOST_COMPARED: usize = 2000;
 
-/// After so many epochs half of the starts are given up, and again after as many more.
+/// Epochs after which half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 12;
 
 const PATH_LEAKS: (f64, f64) = (1e-3, 1e3);
@@ -67,33 +69,37 @@ impl Identify for DuhemNn {
         options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
+    ) -> Result<IdentifiedLaw<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         check_effort(options)?;
-        let frame = Frame::new(data, options)?;
-        let whole = Task::new(&frame, data, options, stop)?;
+        let frame = DuhemFrame::new(data, options)?;
+        let whole = DuhemTask::new(&frame, data, options, stop)?;
         // Nothing is to be chosen from a single start, so that it is trained on all data.
         let split = if options.starts() > 1 { data.split_for_validation(HELD_OUT) } else { None };
         let Some((kept, held)) = split else {
-            return Training::new(&whole, None, options)?.run(&whole, observer);
+            return DuhemTraining::new(&whole, None, options)?.run(&whole, observer);
         };
         let (kept, held) =
-            (Task::new(&frame, &kept, options, stop)?, Task::new(&frame, &held, options, stop)?);
-        Training::new(&kept, Some(&held), options)?.run(&whole, observer)
+            (DuhemTask::new(&frame, &kept, options, stop)?, DuhemTask::new(&frame, &held, options, stop)?);
+        DuhemTraining::new(&kept, Some(&held), options)?.run(&whole, observer)
     }
 }
 
-struct Training<'a> {
-    /// What they are trained on, and what judges them.
-    kept: &'a Task<'a>,
-    held: Option<&'a Task<'a>>,
-    walks: MultiStart<Walk>,
+struct DuhemTraining<'a> {
+    /// Training and validation data.
+    kept: &'a DuhemTask<'a>,
+    held: Option<&'a DuhemTask<'a>>,
+    walks: MultiStart<DuhemWalk>,
     epochs: usize,
 }
 
-impl<'a> Training<'a> {
-    fn new(kept: &'a Task<'a>, held: Option<&'a Task<'a>>, options: &ClassicalOptions) -> Result<Self> {
-        let begin = |start| Walk::new(kept, kept.random(options.seed, start));
+impl<'a> DuhemTraining<'a> {
+    fn new(
+        kept: &'a DuhemTask<'a>,
+        held: Option<&'a DuhemTask<'a>>,
+        options: &ClassicalOptions,
+    ) -> Result<Self> {
+        let begin = |start| DuhemWalk::new(kept, kept.random(options.seed, start));
         let mut walks = MultiStart::new(parallel::numbered(options.starts(), begin));
         walks.sort();
         if walks.best().value().objective == f64::INFINITY {
@@ -102,21 +108,26 @@ impl<'a> Training<'a> {
         Ok(Self { kept, held, walks, epochs: options.epochs() })
     }
 
-    fn run(mut self, whole: &Task<'_>, observer: &mut SearchObserver<'_>) -> Result<Identified<DuhemNn>> {
+    fn run(
+        mut self,
+        whole: &DuhemTask<'_>,
+        observer: &mut SearchObserver<'_>,
+    ) -> Result<IdentifiedLaw<DuhemNn>> {
         let last = if self.held.is_some() { self.epochs.div_ceil(6) } else { 0 };
         let rounds = self.epochs + last;
-        let mut tell = |round, evaluations, best: &Walk| {
+        let mut tell = |round, evaluations, best: &DuhemWalk| {
             let law = || {
                 let (parameters, value) = best.least();
                 whole.law(parameters, value).ok().map(Into::into)
             };
-            let (train_nrmse_percent, law) = (best.value().nrmse_percent(), LawSoFar(Some(&law)));
+            let (train_nrmse_percent, law) = (best.value().nrmse_percent(), PartialLaw(Some(&law)));
             let told = observer(SearchProgress { round, rounds, evaluations, train_nrmse_percent, law });
             if whole.stop.is_asked() { ControlFlow::Break(()) } else { told }
         };
         let Self { kept, held, ref mut walks, epochs } = self;
-        let plan = Plan { rounds: epochs, spared: 0, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
-        let advance = |walk: &mut Walk, _| {
+        let plan =
+            RoundPlan { rounds: epochs, spared: 0, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
+        let advance = |walk: &mut DuhemWalk, _| {
             if walk.ended.is_none() {
                 walk.advance(kept);
                 held.iter().for_each(|held| walk.judge(held));
@@ -130,7 +141,7 @@ impl<'a> Training<'a> {
             return whole.identified(parameters, value, evaluations, termination);
         }
         // What was held out is learnt from where it was judged best, in few epochs.
-        let mut walk = Walk::new(whole, parameters.to_vec());
+        let mut walk = DuhemWalk::new(whole, parameters.to_vec());
         if walk.value().objective == f64::INFINITY {
             return whole.identified(parameters, value, evaluations, Termination::Stopped);
         }
@@ -151,10 +162,10 @@ impl<'a> Training<'a> {
     }
 }
 
-/// The numbers of parts that are asked for, for data with or without time stamps.
-pub(crate) fn shape_of(options: &ClassicalOptions, has_time: bool) -> Shape {
+/// The requested numbers of parts, for data with or without time stamps.
+pub(crate) fn shape_of(options: &ClassicalOptions, has_time: bool) -> CellShape {
     let has_rate = options.rate.is_some();
-    Shape {
+    CellShape {
         channels: if has_rate { 2 } else { 1 },
         stops: options.operators(),
         states: options.states(),
@@ -163,7 +174,7 @@ pub(crate) fn shape_of(options: &ClassicalOptions, has_time: bool) -> Shape {
     }
 }
 
-fn check_shape(shape: Shape) -> Result<()> {
+fn check_shape(shape: CellShape) -> Result<()> {
     check_counts(DuhemNn::FACTS.limits, |option| match option {
         "hidden" => shape.neurons,
         "operators" => shape.stops,
@@ -173,22 +184,22 @@ fn check_shape(shape: Shape) -> Result<()> {
 }
 
 /// The scales of the data, and what the network consists of.
-struct Frame {
+struct DuhemFrame {
     /// Without a network.
     law: DuhemNn,
-    layout: Layout,
+    layout: CellLayout,
     bounds: Vec<(f64, f64)>,
     /// Mean time step and duration of the longest record.
     times: (f64, f64),
 }
 
-impl Frame {
+impl DuhemFrame {
     fn new(data: &Dataset, options: &ClassicalOptions) -> Result<Self> {
         let series = Series::all(data, options.rate)?;
         let times = time_scales(&series);
         let shape = shape_of(options, times.1 > 0.0);
         check_shape(shape)?;
-        let layout = Layout::new(shape);
+        let layout = CellLayout::new(shape);
         let (low, high) = data.input_range(0);
         let (output_mean, output_scale) = spread(&measured(&series));
         let rates = series.iter().flat_map(|series| &series.samples).map(|sample| sample.rate.abs());
@@ -205,24 +216,24 @@ impl Frame {
     }
 }
 
-/// What a start is trained on or judged by: scaled records.
-struct Task<'a> {
-    frame: &'a Frame,
+/// Scaled records that a start is trained or validated on.
+struct DuhemTask<'a> {
+    frame: &'a DuhemFrame,
     drives: Vec<Vec<Input>>,
     targets: Vec<Vec<f64>>,
     rows: usize,
     stop: StopCheck<'a>,
 }
 
-impl<'a> Task<'a> {
+impl<'a> DuhemTask<'a> {
     fn new(
-        frame: &'a Frame,
+        frame: &'a DuhemFrame,
         data: &Dataset,
         options: &ClassicalOptions,
         stop: StopCheck<'a>,
     ) -> Result<Self> {
         let law = &frame.law;
-        let series = thinned_to(Series::all(data, options.rate)?, Memory::Path, MOST_COMPARED);
+        let series = thinned_to(Series::all(data, options.rate)?, MemoryKind::Path, MOST_COMPARED);
         let scaled = |series: &Series| series.samples.iter().map(|&sample| law.scaled(sample)).collect();
         let target = |series: &Series| {
             series.output.iter().map(|y| (y - law.output_mean) / law.output_scale).collect()
@@ -234,7 +245,7 @@ impl<'a> Task<'a> {
 
     fn random(&self, seed: u64, start: usize) -> Vec<f64> {
         let mut generator = generator(seed, start);
-        let Frame { layout, times: (step, duration), .. } = self.frame;
+        let DuhemFrame { layout, times: (step, duration), .. } = self.frame;
         let shape = layout.shape;
         let mut parameters = vec![0.0; layout.count()];
         let spread = 1.2 / (shape.inputs() as f64).sqrt();
@@ -262,7 +273,7 @@ impl<'a> Task<'a> {
     }
 
     /// The network with these parameters and the output weights there.
-    fn law(&self, parameters: &[f64], value: &Value) -> Result<DuhemNn> {
+    fn law(&self, parameters: &[f64], value: &DuhemValue) -> Result<DuhemNn> {
         let cell = self.frame.layout.cell(parameters, value.solution.weights.clone());
         DuhemNn { cell, ..self.frame.law.clone() }.validated()
     }
@@ -270,19 +281,19 @@ impl<'a> Task<'a> {
     fn identified(
         &self,
         parameters: &[f64],
-        value: &Value,
+        value: &DuhemValue,
         evaluations: usize,
         termination: Termination,
-    ) -> Result<Identified<DuhemNn>> {
+    ) -> Result<IdentifiedLaw<DuhemNn>> {
         let law = self.law(parameters, value)?;
         let train_nrmse_percent = value.nrmse_percent();
-        Ok(Identified { law, train_nrmse_percent, evaluations, termination, searched: Vec::new() })
+        Ok(IdentifiedLaw { law, train_nrmse_percent, evaluations, termination, searched: Vec::new() })
     }
 
     /// The Gram matrix of the terms of the output and the target, and of the Jacobian for given output weights.
     fn gram(&self, parameters: &[f64], output: Option<&[f64]>) -> Option<Gram> {
         let weights = output.map_or_else(|| vec![0.0; self.frame.layout.shape.terms()], <[f64]>::to_vec);
-        let run = Run {
+        let run = CellRun {
             cell: &self.frame.layout.cell(parameters, weights),
             drives: &self.drives,
             targets: &self.targets,
@@ -293,7 +304,7 @@ impl<'a> Task<'a> {
     }
 
     /// Mean square error of the network with these output weights; `None` once stopped.
-    fn mean_square(&self, parameters: &[f64], value: &Value) -> Option<f64> {
+    fn mean_square(&self, parameters: &[f64], value: &DuhemValue) -> Option<f64> {
         let weights = &value.solution.weights;
         let gram = self.gram(parameters, None)?;
         let target = weights.len();
@@ -329,7 +340,7 @@ fn time_scales(series: &[Series]) -> (f64, f64) {
     (durations.clone().sum::<f64>() / steps.max(1) as f64, durations.fold(0.0, f64::max))
 }
 
-fn bounds(layout: &Layout, index: usize, (step, duration): (f64, f64)) -> (f64, f64) {
+fn bounds(layout: &CellLayout, index: usize, (step, duration): (f64, f64)) -> (f64, f64) {
     if layout.ln_path_leaks.contains(&index) {
         (ln(PATH_LEAKS.0), ln(PATH_LEAKS.1))
     } else if layout.ln_relaxation_times.contains(&index) {
@@ -342,43 +353,43 @@ fn bounds(layout: &Layout, index: usize, (step, duration): (f64, f64)) -> (f64, 
 
 /// The objective at a point, with the output weights there; infinite if it was broken off.
 #[derive(Debug, Clone)]
-struct Value {
+struct DuhemValue {
     objective: f64,
     mean_square: f64,
     solution: OutputSolution,
 }
 
-impl Value {
+impl DuhemValue {
     fn nrmse_percent(&self) -> f64 {
         100.0 * self.mean_square.sqrt()
     }
 }
 
-impl Problem for Task<'_> {
-    type Value = Value;
+impl LeastSquaresProblem for DuhemTask<'_> {
+    type Value = DuhemValue;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules::SMOOTH;
+    const RULES: DescentSettings = DescentSettings::SMOOTH;
 
-    fn value(&self, parameters: &[f64]) -> Value {
+    fn value(&self, parameters: &[f64]) -> DuhemValue {
         let solution = match self.gram(parameters, None) {
             Some(gram) => self.output_problem(&gram).solve(),
             None => OutputSolution::broken_off(self.frame.layout.shape.terms()),
         };
         let decay: f64 = self.weights(parameters).map(|(_, w)| w * w).sum();
-        let objective = solution.objective + 0.5 * DECAY * decay;
-        Value { objective, mean_square: solution.mean_square, solution }
+        let objective = solution.objective + 0.5 * DECAY * decay; // (8.36)
+        DuhemValue { objective, mean_square: solution.mean_square, solution }
     }
 
-    fn objective(value: &Value) -> f64 {
+    fn objective(value: &DuhemValue) -> f64 {
         value.objective
     }
 
-    fn slope(&self, parameters: &[f64], value: &Value) -> Option<Slope<Symmetric>> {
+    fn slope(&self, parameters: &[f64], value: &DuhemValue) -> Option<Slope<Symmetric>> {
         let gram = self.gram(parameters, Some(&value.solution.weights))?;
         let (mut gradient, mut curvature) =
             self.output_problem(&gram).linearise(&value.solution, parameters.len());
         for (index, weight) in self.weights(parameters) {
-            gradient[index] += DECAY * weight;
+            gradient[index] += DECAY * weight; // (3.3)
             curvature.add_to_diagonal(index, DECAY);
         }
         let diagonal = (0..gradient.len()).map(|index| curvature.diagonal(index)).collect();
@@ -404,27 +415,27 @@ impl Problem for Task<'_> {
     }
 }
 
-struct Walk {
-    search: LevenbergMarquardt<Value>,
+struct DuhemWalk {
+    search: LevenbergMarquardt<DuhemValue>,
     ended: Option<Termination>,
     /// Evaluations of what was held out.
     judged: usize,
     /// Smallest error on what was held out, and where it was.
-    least_on_held_out: Option<(f64, Vec<f64>, Value)>,
+    least_on_held_out: Option<(f64, Vec<f64>, DuhemValue)>,
 }
 
-impl Walk {
-    fn new(task: &Task<'_>, parameters: Vec<f64>) -> Self {
+impl DuhemWalk {
+    fn new(task: &DuhemTask<'_>, parameters: Vec<f64>) -> Self {
         let search = LevenbergMarquardt::new(task, parameters);
         Self { search, ended: None, judged: 0, least_on_held_out: None }
     }
 
-    fn advance(&mut self, task: &Task<'_>) {
+    fn advance(&mut self, task: &DuhemTask<'_>) {
         self.ended = self.search.advance(task);
     }
 
     /// Remembers the parameters if they do better than any before on what was held out.
-    fn judge(&mut self, held: &Task<'_>) {
+    fn judge(&mut self, held: &DuhemTask<'_>) {
         let Some(error) = held.mean_square(self.search.parameters(), self.value()) else { return };
         self.judged += 1;
         if self.least_on_held_out.as_ref().is_none_or(|(least, ..)| error < *least) {
@@ -432,12 +443,12 @@ impl Walk {
         }
     }
 
-    fn value(&self) -> &Value {
+    fn value(&self) -> &DuhemValue {
         self.search.known_value().expect("a walk begins at a known value")
     }
 
-    /// Where the error on what was held out is smallest, and the value there; the present place if that was not judged.
-    fn least(&self) -> (&[f64], &Value) {
+    /// Where the error on held-out data is smallest, and the value there; the present place if it was not validated.
+    fn least(&self) -> (&[f64], &DuhemValue) {
         self.least_on_held_out.as_ref().map_or_else(
             || (self.search.parameters(), self.value()),
             |(_, parameters, value)| (parameters.as_slice(), value),
@@ -445,10 +456,10 @@ impl Walk {
     }
 }
 
-impl Start for Walk {
-    /// By what was held out, if that has been judged.
+impl SearchStart for DuhemWalk {
+    /// By the error on held-out data, if there is one.
     fn order(&self, other: &Self) -> Ordering {
-        let rank = |walk: &Walk| walk.least_on_held_out.as_ref().map(|(error, ..)| *error);
+        let rank = |walk: &DuhemWalk| walk.least_on_held_out.as_ref().map(|(error, ..)| *error);
         match (rank(self), rank(other)) {
             (None, None) => self.value().objective.total_cmp(&other.value().objective),
             (a, b) => a.unwrap_or(f64::INFINITY).total_cmp(&b.unwrap_or(f64::INFINITY)),

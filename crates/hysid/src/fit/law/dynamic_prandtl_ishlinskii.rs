@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::grids::check_count;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
+use crate::fit::law::search::{FeatureColumns, MemoryKind, SearchFamily, SearchVariable, Unknowns, thinned};
 use crate::law::Sample;
 use crate::law::dynamic_prandtl_ishlinskii::{
     DeadZone, DynamicPrandtlIshlinskii, MOST_RELAXATIONS, Relaxation, Resonance,
@@ -55,7 +55,7 @@ impl SearchedLaw for DynamicPrandtlIshlinskii {
         }
         let series = Series::all(data, None)?;
         let family = Dynamic::new(&series, options);
-        Ok((family, thinned(series, Memory::Path)))
+        Ok((family, thinned(series, MemoryKind::Path)))
     }
 }
 
@@ -74,7 +74,7 @@ pub(crate) struct Dynamic {
 }
 
 /// The law of some searched parameters, without weights.
-struct Frame {
+struct UnweightedLaw {
     lag: Option<f64>,
     relaxations: Vec<(f64, f64)>,
     resonance: Option<Resonance>,
@@ -84,15 +84,15 @@ struct Frame {
 }
 
 /// The factors of a time step, without allocation: the rows of a thinned record have steps of many lengths.
-struct Factors {
+struct StepFactors {
     time_step: f64,
     lag: (f64, f64),
     relaxations: [(f64, f64); MOST_RELAXATIONS],
     resonance: Option<Propagation>,
 }
 
-impl Factors {
-    fn of(frame: &Frame, time_step: f64) -> Self {
+impl StepFactors {
+    fn of(frame: &UnweightedLaw, time_step: f64) -> Self {
         let mut relaxations = [(1.0, 1.0); MOST_RELAXATIONS];
         for (factors, &(tau, _)) in relaxations.iter_mut().zip(&frame.relaxations) {
             *factors = decay(time_step, tau);
@@ -119,7 +119,7 @@ impl Dynamic {
         let (step, record) = times(series);
         let time_constant = |longest: f64| {
             let shortest = SHORTEST_OF_STEP * step;
-            Variable::logarithmic(shortest, (longest * record).max(3.0 * shortest))
+            SearchVariable::logarithmic(shortest, (longest * record).max(3.0 * shortest))
         };
         let mut variables = Vec::new();
         let mut ranges = vec![(0.0, largest(series, None))];
@@ -130,13 +130,13 @@ impl Dynamic {
             variables.push(lag);
         }
         for _ in 0..relaxations {
-            variables.extend([time_constant(LONGEST_OF_RECORD), Variable::linear(SHARES.0, SHARES.1)]);
+            variables.extend([time_constant(LONGEST_OF_RECORD), SearchVariable::linear(SHARES.0, SHARES.1)]);
         }
         if has_resonance {
             let (slowest, fastest) = (1.0 / record, 3.0 / step);
             variables.extend([
-                Variable::logarithmic(slowest, fastest.max(3.0 * slowest)),
-                Variable::logarithmic(DAMPINGS.0, DAMPINGS.1),
+                SearchVariable::logarithmic(slowest, fastest.max(3.0 * slowest)),
+                SearchVariable::logarithmic(DAMPINGS.0, DAMPINGS.1),
             ]);
         }
         let sign = if work(series) < 0.0 { 1.0 } else { -1.0 };
@@ -155,14 +155,14 @@ impl Dynamic {
         }
     }
 
-    fn frame(&self, searched: &[f64]) -> Frame {
+    fn frame(&self, searched: &[f64]) -> UnweightedLaw {
         let (lag, rest) = searched.split_at(usize::from(self.has_lag));
         let (relaxations, resonance) = rest.split_at(2 * self.relaxations);
         let lag = lag.first().copied();
         let range = self.range(lag);
         let spacing = range / (self.operators as f64 + BEYOND);
         let bend = |place: usize| range * place as f64 / (self.dead_zones + 1) as f64;
-        Frame {
+        UnweightedLaw {
             lag,
             relaxations: relaxations.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect(),
             resonance: self
@@ -254,12 +254,12 @@ impl LawFamily for Dynamic {
     }
 }
 
-impl Family for Dynamic {
+impl SearchFamily for Dynamic {
     fn unknowns(&self) -> &Unknowns {
         &self.unknowns
     }
 
-    fn features(&self, searched: &[f64], series: &Series, columns: &mut Columns<'_>) {
+    fn features(&self, searched: &[f64], series: &Series, columns: &mut FeatureColumns<'_>) {
         let frame = self.frame(searched);
         let of_memory = 1 + frame.dead_zones.len() + frame.plays.len();
         let operations = of_memory * (4 + 4 * self.relaxations + if self.has_resonance { 16 } else { 0 });
@@ -272,29 +272,29 @@ impl Family for Dynamic {
         let mut motions = vec![[0.0; 2]; if self.has_resonance { of_memory } else { 0 }];
         let (mut lag, mut x_before, mut input_stresses) = (0.0, 0.0, vec![0.0; self.relaxations]);
         let mut row = vec![1.0; self.unknowns.non_negative.len()];
-        let mut factors = Factors::of(&frame, 0.0);
+        let mut factors = StepFactors::of(&frame, 0.0);
         for (index, (sample, y)) in series.samples.iter().zip(&series.output).enumerate() {
             if columns.is_over(operations) {
                 return;
             }
             if !factors.are_of(sample.step) {
-                factors = Factors::of(&frame, sample.step);
+                factors = StepFactors::of(&frame, sample.step);
             }
             let risen = if index > 0 { sample.x - x_before } else { 0.0 };
             x_before = sample.x;
             let mut u = sample.x;
             if frame.lag.is_some() {
                 lag = advance(lag, risen, factors.lag);
-                u -= lag;
+                u -= lag; // (8.53)
             }
             std::mem::swap(&mut before, &mut features);
             features[0] = u;
             let (curve, of_plays) = features[1..].split_at_mut(frame.dead_zones.len());
             for (feature, &threshold) in curve.iter_mut().zip(&frame.dead_zones) {
-                *feature = dead_zone(u, threshold);
+                *feature = dead_zone(u, threshold); // (8.54): S_d
             }
             for ((feature, play), &r) in of_plays.iter_mut().zip(&mut plays).zip(&frame.plays) {
-                *play = play::follow(*play, u, r);
+                *play = play::follow(*play, u, r); // (8.54): p_r
                 *feature = self.sign * *play;
             }
             if index == 0 {
@@ -308,13 +308,14 @@ impl Family for Dynamic {
                 let changes = features.iter().zip(&before);
                 for ((stress, (&now, &before)), relaxed) in stresses.iter_mut().zip(changes).zip(&mut *of_row)
                 {
-                    *stress = advance(*stress, now - before, factors);
-                    *relaxed += share * *stress;
+                    *stress = advance(*stress, now - before, factors); // (1.11)
+                    *relaxed += share * *stress; // (8.55)
                 }
             }
             if let Some(step) = &factors.resonance {
                 for ((motion, before), feature) in motions.iter_mut().zip(&mut forces_before).zip(of_row) {
                     let force = *feature;
+                    // (8.56)
                     *motion = if index > 0 { step.moved(*motion, [*before, force]) } else { [force, 0.0] };
                     *before = force;
                     *feature = motion[0];
@@ -325,12 +326,12 @@ impl Family for Dynamic {
                 beside[0] = sample.x;
                 let each = input_stresses.iter_mut().zip(&factors.relaxations).zip(&mut beside[1..]);
                 for ((stress, &factors), feature) in each {
-                    *stress = advance(*stress, risen, factors);
+                    *stress = advance(*stress, risen, factors); // (1.11)
                     *feature = *stress;
                 }
             }
             if !y.is_nan() {
-                columns.push(&row);
+                columns.push(&row); // (8.58)
             }
         }
     }

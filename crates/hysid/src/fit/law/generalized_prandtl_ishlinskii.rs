@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::grids::check_count;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
+use crate::fit::law::search::{FeatureColumns, MemoryKind, SearchFamily, SearchVariable, Unknowns, thinned};
 use crate::law::generalized_prandtl_ishlinskii::{
     Envelope, GeneralizedPrandtlIshlinskii, PlayWeights, follow,
 };
@@ -24,19 +24,19 @@ use crate::options::classical::ClassicalOptions;
 const SMALLEST_SHARE: f64 = 0.1;
 
 impl SearchedLaw for GeneralizedPrandtlIshlinskii {
-    type Family = Plays;
+    type Family = GeneralizedFamily;
 
-    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Plays, Vec<Series>)> {
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(GeneralizedFamily, Vec<Series>)> {
         check_count("operators", options.operators(), MOST_PLAYS)?;
         let series = Series::all(data, None)?;
         let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };
         let lags = sign * work(&series) < 0.0;
-        let series = thinned(series, Memory::TurningPoints);
-        Ok((Plays::new(data.input_range(0), sign, lags, options), series))
+        let series = thinned(series, MemoryKind::TurningPoints);
+        Ok((GeneralizedFamily::new(data.input_range(0), sign, lags, options), series))
     }
 }
 
-pub(crate) struct Plays {
+pub(crate) struct GeneralizedFamily {
     low: f64,
     high: f64,
     /// 1 if the output rises with the input, else -1.
@@ -46,23 +46,23 @@ pub(crate) struct Plays {
     unknowns: Unknowns,
 }
 
-impl Plays {
+impl GeneralizedFamily {
     fn new((low, high): (f64, f64), sign: f64, lags: bool, options: &ClassicalOptions) -> Self {
         let range = high - low;
-        let centre = Variable::linear(low - 0.5 * range, high + 0.5 * range);
-        let width = Variable::logarithmic(0.02 * range, 5.0 * range);
+        let centre = SearchVariable::linear(low - 0.5 * range, high + 0.5 * range);
+        let width = SearchVariable::logarithmic(0.02 * range, 5.0 * range);
         let mut variables = vec![
             centre,
             width,
             centre,
             width,
             // γ_r at the lower end of the range, and its rise from there to the upper end.
-            Variable::linear(-0.1, 1.0),
-            Variable::logarithmic(0.3, 10.0),
+            SearchVariable::linear(-0.1, 1.0),
+            SearchVariable::logarithmic(0.3, 10.0),
             // The largest threshold.
-            Variable::logarithmic(0.02, 3.0),
+            SearchVariable::logarithmic(0.02, 3.0),
             // Where the plays are at first: 0 virgin, 1 as after a large input, -1 as after a low one.
-            Variable::linear(-1.0, 1.0),
+            SearchVariable::linear(-1.0, 1.0),
         ];
         let mut non_negative = vec![false];
         let operators = options.operators();
@@ -72,7 +72,7 @@ impl Plays {
             non_negative.extend(vec![lags; operators]);
         } else {
             // τ times the largest threshold.
-            variables.push(Variable::linear(-2.0, 12.0));
+            variables.push(SearchVariable::linear(-2.0, 12.0));
             non_negative.push(true);
         }
         let unknowns = Unknowns { variables, non_negative };
@@ -85,7 +85,7 @@ impl Plays {
         let shape = |x: f64| tanh(a1 * x + a2);
         let share = (shape(self.high) - shape(self.low)).max(SMALLEST_SHARE);
         let a0 = rise / share;
-        Envelope { a0, a1, a2, a3: from - a0 * shape(self.low) }
+        Envelope { a0, a1, a2, a3: from - a0 * shape(self.low) } // (8.13)
     }
 
     fn law(&self, parameters: &[f64]) -> GeneralizedPrandtlIshlinskii {
@@ -108,7 +108,7 @@ impl Plays {
     }
 }
 
-impl LawFamily for Plays {
+impl LawFamily for GeneralizedFamily {
     type Law = GeneralizedPrandtlIshlinskii;
 
     fn whole(&self, searched: &[f64], weights: &[f64]) -> GeneralizedPrandtlIshlinskii {
@@ -142,12 +142,12 @@ impl LawFamily for Plays {
     }
 }
 
-impl Family for Plays {
+impl SearchFamily for GeneralizedFamily {
     fn unknowns(&self) -> &Unknowns {
         &self.unknowns
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>) {
         let law = self.law(parameters);
         let weights = law.weights.values(law.spacing, 0);
         let mut plays = vec![law.initial; self.operators];
@@ -159,7 +159,7 @@ impl Family for Plays {
             let (left, right) = (law.left.value(sample.x), law.right.value(sample.x));
             for (index, play) in plays.iter_mut().enumerate() {
                 let r = law.spacing * index as f64;
-                *play = follow(*play, left, right, r);
+                *play = follow(*play, left, right, r); // (8.12)
             }
             if y.is_nan() {
                 continue;
@@ -167,7 +167,7 @@ impl Family for Plays {
             if self.free_weights {
                 row[1..].iter_mut().zip(&plays).for_each(|(feature, play)| *feature = self.sign * play);
             } else {
-                row[1] = weights.iter().zip(&plays).map(|(weight, play)| weight * play).sum();
+                row[1] = weights.iter().zip(&plays).map(|(weight, play)| weight * play).sum(); // (8.14)
             }
             columns.push(&row);
         }

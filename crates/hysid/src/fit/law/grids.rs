@@ -9,6 +9,7 @@ use crate::law::thresholds::check_thresholds;
 /// Thresholds `r_i = X (i/(n+1))^e` with the largest input `X` (theory.md (7.5)); an error for none or more than 1000.
 fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
     check_count("operators", count, MOST_OPERATORS)?;
+    // (7.5)
     Ok((1..=count).map(|i| largest * powf(i as f64 / (count + 1) as f64, exponent)).collect())
 }
 

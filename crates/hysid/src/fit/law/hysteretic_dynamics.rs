@@ -22,12 +22,14 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::grids::spaced;
-use crate::fit::law::search::{Identified, check_effort};
-use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
+use crate::fit::law::search::{IdentifiedLaw, check_effort};
+use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
 use crate::law::Classical;
-use crate::law::hysteretic_dynamics::{Dynamics, Element, Form, LIMITS, Layout, Shape};
+use crate::law::hysteretic_dynamics::{
+    Dynamics, DynamicsForm, DynamicsLayout, Element, ElementShape, LIMITS,
+};
 use crate::optimise::levenberg_marquardt::LevenbergMarquardt;
-use crate::optimise::multi_start::{MultiStart, Plan, Start};
+use crate::optimise::multi_start::{MultiStart, RoundPlan, SearchStart};
 use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalOptions;
@@ -38,28 +40,28 @@ use linear_start::LinearStarts;
 pub(crate) use linear_start::first_second_difference;
 use records::Records;
 pub(crate) use task::AT_ONCE;
-use task::{Task, Value};
+use task::{DynamicsTask, DynamicsValue};
 
-/// After so many epochs half of the starts are given up, and again after as many more.
+/// Epochs after which half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 30;
 
 /// Epochs that the stages are made for. Fewer pass through all of them more quickly.
 const SCHEDULED: usize = 140;
 
 /// Stages of the training. After the last the penalty follows from the error.
-const STAGES: [Stage; 4] = [
-    Stage { end: 12, penalty: 1e-4, is_early: true, has_one_mode: true },
-    Stage { end: 24, penalty: 1e-5, is_early: true, has_one_mode: true },
-    Stage { end: 36, penalty: 1e-6, is_early: true, has_one_mode: false },
-    Stage { end: 50, penalty: 1e-7, is_early: false, has_one_mode: false },
+const STAGES: [ScheduleStage; 4] = [
+    ScheduleStage { end: 12, penalty: 1e-4, is_early: true, has_one_mode: true },
+    ScheduleStage { end: 24, penalty: 1e-5, is_early: true, has_one_mode: true },
+    ScheduleStage { end: 36, penalty: 1e-6, is_early: true, has_one_mode: false },
+    ScheduleStage { end: 50, penalty: 1e-7, is_early: false, has_one_mode: false },
 ];
 
-struct Stage {
+struct ScheduleStage {
     /// The epoch after which it ends, of [`SCHEDULED`].
     end: usize,
     /// κ.
     penalty: f64,
-    /// True if it sees only the beginnings of the records.
+    /// True if it uses only the beginnings of the records.
     is_early: bool,
     /// True if starts of one mode still have one.
     has_one_mode: bool,
@@ -90,18 +92,18 @@ const FIRST_THRESHOLDS: (f64, f64) = (0.1, 2.0);
 const FIRST_STRENGTH_LOSS: f64 = 1e-3;
 
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Asked {
-    form: Form,
+pub(crate) struct DynamicsSpec {
+    form: DynamicsForm,
     modes: usize,
     elements: usize,
-    shape: Shape,
+    shape: ElementShape,
 }
 
-impl Asked {
+impl DynamicsSpec {
     /// The request, or an error for numbers that no model can have.
-    pub fn of(form: Form, options: &ClassicalOptions) -> Result<Self> {
+    pub fn of(form: DynamicsForm, options: &ClassicalOptions) -> Result<Self> {
         let modes = options.modes();
-        let shape = Shape {
+        let shape = ElementShape {
             stops: options.operators(),
             states: options.states(),
             neurons: options.hidden(),
@@ -119,25 +121,25 @@ impl Asked {
             _ => unreachable!("an element consists of neurons, stops and states"),
         })?;
         // An element of a state space model may be driven by all of its modes.
-        let elements = if form == Form::Oscillator { modes } else { 1 };
+        let elements = if form == DynamicsForm::Oscillator { modes } else { 1 };
         Ok(Self { form, modes, elements, shape })
     }
 
     /// The layout of its parameters.
-    pub fn layout(&self) -> Layout {
-        Layout::new(self.form, self.modes, self.elements, self.shape)
+    pub fn layout(&self) -> DynamicsLayout {
+        DynamicsLayout::new(self.form, self.modes, self.elements, self.shape)
     }
 }
 
 /// Identifies modes and elements; `make` makes a law of them.
 pub(super) fn identify(
     data: &Dataset,
-    asked: &Asked,
+    asked: &DynamicsSpec,
     options: &ClassicalOptions,
     make: &(dyn Fn(Dynamics) -> Classical + Sync),
     observer: &mut SearchObserver<'_>,
     stop: StopCheck<'_>,
-) -> Result<Identified<Dynamics>> {
+) -> Result<IdentifiedLaw<Dynamics>> {
     data.check_identifiable(FEWEST_ROWS)?;
     check_effort(options)?;
     let rounds = options.epochs();
@@ -145,7 +147,7 @@ pub(super) fn identify(
     let linear = LinearStarts::find(&records, asked, stop).ok_or(Error::Stopped)?;
     let layout = asked.layout();
     let beginning = |start| {
-        let kind = Kind::of(start, asked);
+        let kind = StartKind::of(start, asked);
         with_elements(linear.of(kind), asked, options.seed, start, kind, records.input_deviation())
     };
     let template = beginning(0);
@@ -153,18 +155,19 @@ pub(super) fn identify(
     let early = linear.begun(records.beginning());
     let whole = linear.begun(records.drives.clone());
     let tasks = Tasks {
-        early: Task::new(&layout, &coarse, &early, stop),
-        coarse: Task::new(&layout, &coarse, &whole, stop),
-        fine: Task::new(&layout, &template, &whole, stop),
+        early: DynamicsTask::new(&layout, &coarse, &early, stop),
+        coarse: DynamicsTask::new(&layout, &coarse, &whole, stop),
+        fine: DynamicsTask::new(&layout, &template, &whole, stop),
     };
 
-    let begin = |start: usize| Walk::new(&tasks.early, &beginning(start), Kind::of(start, asked));
+    let begin =
+        |start: usize| DynamicsWalk::new(&tasks.early, &beginning(start), StartKind::of(start, asked));
     let mut walks = MultiStart::new(parallel::numbered(options.starts(), begin));
     walks.sort();
     if walks.best().value().objective == f64::INFINITY {
         return Err(Error::Stopped);
     }
-    let mut tell = |round: usize, walks: &MultiStart<Walk>| {
+    let mut tell = |round: usize, walks: &MultiStart<DynamicsWalk>| {
         let best = walks.best();
         let law = || Some(make(layout.dynamics(best.search.parameters(), &template)));
         let told = observer(SearchProgress {
@@ -172,17 +175,17 @@ pub(super) fn identify(
             rounds,
             evaluations: walks.evaluations(),
             train_nrmse_percent: best.value().nrmse_percent(),
-            law: LawSoFar(Some(&law)),
+            law: PartialLaw(Some(&law)),
         });
         if stop.is_asked() { ControlFlow::Break(()) } else { told }
     };
-    let plan = Plan { rounds, spared: 0, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
-    let advance = |walk: &mut Walk, round: usize| walk.advance(round, rounds, &tasks);
+    let plan = RoundPlan { rounds, spared: 0, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
+    let advance = |walk: &mut DynamicsWalk, round: usize| walk.advance(round, rounds, &tasks);
     let termination = walks.run(plan, advance, |walks, round| tell(round, walks));
     let best = walks.best();
     let law = layout.dynamics(best.search.parameters(), &template);
     let mean_square = tasks.fine.mean_square(best.search.parameters()).unwrap_or(best.value().mean_square);
-    Ok(Identified {
+    Ok(IdentifiedLaw {
         law,
         train_nrmse_percent: 100.0 * mean_square.sqrt(),
         evaluations: walks.evaluations(),
@@ -191,20 +194,20 @@ pub(super) fn identify(
     })
 }
 
-/// What sets a start apart, beside its random weights.
+/// Distinguishes a start, beside its random weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Kind {
+struct StartKind {
     /// True if the input drives the elements (an actuator), false if the displacement does (a structure).
     is_driven_by_input: bool,
     /// True if only the first mode moves in the first stages, which may end in a better minimum.
     has_one_mode_first: bool,
 }
 
-impl Kind {
+impl StartKind {
     /// All kinds in turn; the second differs from the first in both.
-    fn of(start: usize, asked: &Asked) -> Self {
+    fn of(start: usize, asked: &DynamicsSpec) -> Self {
         Self {
-            is_driven_by_input: asked.form == Form::StateSpace && start % 2 == 1,
+            is_driven_by_input: asked.form == DynamicsForm::StateSpace && start % 2 == 1,
             has_one_mode_first: asked.modes > 1 && matches!(start % 4, 1 | 2),
         }
     }
@@ -213,17 +216,17 @@ impl Kind {
 /// A linear system with hysteretic elements whose forces are small, different for each start.
 fn with_elements(
     linear: &Dynamics,
-    asked: &Asked,
+    asked: &DynamicsSpec,
     seed: u64,
     start: usize,
-    kind: Kind,
+    kind: StartKind,
     input_deviation: f64,
 ) -> Dynamics {
     let mut generator = generator(seed, start);
     let mut random =
         |count: usize, size: f64| -> Vec<f64> { (0..count).map(|_| size * normal(&mut generator)).collect() };
-    let Asked { form, modes, elements, shape } = *asked;
-    let Shape { stops, states, neurons, deteriorates } = shape;
+    let DynamicsSpec { form, modes, elements, shape } = *asked;
+    let ElementShape { stops, states, neurons, deteriorates } = shape;
     let mut element = |e: usize| {
         let mut compliances = if modes == 1 { vec![1.0] } else { random(modes, 0.4) };
         compliances[e % modes] = 1.0;
@@ -234,7 +237,8 @@ fn with_elements(
         if kind.has_one_mode_first {
             compliances[1..].fill(0.0);
         }
-        let of_velocities = if form == Form::StateSpace { random(modes, 0.1) } else { vec![0.0; modes] };
+        let of_velocities =
+            if form == DynamicsForm::StateSpace { random(modes, 0.1) } else { vec![0.0; modes] };
         let mut layer = random(shape.inputs() * neurons, 1.2 / (shape.inputs() as f64).sqrt());
         if deteriorates {
             layer[..neurons].fill(0.0);
@@ -260,16 +264,16 @@ fn with_elements(
 }
 
 struct Tasks<'a> {
-    early: Task<'a>,
+    early: DynamicsTask<'a>,
     /// The records, with long steps.
-    coarse: Task<'a>,
+    coarse: DynamicsTask<'a>,
     /// The records, with the steps of the model.
-    fine: Task<'a>,
+    fine: DynamicsTask<'a>,
 }
 
-struct Walk {
-    kind: Kind,
-    search: LevenbergMarquardt<Value>,
+struct DynamicsWalk {
+    kind: StartKind,
+    search: LevenbergMarquardt<DynamicsValue>,
     /// Penalty on the square of each parameter.
     penalties: Vec<f64>,
     stage: usize,
@@ -279,18 +283,18 @@ struct Walk {
     earlier: usize,
 }
 
-impl Walk {
-    fn new(task: &Task<'_>, beginning: &Dynamics, kind: Kind) -> Self {
+impl DynamicsWalk {
+    fn new(task: &DynamicsTask<'_>, beginning: &Dynamics, kind: StartKind) -> Self {
         let penalties = task.penalties(STAGES[0].penalty);
         let search = LevenbergMarquardt::new(&task.with_penalties(&penalties), task.parameters(beginning));
         Self { kind, search, penalties, stage: 0, is_in_last: false, ended: None, earlier: 0 }
     }
 
-    fn value(&self) -> &Value {
+    fn value(&self) -> &DynamicsValue {
         self.search.known_value().expect("a walk begins at a known value")
     }
 
-    /// One epoch of so many, in the stage that it belongs to.
+    /// One epoch out of `epochs`, in the stage that it belongs to.
     fn advance(&mut self, epoch: usize, epochs: usize, tasks: &Tasks<'_>) {
         let stage = stage(epoch, epochs);
         self.is_in_last = stage == self::stage(epochs, epochs);
@@ -327,7 +331,7 @@ fn stage(epoch: usize, epochs: usize) -> usize {
     }
 }
 
-impl Start for Walk {
+impl SearchStart for DynamicsWalk {
     fn order(&self, other: &Self) -> Ordering {
         self.value().objective.total_cmp(&other.value().objective)
     }
@@ -350,10 +354,10 @@ macro_rules! identified_as {
                 options: &$crate::options::classical::ClassicalOptions,
                 observer: &mut $crate::fit::progress::SearchObserver<'_>,
                 stop: $crate::stop_check::StopCheck<'_>,
-            ) -> $crate::error::Result<$crate::fit::law::search::Identified<Self>> {
-                use $crate::fit::law::hysteretic_dynamics::{Asked, identify};
+            ) -> $crate::error::Result<$crate::fit::law::search::IdentifiedLaw<Self>> {
+                use $crate::fit::law::hysteretic_dynamics::{DynamicsSpec, identify};
                 use $crate::law::Law;
-                let asked = Asked::of($form, options)?;
+                let asked = DynamicsSpec::of($form, options)?;
                 let found =
                     identify(data, &asked, options, &|dynamics| Self(dynamics).into(), observer, stop)?;
                 found.try_map(|dynamics| Self(dynamics).validated())

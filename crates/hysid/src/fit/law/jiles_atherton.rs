@@ -6,8 +6,10 @@ use crate::data::record::Dataset;
 use crate::data::summary::Summary;
 use crate::error::{Channel, DataProblem, Error, Result};
 use crate::fit::law::Identify;
-use crate::fit::law::linearised::{self, LawFamily, Linearised};
-use crate::fit::law::search::{Columns, Family, Identified, Memory, Unknowns, Variable, search, thinned};
+use crate::fit::law::linearised::{self, LawFamily, LinearisedLaw};
+use crate::fit::law::search::{
+    FeatureColumns, IdentifiedLaw, MemoryKind, SearchFamily, SearchVariable, Unknowns, search, thinned,
+};
 use crate::fit::progress::SearchObserver;
 use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
 use crate::law::series::Series;
@@ -20,7 +22,7 @@ impl Identify for JilesAtherton {
         options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
+    ) -> Result<IdentifiedLaw<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let first = &data.records()[0];
         if Summary::of(data).turning_points() == 0 {
@@ -42,15 +44,15 @@ impl Identify for JilesAtherton {
         Ok(found)
     }
 
-    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<LinearisedLaw>> {
         let (family, series) = posed(data, options)?;
         Ok(Some(linearised::of_search(&family, &series, self)))
     }
 }
 
-/// What is searched, and the rows that it is compared with.
+/// Search variables and the rows to fit.
 fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Materials, Vec<Series>)> {
-    let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+    let series = thinned(Series::all(data, None)?, MemoryKind::TurningPoints);
     let (low, high) = data.input_range(0);
     let form = match options.differential_form {
         true => JilesAthertonForm::Differential,
@@ -67,11 +69,11 @@ struct Materials {
 impl Materials {
     fn new(largest: f64, form: JilesAthertonForm) -> Self {
         let variables = vec![
-            Variable::logarithmic(0.02 * largest, 3.0 * largest),
-            Variable::logarithmic(0.02 * largest, 3.0 * largest),
+            SearchVariable::logarithmic(0.02 * largest, 3.0 * largest),
+            SearchVariable::logarithmic(0.02 * largest, 3.0 * largest),
             // α M_s as a share of 3a.
-            Variable::linear(0.0, 0.98),
-            Variable::linear(C_BOUNDS.0, C_BOUNDS.1),
+            SearchVariable::linear(0.0, 0.98),
+            SearchVariable::linear(C_BOUNDS.0, C_BOUNDS.1),
         ];
         Self { form, unknowns: Unknowns { variables, non_negative: vec![false, false, true] } }
     }
@@ -98,12 +100,12 @@ impl LawFamily for Materials {
     }
 }
 
-impl Family for Materials {
+impl SearchFamily for Materials {
     fn unknowns(&self) -> &Unknowns {
         &self.unknowns
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>) {
         let law = self.law(parameters);
         let mut state = JilesAthertonState::default();
         for (sample, y) in series.samples.iter().zip(&series.output) {

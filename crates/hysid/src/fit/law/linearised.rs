@@ -10,7 +10,7 @@
 use hysid_core::elementary::square;
 
 use crate::data::record::Thinning;
-use crate::fit::law::search::{Columns, Family, Unknowns, measured};
+use crate::fit::law::search::{FeatureColumns, SearchFamily, Unknowns, measured};
 use crate::law::Law;
 use crate::law::series::Series;
 use crate::optimise::parallel;
@@ -22,7 +22,7 @@ const DIFFERENCE: f64 = 1e-4;
 /// A variable of a search so close to an end of its range is at its bound.
 const AT_BOUND: f64 = 1e-6;
 
-/// Differences to both sides that differ by this share of their mean tell of a kink.
+/// Least relative difference of the differences to both sides that shows a kink.
 const KINK: f64 = 0.2;
 
 /// Most rows of a law whose variables are all weights; of more, evenly spaced stretches.
@@ -52,7 +52,7 @@ impl FitVariable {
 
 /// A law about the result of its fit, from which the [intervals](crate::fit::intervals) of its parameters follow.
 #[derive(Debug, Clone)]
-pub struct Linearised {
+pub struct LinearisedLaw {
     pub(crate) records: Vec<usize>,
     /// Simulated less measured output at the scored rows, record by record.
     pub(crate) residual: Vec<f64>,
@@ -63,7 +63,7 @@ pub struct Linearised {
     pub(crate) rows_each: f64,
 }
 
-pub(crate) trait LawFamily: Family {
+pub(crate) trait LawFamily: SearchFamily {
     type Law: Law;
 
     fn whole(&self, searched: &[f64], weights: &[f64]) -> Self::Law;
@@ -72,7 +72,7 @@ pub(crate) trait LawFamily: Family {
 }
 
 /// A law that was found by a search over a family, about the result.
-pub(crate) fn of_search<F: LawFamily>(family: &F, series: &[Series], law: &F::Law) -> Linearised {
+pub(crate) fn of_search<F: LawFamily>(family: &F, series: &[Series], law: &F::Law) -> LinearisedLaw {
     let Unknowns { variables, non_negative } = family.unknowns();
     let u: Vec<f64> =
         variables.iter().zip(family.searched(law)).map(|(variable, value)| variable.place(value)).collect();
@@ -80,7 +80,7 @@ pub(crate) fn of_search<F: LawFamily>(family: &F, series: &[Series], law: &F::La
     let target = measured(series);
     let columns = |u: &[f64]| {
         let searched = value(u);
-        let mut columns = Columns::new(non_negative.len(), target.len(), StopCheck::never());
+        let mut columns = FeatureColumns::new(non_negative.len(), target.len(), StopCheck::never());
         series.iter().for_each(|series| family.features(&searched, series, &mut columns));
         columns
     };
@@ -130,7 +130,7 @@ pub(crate) fn of_search<F: LawFamily>(family: &F, series: &[Series], law: &F::La
     let by_variable: Vec<Vec<f64>> = (0..z.len()).map(derivative).collect();
     let count = by_variable.first().map_or(0, Vec::len);
     let gradients = (0..count).map(|i| by_variable.iter().map(|column| column[i]).collect()).collect();
-    Linearised {
+    LinearisedLaw {
         records: scored(series).map(Iterator::count).collect(),
         residual: projection.residual,
         variables: found,
@@ -153,7 +153,7 @@ fn is_kinked(above: &[f64], here: &[f64], below: &[f64]) -> bool {
     bend > KINK * KINK * change
 }
 
-/// Series with at most so many scored rows, in stretches, and how many rows each stands for.
+/// Series with at most this number of scored rows, in stretches, and how many rows each stands for.
 pub(crate) fn in_stretches(mut series: Vec<Series>) -> (Vec<Series>, f64) {
     let rows: usize = scored(&series).map(Iterator::count).sum();
     if rows <= MOST_ROWS {
@@ -207,7 +207,7 @@ impl WeightRows {
         bounded: &[bool],
         gradients: Vec<Vec<f64>>,
         rows_each: f64,
-    ) -> Linearised {
+    ) -> LinearisedLaw {
         let mut residual: Vec<f64> = self.target.iter().map(|y| -y).collect();
         for (column, &weight) in self.columns.iter().zip(weights) {
             residual.iter_mut().zip(column).for_each(|(residual, feature)| *residual += weight * feature);
@@ -219,7 +219,7 @@ impl WeightRows {
             .zip(sides)
             .map(|(column, (&weight, &bounded))| FitVariable::weight(column, bounded && weight == 0.0))
             .collect();
-        Linearised { records: self.records, residual, variables, gradients, rows_each }
+        LinearisedLaw { records: self.records, residual, variables, gradients, rows_each }
     }
 }
 

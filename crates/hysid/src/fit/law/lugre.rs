@@ -5,7 +5,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
+use crate::fit::law::search::{FeatureColumns, MemoryKind, SearchFamily, SearchVariable, Unknowns, thinned};
 use crate::law::Law;
 use crate::law::lugre::{Lugre, STRIBECK_BOUNDS};
 use crate::law::series::Series;
@@ -19,7 +19,7 @@ impl SearchedLaw for Lugre {
 
     fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Contacts, Vec<Series>)> {
         let rate = options.rate.ok_or(Error::RateNeeded(Lugre::FACTS.name))?;
-        let series = thinned(Series::all(data, Some(rate))?, Memory::Path);
+        let series = thinned(Series::all(data, Some(rate))?, MemoryKind::Path);
         let (low, high) = data.input_range(0);
         Ok((Contacts::new((high - low).max(f64::MIN_POSITIVE), &series), series))
     }
@@ -34,9 +34,9 @@ impl Contacts {
         let rates = series.iter().flat_map(|series| &series.samples).map(|sample| sample.rate.abs());
         let fastest = rates.fold(f64::MIN_POSITIVE, f64::max);
         let variables = vec![
-            Variable::logarithmic(1e-4 * range, range),
-            Variable::linear(STRIBECK_BOUNDS.0, 3.0),
-            Variable::logarithmic(1e-3 * fastest, 2.0 * fastest),
+            SearchVariable::logarithmic(1e-4 * range, range),
+            SearchVariable::linear(STRIBECK_BOUNDS.0, 3.0),
+            SearchVariable::logarithmic(1e-3 * fastest, 2.0 * fastest),
         ];
         Self { unknowns: Unknowns { variables, non_negative: vec![false; 5] } }
     }
@@ -65,12 +65,12 @@ impl LawFamily for Contacts {
     }
 }
 
-impl Family for Contacts {
+impl SearchFamily for Contacts {
     fn unknowns(&self) -> &Unknowns {
         &self.unknowns
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>) {
         let law = self.law(parameters);
         let mut state = law.virgin();
         columns.run(series, OPERATIONS_A_ROW, |sample| {

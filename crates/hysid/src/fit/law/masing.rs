@@ -3,11 +3,11 @@
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::grids::best_on_grids;
-use crate::fit::law::linearised::{Linearised, WeightRows, in_stretches, unit_gradient};
-use crate::fit::law::search::Identified;
+use crate::fit::law::linearised::{LinearisedLaw, WeightRows, in_stretches, unit_gradient};
+use crate::fit::law::search::IdentifiedLaw;
 use crate::fit::law::{Identify, grids};
 use crate::fit::progress::SearchObserver;
-use crate::fit::sums::{FoldSums, Gatherer, TrainingRows, logarithmic};
+use crate::fit::sums::{FoldSums, SumGatherer, TrainingRows, logarithmic};
 use crate::law::masing::{Masing, MasingParts};
 use crate::law::series::Series;
 use crate::operator::{play, stop};
@@ -22,7 +22,7 @@ impl Identify for Masing {
         options: &ClassicalOptions,
         _: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
+    ) -> Result<IdentifiedLaw<Self>> {
         // A stop leaves out grids and penalties that were not compared yet.
         let rows = TrainingRows::of(data)?;
         let scaling = &rows.scaling;
@@ -31,10 +31,10 @@ impl Identify for Masing {
         let slope = scaling.output_deviation / scaling.inputs[0];
         let slopes = weights[1..].iter().map(|weight| weight * slope).collect();
         let parts = MasingParts { constant: scaling.output(weights[0]), thresholds: grid, slopes };
-        Self::new(parts).map(Identified::by_least_squares)
+        Self::new(parts).map(IdentifiedLaw::by_least_squares)
     }
 
-    fn linearised(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<Linearised>> {
+    fn linearised(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<LinearisedLaw>> {
         let (series, rows_each) = in_stretches(Series::all(data, None)?);
         let MasingParts { constant, thresholds, slopes } = self.parts();
         let count = 1 + slopes.len();
@@ -64,6 +64,7 @@ fn slope_features(x: f64, thresholds: &[f64], plays: &mut [f64], features: &mut 
     for ((play, &r), feature) in plays.iter_mut().zip(thresholds).zip(&mut features[1..]) {
         *play = play::follow(*play, x, r);
         let elongation = stop::elongation(x, *play);
+        // (7.13): a slope multiplies the difference of two stops
         *feature = elongation - before;
         before = elongation;
     }
@@ -93,7 +94,7 @@ fn slopes_on_grid(
 fn slope_sums(rows: &TrainingRows, grid: &[f64], stop: StopCheck<'_>) -> Result<FoldSums> {
     let TrainingRows { series, folds, scaling } = rows;
     let mut features = vec![1.0; grid.len() + 2];
-    let mut gatherer = Gatherer::new(features.len(), folds, stop);
+    let mut gatherer = SumGatherer::new(features.len(), folds, stop);
     let factor = 1.0 / scaling.inputs[0];
     for (series, fold) in series.iter().zip(&folds.of_rows) {
         let mut plays = vec![0.0; grid.len()];

@@ -5,7 +5,7 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
+use crate::fit::law::search::{FeatureColumns, MemoryKind, SearchFamily, SearchVariable, Unknowns, thinned};
 use crate::law::Law;
 use crate::law::menegotto_pinto::{Downwards, LOSS_BOUNDS, MenegottoPinto};
 use crate::law::series::Series;
@@ -18,7 +18,7 @@ impl SearchedLaw for MenegottoPinto {
     type Family = Steels;
 
     fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Steels, Vec<Series>)> {
-        let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+        let series = thinned(Series::all(data, None)?, MemoryKind::TurningPoints);
         let (low, high) = data.input_range(0);
         // The material is virgin at 0.
         let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
@@ -34,16 +34,16 @@ pub(crate) struct Steels {
 
 impl Steels {
     fn new(range: f64, asymmetric: bool) -> Self {
-        let isotropic = Variable::linear(-0.1, 0.4);
+        let isotropic = SearchVariable::linear(-0.1, 0.4);
         let mut variables = vec![
-            Variable::logarithmic(0.002 * range, range),
-            Variable::logarithmic(0.7, 30.0),
-            Variable::linear(LOSS_BOUNDS.0, 0.97),
-            Variable::logarithmic(0.01, 30.0),
+            SearchVariable::logarithmic(0.002 * range, range),
+            SearchVariable::logarithmic(0.7, 30.0),
+            SearchVariable::linear(LOSS_BOUNDS.0, 0.97),
+            SearchVariable::logarithmic(0.01, 30.0),
             isotropic,
         ];
         if asymmetric {
-            variables.extend([Variable::logarithmic(0.5, 2.0), isotropic]);
+            variables.extend([SearchVariable::logarithmic(0.5, 2.0), isotropic]);
         }
         Self { range, asymmetric, unknowns: Unknowns { variables, non_negative: vec![false; 3] } }
     }
@@ -81,12 +81,12 @@ impl LawFamily for Steels {
     }
 }
 
-impl Family for Steels {
+impl SearchFamily for Steels {
     fn unknowns(&self) -> &Unknowns {
         &self.unknowns
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>) {
         let law = self.law(parameters);
         let mut state = law.virgin();
         columns.run(series, OPERATIONS_A_ROW, |sample| [1.0, sample.x, law.advance(&mut state, sample.x)]);

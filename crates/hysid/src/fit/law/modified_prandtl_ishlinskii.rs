@@ -13,11 +13,11 @@ use hysid_core::elementary::{ln, square};
 
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::fit::law::linearised::{FitVariable, Linearised, WeightRows, in_stretches, unit_gradient};
-use crate::fit::law::search::Identified;
+use crate::fit::law::linearised::{FitVariable, LinearisedLaw, WeightRows, in_stretches, unit_gradient};
+use crate::fit::law::search::IdentifiedLaw;
 use crate::fit::law::{Identify, grids};
 use crate::fit::progress::SearchObserver;
-use crate::fit::sums::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
+use crate::fit::sums::{FoldSums, SumGatherer, TrainingRows, logarithmic, lowest};
 use crate::law::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
 };
@@ -27,8 +27,8 @@ use crate::law::thresholds::check_thresholds;
 use crate::linear_algebra::Symmetric;
 use crate::network::scaling::Scaling;
 use crate::operator::play;
-use crate::optimise::levenberg_marquardt::{self, LevenbergMarquardt, Rules, Slope};
-use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
+use crate::optimise::levenberg_marquardt::{self, DescentSettings, LevenbergMarquardt, Slope};
+use crate::optimise::non_negative::{Penalty, Quadratic, WeightBounds};
 use crate::optimise::parallel;
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::{Pace, StopCheck};
@@ -41,7 +41,7 @@ const LEAST_SLOPE: f64 = 1e-3;
 
 const ITERATIONS: usize = 40;
 
-/// Iterations of a refinement that is only judged.
+/// Iterations of a refinement for validation only.
 const ITERATIONS_IN_VALIDATION: usize = 10;
 
 impl Identify for ModifiedPrandtlIshlinskii {
@@ -50,7 +50,7 @@ impl Identify for ModifiedPrandtlIshlinskii {
         options: &ClassicalOptions,
         _: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
+    ) -> Result<IdentifiedLaw<Self>> {
         // A stop leaves out priors that were not compared yet, and further refinement.
         let rows = TrainingRows::of(data)?;
         let scaling = &rows.scaling;
@@ -60,13 +60,13 @@ impl Identify for ModifiedPrandtlIshlinskii {
         let given: Option<Vec<f64>> =
             options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
         let grids = grids::candidates(given.as_deref(), options.operators(), 1.0)?;
-        let problem = |grid: &[f64]| Problem::new(&rows, grid, dead_zones, stop);
+        let problem = |grid: &[f64]| PlayRows::new(&rows, grid, dead_zones, stop);
         let problems = grids::fits_on_grids(&grids, problem)?;
         let signs = options.sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
         let mut candidates = Vec::new();
         for sign in signs {
             // The convex problem tells which grid is best, outputs tell the rest.
-            let score = |problem: &Problem| match problem.convex_score(sign, stop) {
+            let score = |problem: &PlayRows| match problem.convex_score(sign, stop) {
                 Err(Error::Stopped) => Ok(f64::INFINITY),
                 score => score,
             };
@@ -85,12 +85,12 @@ impl Identify for ModifiedPrandtlIshlinskii {
         let problem = &problems[grid];
         let start = problem.convex_start(prior, stop)?;
         let refined = problem.refine(start, ITERATIONS, stop);
-        refined.in_users_units(&grids[grid], scaling).map(Identified::by_least_squares)
+        refined.in_users_units(&grids[grid], scaling).map(IdentifiedLaw::by_least_squares)
     }
 
-    fn linearised(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<Linearised>> {
+    fn linearised(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<LinearisedLaw>> {
         let (series, rows_each) = in_stretches(Series::all(data, None)?);
-        let point = Point::of_law(self);
+        let point = ScaledParameters::of_law(self);
         let (plays, slopes) = (point.hysteresis.len() - 2, point.slopes.len());
         let count = 2 + plays + 1 + slopes;
         let mut rows = WeightRows::new(count);
@@ -121,13 +121,13 @@ impl Identify for ModifiedPrandtlIshlinskii {
         let columns = rows.columns.into_iter().enumerate();
         let variables = columns.map(|(i, column)| FitVariable::weight(column, at_bound(i))).collect();
         let gradients = point.gradients();
-        Ok(Some(Linearised { records: rows.records, residual, variables, gradients, rows_each }))
+        Ok(Some(LinearisedLaw { records: rows.records, residual, variables, gradients, rows_each }))
     }
 }
 
 const RIDGES: usize = 7;
 
-/// What is believed of the plays beforehand.
+/// Prior of the plays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Prior {
     sign: Sign,
@@ -136,7 +136,7 @@ struct Prior {
 }
 
 /// Rows in scaled units, with the plays of each.
-struct Problem {
+struct PlayRows {
     /// Constant, input and plays, row after row, record after record.
     drives: Vec<Vec<f64>>,
     targets: Vec<f64>,
@@ -147,7 +147,7 @@ struct Problem {
 
 /// Parameters in scaled units.
 #[derive(Debug, Clone)]
-struct Point {
+struct ScaledParameters {
     /// Constant, input, plays.
     hysteresis: Vec<f64>,
     thresholds: Vec<f64>,
@@ -157,7 +157,7 @@ struct Point {
     prior: Prior,
 }
 
-impl Problem {
+impl PlayRows {
     fn new(rows: &TrainingRows, grid: &[f64], dead_zones: usize, stop: StopCheck<'_>) -> Result<Self> {
         let mut pace = Pace::new(stop);
         let TrainingRows { series, folds, scaling } = rows;
@@ -237,7 +237,7 @@ impl Problem {
     fn convex_score(&self, sign: Sign, stop: StopCheck<'_>) -> Result<f64> {
         let (sums, penalty, _) = self.convex_problem(stop)?;
         let plays = 2..self.drives[0].len();
-        let bounds = Bounds::apart(sign, plays, 0..0, sums.total().features());
+        let bounds = WeightBounds::apart(sign, plays, 0..0, sums.total().features());
         let factors = logarithmic(1e-8, 1e-1, 8);
         let path = |rest: &Quadratic| rest.path(&penalty, &factors, &bounds, stop);
         let scores = sums.scores(path, stop).ok_or(Error::Stopped)?;
@@ -255,7 +255,7 @@ impl Problem {
         inner.dedup();
         let knots = [&[low], inner.as_slice(), &[high]].concat();
         let first = self.drives[0].len();
-        let mut gatherer = Gatherer::new(first + inner.len(), &self.folds, stop);
+        let mut gatherer = SumGatherer::new(first + inner.len(), &self.folds, stop);
         let mut features = vec![0.0; first + inner.len()];
         for ((drive, &y), &fold) in self.drives.iter().zip(&self.targets).zip(&self.fold_of) {
             if gatherer.is_over(4 * features.len()) {
@@ -263,7 +263,7 @@ impl Problem {
             }
             features[..first].copy_from_slice(drive);
             for (j, feature) in features[first..].iter_mut().enumerate() {
-                *feature = -hat(y, &knots[j..j + 3]);
+                *feature = -hat(y, &knots[j..j + 3]); // (7.7)
             }
             gatherer.add(fold, &features, y);
         }
@@ -273,19 +273,19 @@ impl Problem {
     }
 
     /// Step 1.
-    fn convex_start(&self, prior: Prior, stop: StopCheck<'_>) -> Result<Point> {
+    fn convex_start(&self, prior: Prior, stop: StopCheck<'_>) -> Result<ScaledParameters> {
         let (sums, penalty, knots) = self.convex_problem(stop)?;
         let first = self.drives[0].len();
         let mut penalised = sums.total().quadratic();
         penalised.penalise(&penalty, prior.ridge);
-        let bounds = Bounds::apart(prior.sign, 2..first, 0..0, first + knots.len() - 2);
+        let bounds = WeightBounds::apart(prior.sign, 2..first, 0..0, first + knots.len() - 2);
         let weights = penalised.last_minimum(&bounds, stop)?;
 
         // The inverse polygon: S takes its values z to the knots.
         let mut z = vec![knots[0]];
         for k in 1..knots.len() {
             let hat = |k: usize| if k == 0 || k == knots.len() - 1 { 0.0 } else { weights[first + k - 1] };
-            let rise = (knots[k] - knots[k - 1]) + hat(k) - hat(k - 1);
+            let rise = (knots[k] - knots[k - 1]) + hat(k) - hat(k - 1); // (7.7): S'
             z.push(z[k - 1] + rise.max(0.05 * (knots[k] - knots[k - 1])));
         }
         let value = |at: f64| {
@@ -302,11 +302,17 @@ impl Problem {
             .windows(2)
             .map(|pair| ((value(pair[1]) - value(pair[0])) / (pair[1] - pair[0])).max(LEAST_SLOPE))
             .collect();
-        Ok(Point { hysteresis: weights[..first].to_vec(), constant: value(0.0), slopes, thresholds, prior })
+        Ok(ScaledParameters {
+            hysteresis: weights[..first].to_vec(),
+            constant: value(0.0),
+            slopes,
+            thresholds,
+            prior,
+        })
     }
 
     /// Step 2, or as much of it as there is time for.
-    fn refine(&self, start: Point, iterations: usize, stop: StopCheck<'_>) -> Point {
+    fn refine(&self, start: ScaledParameters, iterations: usize, stop: StopCheck<'_>) -> ScaledParameters {
         let refinement = Refinement::new(self, &start, stop);
         let mut search = LevenbergMarquardt::new(&refinement, start.values());
         for _ in 0..iterations {
@@ -318,9 +324,10 @@ impl Problem {
     }
 
     /// Half the mean square error and half the penalty.
-    fn objective(&self, point: &Point) -> f64 {
+    fn objective(&self, point: &ScaledParameters) -> f64 {
         let zones = point.dead_zones();
         let rows = self.drives.iter().zip(&self.targets);
+        // (7.6)
         let squares = rows.map(|(drive, y)| square(zones.value(point.before(drive)) - y)).sum::<f64>();
         let penalty: f64 = point.hysteresis[2..].iter().map(|w| w * w).sum();
         0.5 * (squares / self.targets.len() as f64 + point.prior.ridge * penalty)
@@ -329,31 +336,32 @@ impl Problem {
 
 /// Step 2 as a function of the values of a point, from which its thresholds and prior are.
 struct Refinement<'a> {
-    problem: &'a Problem,
-    point: &'a Point,
+    problem: &'a PlayRows,
+    point: &'a ScaledParameters,
     penalty: Penalty,
-    bounds: Bounds,
+    bounds: WeightBounds,
     stop: StopCheck<'a>,
 }
 
 impl<'a> Refinement<'a> {
-    fn new(problem: &'a Problem, point: &'a Point, stop: StopCheck<'a>) -> Self {
+    fn new(problem: &'a PlayRows, point: &'a ScaledParameters, stop: StopCheck<'a>) -> Self {
         let first = problem.drives[0].len();
         let count = first + 1 + point.slopes.len();
         Self {
             problem,
             point,
             penalty: problem.penalty(count, count..count),
-            bounds: Bounds::apart(point.prior.sign, 2..first, first + 1..count, count),
+            bounds: WeightBounds::apart(point.prior.sign, 2..first, first + 1..count, count),
             stop,
         }
     }
 }
 
-impl levenberg_marquardt::Problem for Refinement<'_> {
+impl levenberg_marquardt::LeastSquaresProblem for Refinement<'_> {
     type Value = f64;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules { damping: (1e-9, 1e6), stall: 1e-6, ..Rules::KINKED };
+    const RULES: DescentSettings =
+        DescentSettings { damping: (1e-9, 1e6), stall: 1e-6, ..DescentSettings::KINKED };
 
     fn value(&self, values: &[f64]) -> f64 {
         self.problem.objective(&self.point.at(values))
@@ -364,10 +372,10 @@ impl levenberg_marquardt::Problem for Refinement<'_> {
     }
 
     fn slope(&self, values: &[f64], _: &f64) -> Option<Slope<Symmetric>> {
-        let Problem { drives, targets, .. } = self.problem;
+        let PlayRows { drives, targets, .. } = self.problem;
         let point = self.point.at(values);
         let count = values.len();
-        let mut gatherer = Gatherer::new(count, &RowFolds::one(), self.stop);
+        let mut gatherer = SumGatherer::new(count, &RowFolds::one(), self.stop);
         let mut jacobian = vec![0.0; count];
         for (drive, &y) in drives.iter().zip(targets) {
             if gatherer.is_over(4 * count) {
@@ -412,7 +420,7 @@ fn hat(y: f64, knots: &[f64]) -> f64 {
     share.max(0.0)
 }
 
-impl Point {
+impl ScaledParameters {
     fn negative(&self) -> usize {
         self.thresholds.partition_point(|&r| r < 0.0)
     }
@@ -492,7 +500,7 @@ impl Point {
                 dead_zone(z.max(low), high)
             };
             jacobian[first + 1 + k] = passed;
-            y += slope * passed;
+            y += slope * passed; // (7.6)
         }
         y
     }

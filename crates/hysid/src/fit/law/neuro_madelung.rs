@@ -20,15 +20,17 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::grids::check_count;
-use crate::fit::law::search::{Identified, Memory, check_effort, measured, spread, thinned};
-use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
-use crate::law::neuro_madelung::{Branch, LARGEST_WEIGHT, MOST_HIDDEN, NeuroMadelung, argument};
+use crate::fit::law::search::{IdentifiedLaw, MemoryKind, check_effort, measured, spread, thinned};
+use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
+use crate::law::neuro_madelung::{BranchNetwork, LARGEST_WEIGHT, MOST_HIDDEN, NeuroMadelung, argument};
 use crate::law::series::Series;
 use crate::law::turning_point_stack::{TurningPoint, TurningPointStack};
 use crate::law::{Classical, Law};
 use crate::linear_algebra::{Symmetric, dot};
-use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, damped_step};
-use crate::optimise::multi_start::{MultiStart, Plan, Start};
+use crate::optimise::levenberg_marquardt::{
+    DescentSettings, LeastSquaresProblem, LevenbergMarquardt, Slope, damped_step,
+};
+use crate::optimise::multi_start::{MultiStart, RoundPlan, SearchStart};
 use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalOptions;
@@ -37,9 +39,9 @@ use crate::termination::Termination;
 
 /// Weight of the squared parameters beside the mean square error of the scaled output.
 const DECAY: f64 = 1e-5;
-/// Share of the data that judges the starts.
+/// Share of the data that the starts are validated on.
 const HELD_OUT: f64 = 0.25;
-/// After so many epochs of free run half of the starts are given up, and again after as many more.
+/// Epochs of free run after which half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 8;
 
 impl Identify for NeuroMadelung {
@@ -48,40 +50,43 @@ impl Identify for NeuroMadelung {
         options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
+    ) -> Result<IdentifiedLaw<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         check_count("hidden", options.hidden(), MOST_HIDDEN)?;
         check_effort(options)?;
         let frame = frame(data, options)?;
-        let whole = Task::new(&frame, data, options, stop)?;
+        let whole = MadelungTask::new(&frame, data, options, stop)?;
         let Some((kept, held)) = data.split_for_validation(HELD_OUT) else {
-            return Training::new(&whole, &whole, options).run(&whole, observer);
+            return MadelungTraining::new(&whole, &whole, options).run(&whole, observer);
         };
-        let (kept, held) =
-            (Task::new(&frame, &kept, options, stop)?, Task::new(&frame, &held, options, stop)?);
-        Training::new(&kept, &held, options).run(&whole, observer)
+        let (kept, held) = (
+            MadelungTask::new(&frame, &kept, options, stop)?,
+            MadelungTask::new(&frame, &held, options, stop)?,
+        );
+        MadelungTraining::new(&kept, &held, options).run(&whole, observer)
     }
 }
 
-struct Training<'a> {
-    /// What they are trained on, and what judges them.
-    kept: &'a Task<'a>,
-    held: &'a Task<'a>,
-    walks: MultiStart<Walk>,
+struct MadelungTraining<'a> {
+    /// Training and validation data.
+    kept: &'a MadelungTask<'a>,
+    held: &'a MadelungTask<'a>,
+    walks: MultiStart<MadelungWalk>,
     epochs: usize,
 }
 
-impl<'a> Training<'a> {
-    fn new(kept: &'a Task<'a>, held: &'a Task<'a>, options: &ClassicalOptions) -> Self {
-        let walks = parallel::numbered(options.starts(), |start| Walk::new(kept, options.seed, start));
+impl<'a> MadelungTraining<'a> {
+    fn new(kept: &'a MadelungTask<'a>, held: &'a MadelungTask<'a>, options: &ClassicalOptions) -> Self {
+        let walks =
+            parallel::numbered(options.starts(), |start| MadelungWalk::new(kept, options.seed, start));
         Self { kept, held, walks: MultiStart::new(walks), epochs: options.epochs() }
     }
 
     fn run(
         mut self,
-        whole: &Task<'_>,
+        whole: &MadelungTask<'_>,
         observer: &mut SearchObserver<'_>,
-    ) -> Result<Identified<NeuroMadelung>> {
+    ) -> Result<IdentifiedLaw<NeuroMadelung>> {
         self.walks.sort();
         if self.walks.best().value().objective == f64::INFINITY {
             return Err(Error::Stopped);
@@ -98,7 +103,7 @@ impl<'a> Training<'a> {
         }
         self.walks.sort();
         // What was held out is learnt from where it was judged best, in few epochs.
-        let mut walk = Walk::at(whole, self.walks.best().best_parameters().to_vec());
+        let mut walk = MadelungWalk::at(whole, self.walks.best().best_parameters().to_vec());
         for epoch in 1..=last {
             if termination == Termination::Stopped {
                 break;
@@ -107,7 +112,7 @@ impl<'a> Training<'a> {
             let law = || whole.so_far(walk.parameters());
             let told = SearchProgress {
                 train_nrmse_percent: walk.nrmse_percent(),
-                law: LawSoFar(Some(&law)),
+                law: PartialLaw(Some(&law)),
                 ..progress(&self.walks, self.epochs + epoch, rounds)
             };
             if observer(told) == ControlFlow::Break(()) || whole.stop.is_asked() {
@@ -121,7 +126,7 @@ impl<'a> Training<'a> {
         let law = whole.law(walk.parameters()).validated()?;
         let evaluations = self.walks.evaluations() + walk.evaluations();
         let train_nrmse_percent = walk.nrmse_percent();
-        Ok(Identified { law, train_nrmse_percent, evaluations, termination, searched: Vec::new() })
+        Ok(IdentifiedLaw { law, train_nrmse_percent, evaluations, termination, searched: Vec::new() })
     }
 
     /// Half of the epochs teacher forced, then the others in free run; the observer is called for `rounds` in all.
@@ -133,9 +138,13 @@ impl<'a> Training<'a> {
     ) -> Termination {
         let Self { kept, held, ref mut walks, epochs } = *self;
         let forced = epochs / 2;
-        let plan =
-            Plan { rounds: epochs, spared: forced, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
-        let advance = |walk: &mut Walk, epoch| {
+        let plan = RoundPlan {
+            rounds: epochs,
+            spared: forced,
+            to_prove_itself: EPOCHS_TO_PROVE_ITSELF,
+            finalists: 1,
+        };
+        let advance = |walk: &mut MadelungWalk, epoch| {
             if epoch == forced + 1 {
                 walk.set_free(kept);
             }
@@ -144,12 +153,12 @@ impl<'a> Training<'a> {
                 walk.judge(held);
             }
         };
-        let tell = |walks: &MultiStart<Walk>, epoch| {
+        let tell = |walks: &MultiStart<MadelungWalk>, epoch| {
             let law = || kept.so_far(walks.best().best_parameters());
-            let mut told = SearchProgress { law: LawSoFar(Some(&law)), ..progress(walks, epoch, rounds) };
+            let mut told = SearchProgress { law: PartialLaw(Some(&law)), ..progress(walks, epoch, rounds) };
             if epoch <= forced {
                 // With the measured output at every turning point it is no error of a free run.
-                (told.train_nrmse_percent, told.law) = (f64::NAN, LawSoFar(None));
+                (told.train_nrmse_percent, told.law) = (f64::NAN, PartialLaw(None));
             }
             let flow = observer(told);
             if stop.is_asked() { ControlFlow::Break(()) } else { flow }
@@ -162,10 +171,10 @@ impl<'a> Training<'a> {
     }
 }
 
-fn progress(walks: &MultiStart<Walk>, round: usize, rounds: usize) -> SearchProgress<'static> {
+fn progress(walks: &MultiStart<MadelungWalk>, round: usize, rounds: usize) -> SearchProgress<'static> {
     let train_nrmse_percent = walks.best().nrmse_percent();
     let evaluations = walks.evaluations();
-    SearchProgress { round, rounds, evaluations, train_nrmse_percent, law: LawSoFar(None) }
+    SearchProgress { round, rounds, evaluations, train_nrmse_percent, law: PartialLaw(None) }
 }
 
 /// A model with its scales and without a network.
@@ -187,8 +196,8 @@ fn frame(data: &Dataset, options: &ClassicalOptions) -> Result<NeuroMadelung> {
     })
 }
 
-/// What a start is trained on or judged by: scaled records.
-struct Task<'a> {
+/// Scaled records that a start is trained or validated on.
+struct MadelungTask<'a> {
     frame: &'a NeuroMadelung,
     series: Vec<Series>,
     hidden: usize,
@@ -197,20 +206,20 @@ struct Task<'a> {
 
 /// A turning point: the output there and its derivatives by all parameters.
 #[derive(Debug, Clone)]
-struct Reached {
+struct ReachedTurn {
     y: f64,
     by_parameters: Vec<f64>,
 }
 
 /// Residuals, and the derivatives by each parameter on request.
-struct Sweep {
+struct MadelungSweep {
     residual: Vec<f64>,
     jacobian: Vec<Vec<f64>>,
     /// It ran over all rows.
     is_complete: bool,
 }
 
-impl<'a> Task<'a> {
+impl<'a> MadelungTask<'a> {
     fn new(
         frame: &'a NeuroMadelung,
         data: &Dataset,
@@ -218,7 +227,7 @@ impl<'a> Task<'a> {
         stop: StopCheck<'a>,
     ) -> Result<Self> {
         // The rate is an input of the network and no part of the memory.
-        let mut series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
+        let mut series = thinned(Series::all(data, options.rate)?, MemoryKind::TurningPoints);
         for series in &mut series {
             for sample in &mut series.samples {
                 (sample.x, sample.rate) = frame.scaled(*sample);
@@ -272,12 +281,12 @@ impl<'a> Task<'a> {
     }
 
     /// Runs over all records, unless stopped; `forced` takes the measured output at turning points where there is one.
-    fn sweep(&self, parameters: &[f64], forced: bool, slopes: bool) -> Sweep {
+    fn sweep(&self, parameters: &[f64], forced: bool, slopes: bool) -> MadelungSweep {
         let law = self.law(parameters);
         let branch = law.branch();
         let n = parameters.len();
         let jacobian = vec![Vec::new(); if slopes { n } else { 0 }];
-        let mut sweep = Sweep { residual: Vec::new(), jacobian, is_complete: false };
+        let mut sweep = MadelungSweep { residual: Vec::new(), jacobian, is_complete: false };
         let mut pace = Pace::new(self.stop);
         let operations = if slopes { 10 * n } else { 30 * self.hidden };
         let width = if slopes { n } else { 0 };
@@ -286,21 +295,21 @@ impl<'a> Task<'a> {
             if let Some(last) = by_parameters.last_mut() {
                 *last = 1.0; // of y_0 itself
             }
-            let virgin = TurningPoint { x: 0.0, value: Reached { y: law.virgin_output, by_parameters } };
+            let virgin = TurningPoint { x: 0.0, value: ReachedTurn { y: law.virgin_output, by_parameters } };
             let mut memory = TurningPointStack::default();
             for (sample, &measured) in series.samples.iter().zip(&series.output) {
                 if pace.is_over(operations) {
                     return sweep;
                 }
                 // What is reached there follows from the branch.
-                memory.advance(sample.x, Reached { y: 0.0, by_parameters: Vec::new() });
+                memory.advance(sample.x, ReachedTurn { y: 0.0, by_parameters: Vec::new() });
                 let TurningPoint { x: x_t, value: reached } = memory.points().last().unwrap_or(&virgin);
                 let inputs = [sample.x, *x_t, reached.y, sample.rate];
                 let inputs = &inputs[..self.inputs()];
                 let mut here = if slopes {
                     derivatives(branch, inputs, &reached.by_parameters)
                 } else {
-                    Reached { y: branch.value(inputs), by_parameters: Vec::new() }
+                    ReachedTurn { y: branch.value(inputs), by_parameters: Vec::new() }
                 };
                 if !measured.is_nan() {
                     sweep.residual.push(here.y - measured);
@@ -322,7 +331,7 @@ impl<'a> Task<'a> {
 
 /// The output and its derivatives, `dy/dθ = (x - x_t) ∂N/∂θ + [1 + (x - x_t) ∂N/∂y_t] dy_t/dθ` (theory.md
 /// (8.21)).
-fn derivatives(branch: Branch<'_>, inputs: &[f64], at_turning_point: &[f64]) -> Reached {
+fn derivatives(branch: BranchNetwork<'_>, inputs: &[f64], at_turning_point: &[f64]) -> ReachedTurn {
     let run = branch.run();
     let neurons = branch.output.len() - 1;
     let along = inputs[0] - inputs[1];
@@ -336,69 +345,70 @@ fn derivatives(branch: Branch<'_>, inputs: &[f64], at_turning_point: &[f64]) -> 
     for (index, neuron) in branch.hidden.chunks_exact(run).enumerate() {
         let h = tanh(argument(neuron, seen));
         let c = branch.output[1 + index];
-        slope += c * h;
+        slope += c * h; // (8.20)
         rest[1 + index] = along * h;
         let back = c * (1.0 - h * h);
         by_y_t += back * neuron[3];
         let weights = &mut hidden[index * run..(index + 1) * run];
         weights[0] = along * back;
         for (weight, input) in weights[1..].iter_mut().zip(seen) {
-            *weight = along * back * input;
+            *weight = along * back * input; // (8.21): (x - x_t) ∂N/∂U
         }
     }
-    let free = inputs[2] + along * slope;
+    let free = inputs[2] + along * slope; // (8.19)
     let y = branch.limited(free);
     if y != free {
         all.fill(0.0);
-        return Reached { y, by_parameters: all };
+        return ReachedTurn { y, by_parameters: all };
     }
     let by_y_t = if seen[2] == inputs[2] { by_y_t } else { 0.0 };
-    let carried = 1.0 + along * by_y_t;
+    let carried = 1.0 + along * by_y_t; // (8.21): 1 + (x - x_t) ∂N/∂y_t
     for (slope, before) in all.iter_mut().zip(at_turning_point) {
-        *slope += carried * before;
+        *slope += carried * before; // (8.21)
     }
-    Reached { y, by_parameters: all }
+    ReachedTurn { y, by_parameters: all }
 }
 
 /// The error of a task as a function of the parameters, which count as well.
-struct Objective<'a, 't> {
-    task: &'a Task<'t>,
+struct MadelungObjective<'a, 't> {
+    task: &'a MadelungTask<'t>,
     /// With the measured output at every turning point.
     forced: bool,
 }
 
 /// The objective at a point; infinite if it was broken off.
 #[derive(Debug, Clone, Copy)]
-struct Value {
+struct MadelungValue {
     objective: f64,
     mean_square: f64,
 }
 
-impl Problem for Objective<'_, '_> {
-    type Value = Value;
+impl LeastSquaresProblem for MadelungObjective<'_, '_> {
+    type Value = MadelungValue;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules { damping: (1e-12, 1e8), ..Rules::KINKED };
+    const RULES: DescentSettings = DescentSettings { damping: (1e-12, 1e8), ..DescentSettings::KINKED };
 
-    fn value(&self, parameters: &[f64]) -> Value {
-        let broken_off = Value { objective: f64::INFINITY, mean_square: f64::INFINITY };
+    fn value(&self, parameters: &[f64]) -> MadelungValue {
+        let broken_off = MadelungValue { objective: f64::INFINITY, mean_square: f64::INFINITY };
         if self.task.stop.is_asked() {
             return broken_off;
         }
-        let Sweep { residual, is_complete, .. } = self.task.sweep(parameters, self.forced, false);
+        let MadelungSweep { residual, is_complete, .. } = self.task.sweep(parameters, self.forced, false);
         if !is_complete {
             return broken_off;
         }
         let mean_square = dot(&residual, &residual) / residual.len() as f64;
         let objective = 0.5 * (mean_square + DECAY * dot(parameters, parameters));
-        Value { objective, mean_square }
+        MadelungValue { objective, mean_square }
     }
 
-    fn objective(value: &Value) -> f64 {
+    fn objective(value: &MadelungValue) -> f64 {
         value.objective
     }
 
-    fn slope(&self, parameters: &[f64], _: &Value) -> Option<Slope<Symmetric>> {
-        let Sweep { residual, jacobian, is_complete } = self.task.sweep(parameters, self.forced, true);
+    fn slope(&self, parameters: &[f64], _: &MadelungValue) -> Option<Slope<Symmetric>> {
+        let MadelungSweep { residual, jacobian, is_complete } =
+            self.task.sweep(parameters, self.forced, true);
         if !is_complete {
             return None;
         }
@@ -428,8 +438,8 @@ impl Problem for Objective<'_, '_> {
     }
 }
 
-struct Walk {
-    search: LevenbergMarquardt<Value>,
+struct MadelungWalk {
+    search: LevenbergMarquardt<MadelungValue>,
     forced: bool,
     /// Evaluations of what was held out, and of the search before this one.
     further_evaluations: usize,
@@ -438,34 +448,34 @@ struct Walk {
     best: Option<(f64, Vec<f64>)>,
 }
 
-impl Walk {
-    fn new(task: &Task<'_>, seed: u64, start: usize) -> Self {
+impl MadelungWalk {
+    fn new(task: &MadelungTask<'_>, seed: u64, start: usize) -> Self {
         Self::from(task, task.random(seed, start), true)
     }
 
     /// In free run from the beginning.
-    fn at(task: &Task<'_>, parameters: Vec<f64>) -> Self {
+    fn at(task: &MadelungTask<'_>, parameters: Vec<f64>) -> Self {
         Self::from(task, parameters, false)
     }
 
-    fn from(task: &Task<'_>, parameters: Vec<f64>, forced: bool) -> Self {
-        let search = LevenbergMarquardt::new(&Objective { task, forced }, parameters);
+    fn from(task: &MadelungTask<'_>, parameters: Vec<f64>, forced: bool) -> Self {
+        let search = LevenbergMarquardt::new(&MadelungObjective { task, forced }, parameters);
         Self { search, forced, further_evaluations: 0, ended: None, best: None }
     }
 
     /// From teacher forcing to free run.
-    fn set_free(&mut self, task: &Task<'_>) {
+    fn set_free(&mut self, task: &MadelungTask<'_>) {
         if self.forced {
-            self.further_evaluations = Start::evaluations(self);
+            self.further_evaluations = SearchStart::evaluations(self);
             let parameters = self.parameters().to_vec();
-            self.search = LevenbergMarquardt::new(&Objective { task, forced: false }, parameters);
+            self.search = LevenbergMarquardt::new(&MadelungObjective { task, forced: false }, parameters);
             (self.forced, self.ended) = (false, None);
         }
     }
 
     /// Remembers the parameters if they do better than any before on what was held out.
-    fn judge(&mut self, held: &Task<'_>) {
-        let Sweep { residual, is_complete, .. } = held.sweep(self.parameters(), false, false);
+    fn judge(&mut self, held: &MadelungTask<'_>) {
+        let MadelungSweep { residual, is_complete, .. } = held.sweep(self.parameters(), false, false);
         if !is_complete {
             return;
         }
@@ -476,9 +486,9 @@ impl Walk {
         }
     }
 
-    fn advance(&mut self, task: &Task<'_>) {
+    fn advance(&mut self, task: &MadelungTask<'_>) {
         if self.ended.is_none() {
-            self.ended = self.search.advance(&Objective { task, forced: self.forced });
+            self.ended = self.search.advance(&MadelungObjective { task, forced: self.forced });
         }
     }
 
@@ -486,11 +496,11 @@ impl Walk {
         self.search.parameters()
     }
 
-    fn value(&self) -> &Value {
+    fn value(&self) -> &MadelungValue {
         self.search.known_value().expect("a walk begins at a known value")
     }
 
-    /// Where a free run over what was held out has the smallest error; the present place if none was judged.
+    /// Where a free run over held-out data has the smallest error; the present place if it was not validated.
     fn best_parameters(&self) -> &[f64] {
         self.best.as_ref().map_or(self.parameters(), |(_, parameters)| parameters)
     }
@@ -500,11 +510,12 @@ impl Walk {
     }
 }
 
-impl Start for Walk {
-    /// By what was held out once that has been judged.
+impl SearchStart for MadelungWalk {
+    /// By the error on held-out data once there is one.
     fn order(&self, other: &Self) -> Ordering {
-        let rank = |walk: &Walk| walk.best.as_ref().map_or(walk.value().objective, |(error, _)| *error);
-        let is_judged = |walk: &Walk| walk.best.is_some();
+        let rank =
+            |walk: &MadelungWalk| walk.best.as_ref().map_or(walk.value().objective, |(error, _)| *error);
+        let is_judged = |walk: &MadelungWalk| walk.best.is_some();
         is_judged(other).cmp(&is_judged(self)).then(rank(self).total_cmp(&rank(other)))
     }
 

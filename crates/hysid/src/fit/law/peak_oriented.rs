@@ -5,7 +5,7 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
+use crate::fit::law::search::{FeatureColumns, MemoryKind, SearchFamily, SearchVariable, Unknowns, thinned};
 use crate::law::Law;
 use crate::law::peak_oriented::{Degradation, PINCH_BOUNDS, PeakOriented, Side};
 use crate::law::series::{Series, work};
@@ -15,18 +15,18 @@ use crate::options::classical::ClassicalOptions;
 const OPERATIONS_A_ROW: usize = 100;
 
 impl SearchedLaw for PeakOriented {
-    type Family = Members;
+    type Family = PeakOrientedFamily;
 
-    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Members, Vec<Series>)> {
-        let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(PeakOrientedFamily, Vec<Series>)> {
+        let series = thinned(Series::all(data, None)?, MemoryKind::TurningPoints);
         let (low, high) = data.input_range(0);
         // The member is virgin at 0.
         let range = high.max(-low).max(f64::MIN_POSITIVE);
-        Ok((Members::new(range, work(&series) < 0.0, options), series))
+        Ok((PeakOrientedFamily::new(range, work(&series) < 0.0, options), series))
     }
 }
 
-pub(crate) struct Members {
+pub(crate) struct PeakOrientedFamily {
     range: f64,
     asymmetric: bool,
     degradation: bool,
@@ -43,35 +43,35 @@ const SPRING: (f64, f64) = (-0.05, 0.3);
 /// The same for an output that lags behind its input: a spring less a member, whose yield force is negative.
 const SPRING_OF_A_LAG: (f64, f64) = (-20.0, 0.0);
 
-impl Members {
+impl PeakOrientedFamily {
     /// Members for displacements in this range; `lags` for an output that lags behind its input.
     fn new(range: f64, lags: bool, options: &ClassicalOptions) -> Self {
         let (low, high) = if lags { SPRING_OF_A_LAG } else { SPRING };
         let (asymmetric, degradation) = (options.asymmetric, options.degradation);
         let mut variables = vec![
-            Variable::logarithmic(0.003 * range, 1.5 * range),
-            Variable::logarithmic(0.7, 12.0),
-            Variable::linear(0.0, 0.6),
-            Variable::linear(0.0, 1.0),
-            Variable::linear(0.0, 10.0),
-            Variable::linear(PINCH_BOUNDS.0, PINCH_BOUNDS.1),
-            Variable::linear(PINCH_BOUNDS.0, PINCH_BOUNDS.1),
-            Variable::logarithmic(0.3, 10.0),
-            Variable::linear(low, high),
+            SearchVariable::logarithmic(0.003 * range, 1.5 * range),
+            SearchVariable::logarithmic(0.7, 12.0),
+            SearchVariable::linear(0.0, 0.6),
+            SearchVariable::linear(0.0, 1.0),
+            SearchVariable::linear(0.0, 10.0),
+            SearchVariable::linear(PINCH_BOUNDS.0, PINCH_BOUNDS.1),
+            SearchVariable::linear(PINCH_BOUNDS.0, PINCH_BOUNDS.1),
+            SearchVariable::logarithmic(0.3, 10.0),
+            SearchVariable::linear(low, high),
         ];
         if asymmetric {
-            variables.push(Variable::logarithmic(0.2, 5.0));
+            variables.push(SearchVariable::logarithmic(0.2, 5.0));
         }
         if degradation {
             variables.extend([
-                Variable::logarithmic(0.5, 100.0),
-                Variable::logarithmic(0.7, 30.0),
-                Variable::linear(0.0, 1.0),
-                Variable::logarithmic(1.0, 3000.0),
-                Variable::logarithmic(0.3, 2.0),
-                Variable::linear(0.0, 1.0),
-                Variable::linear(0.0, 2.0),
-                Variable::linear(0.0, 1.0),
+                SearchVariable::logarithmic(0.5, 100.0),
+                SearchVariable::logarithmic(0.7, 30.0),
+                SearchVariable::linear(0.0, 1.0),
+                SearchVariable::logarithmic(1.0, 3000.0),
+                SearchVariable::logarithmic(0.3, 2.0),
+                SearchVariable::linear(0.0, 1.0),
+                SearchVariable::linear(0.0, 2.0),
+                SearchVariable::linear(0.0, 1.0),
             ]);
         }
         let features = if asymmetric { 3 } else { 2 };
@@ -105,7 +105,7 @@ impl Members {
     }
 }
 
-impl LawFamily for Members {
+impl LawFamily for PeakOrientedFamily {
     type Law = PeakOriented;
 
     fn whole(&self, searched: &[f64], weights: &[f64]) -> PeakOriented {
@@ -131,12 +131,12 @@ impl LawFamily for Members {
     }
 }
 
-impl Family for Members {
+impl SearchFamily for PeakOrientedFamily {
     fn unknowns(&self) -> &Unknowns {
         &self.unknowns
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>) {
         let law = self.law(parameters);
         let mut state = law.virgin();
         columns.run(series, OPERATIONS_A_ROW, |sample| {

@@ -3,11 +3,11 @@
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::grids::best_on_grids;
-use crate::fit::law::linearised::{Linearised, WeightRows, in_stretches, unit_gradient};
-use crate::fit::law::search::Identified;
+use crate::fit::law::linearised::{LinearisedLaw, WeightRows, in_stretches, unit_gradient};
+use crate::fit::law::search::IdentifiedLaw;
 use crate::fit::law::{Identify, grids};
 use crate::fit::progress::SearchObserver;
-use crate::fit::sums::{FoldSums, Gatherer, TrainingRows, logarithmic};
+use crate::fit::sums::{FoldSums, SumGatherer, TrainingRows, logarithmic};
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::series::Series;
 use crate::operator::play;
@@ -21,7 +21,7 @@ impl Identify for PrandtlIshlinskii {
         options: &ClassicalOptions,
         _: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
+    ) -> Result<IdentifiedLaw<Self>> {
         // A stop leaves out grids and penalties that were not compared yet.
         let rows = TrainingRows::of(data)?;
         let scaling = &rows.scaling;
@@ -30,10 +30,10 @@ impl Identify for PrandtlIshlinskii {
         let slope = scaling.output_deviation / scaling.inputs[0];
         let plays = weights[2..].iter().map(|weight| weight * slope).collect();
         let law = Self::new(scaling.output(weights[0]), weights[1] * slope, grid, plays)?;
-        Ok(Identified::by_least_squares(law))
+        Ok(IdentifiedLaw::by_least_squares(law))
     }
 
-    fn linearised(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<Linearised>> {
+    fn linearised(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<LinearisedLaw>> {
         let (series, rows_each) = in_stretches(Series::all(data, None)?);
         let count = 2 + self.weights().len();
         let mut rows = WeightRows::new(count);
@@ -45,7 +45,7 @@ impl Identify for PrandtlIshlinskii {
                 features[1] = sample.x;
                 for ((play, &r), feature) in plays.iter_mut().zip(self.thresholds()).zip(&mut features[2..]) {
                     *play = play::follow(*play, sample.x, r);
-                    *feature = *play;
+                    *feature = *play; // (7.4)
                 }
                 rows.add(&features, y);
             }
@@ -86,7 +86,7 @@ const PLAYS_BEGIN: std::ops::Range<usize> = 2..2;
 /// Sums of constant, input and plays, inputs and plays in units of the largest input.
 fn play_sums(rows: &TrainingRows, thresholds: &[f64], stop: StopCheck<'_>) -> Result<FoldSums> {
     let TrainingRows { series, folds, scaling } = rows;
-    let mut gatherer = Gatherer::new(2 + thresholds.len(), folds, stop);
+    let mut gatherer = SumGatherer::new(2 + thresholds.len(), folds, stop);
     let mut features = vec![0.0; 2 + thresholds.len()];
     features[0] = 1.0;
     let factor = 1.0 / scaling.inputs[0];
@@ -100,7 +100,7 @@ fn play_sums(rows: &TrainingRows, thresholds: &[f64], stop: StopCheck<'_>) -> Re
             features[1] = sample.x * factor;
             for ((play, &r), feature) in plays.iter_mut().zip(thresholds).zip(&mut features[2..]) {
                 *play = play::follow(*play, sample.x, r);
-                *feature = *play * factor;
+                *feature = *play * factor; // (7.4)
             }
             gatherer.add(fold, &features, target);
         }

@@ -15,13 +15,13 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::grids::check_count;
-use crate::fit::law::search::Identified;
+use crate::fit::law::search::IdentifiedLaw;
 use crate::fit::progress::SearchObserver;
-use crate::fit::sums::{Choice, FoldSums, Gatherer, TrainingRows, logarithmic};
+use crate::fit::sums::{FoldSums, PenaltyChoice, SumGatherer, TrainingRows, logarithmic};
 use crate::law::preisach::plane::Plane;
 use crate::law::preisach::{MOST_INTERVALS, Preisach, PreisachWeights};
 use crate::law::series::Series;
-use crate::law::turning_point_stack::{Change, TurningPointStack};
+use crate::law::turning_point_stack::{StackChange, TurningPointStack};
 use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::Penalty;
 use crate::options::classical::ClassicalOptions;
@@ -40,7 +40,7 @@ impl Identify for Preisach {
         options: &ClassicalOptions,
         _: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
+    ) -> Result<IdentifiedLaw<Self>> {
         // A stop leaves out folds of the choice, and the finer plane.
         let rows = TrainingRows::of(data)?;
         let TrainingRows { series, folds, scaling } = &rows;
@@ -49,19 +49,19 @@ impl Identify for Preisach {
         let density = LineDensity::new(series, data.input_range(0));
         let penalties = logarithmic(1e-9, 1e2, 12);
 
-        let coarse = Problem::new(Plane::new(density.lines(intervals.min(INTERVALS_FOR_CHOICE))));
+        let coarse = PreisachProblem::new(Plane::new(density.lines(intervals.min(INTERVALS_FOR_CHOICE))));
         let sums = coarse.sums(series, scaling, folds, stop)?;
         let choice = sums.choose(&coarse.penalty, &penalties, options.sign, &coarse.reversible(), stop);
         if intervals > INTERVALS_FOR_CHOICE && !stop.is_asked() {
-            let fine = Problem::new(Plane::new(density.lines(intervals)));
+            let fine = PreisachProblem::new(Plane::new(density.lines(intervals)));
             // Nothing is held out here, and the sums of a fine plane are gigabytes.
             let sums = fine.sums(series, scaling, &RowFolds::none(data), stop);
             match sums.and_then(|sums| fine.weighted(sums, choice, scaling, stop)) {
                 Err(Error::Stopped) => {}
-                fitted => return fitted.map(Identified::by_least_squares),
+                fitted => return fitted.map(IdentifiedLaw::by_least_squares),
             }
         }
-        coarse.weighted(sums, choice, scaling, stop).map(Identified::by_least_squares)
+        coarse.weighted(sums, choice, scaling, stop).map(IdentifiedLaw::by_least_squares)
     }
 }
 
@@ -116,7 +116,7 @@ impl LineDensity {
 }
 
 /// Least squares on a plane: constant, input, reversible intervals, cells; the output is scaled.
-pub(crate) struct Problem {
+pub(crate) struct PreisachProblem {
     plane: Plane,
     penalty: Penalty,
 }
@@ -124,8 +124,8 @@ pub(crate) struct Problem {
 /// Features before those of the intervals and cells.
 const FIRST: usize = 2;
 
-impl Problem {
-    /// A plane of so many intervals, whose lines are where the output changes.
+impl PreisachProblem {
+    /// A plane with this number of intervals, whose lines are where the output changes.
     pub fn of(series: &[Series], range: (f64, f64), intervals: usize) -> Self {
         Self::new(Plane::new(LineDensity::new(series, range).lines(intervals)))
     }
@@ -140,11 +140,13 @@ impl Problem {
         let (ridge, bend) = (1e-4 * size, powi(size, 3));
         for i in 0..n {
             for j in 0..=i {
-                penalty.add_square(&[term(i, j, 1.0)], ridge);
+                penalty.add_square(&[term(i, j, 1.0)], ridge); // (7.12): ε‖w‖²
                 if j >= 2 {
+                    // (7.12): ‖D²w‖²
                     penalty.add_square(&[term(i, j, 1.0), term(i, j - 1, -2.0), term(i, j - 2, 1.0)], bend);
                 }
                 if i >= j + 2 {
+                    // (7.12)
                     penalty.add_square(&[term(i, j, 1.0), term(i - 1, j, -2.0), term(i - 2, j, 1.0)], bend);
                 }
             }
@@ -170,7 +172,7 @@ impl Problem {
 
     /// The features of the rows that have an output.
     pub fn rows(&self, series: &Series, scaling: &Scaling, stop: StopCheck<'_>) -> Result<Vec<Vec<f64>>> {
-        let (mut rows, mut pace) = (Rows::new(&self.plane), Pace::new(stop));
+        let (mut rows, mut pace) = (RelayRows::new(&self.plane), Pace::new(stop));
         let mut all = Vec::new();
         for (sample, y) in series.samples.iter().zip(&series.output) {
             if pace.is_over(4 * rows.features.len()) {
@@ -191,10 +193,10 @@ impl Problem {
         folds: &RowFolds,
         stop: StopCheck<'_>,
     ) -> Result<FoldSums> {
-        let mut gatherer = Gatherer::new(self.features(), folds, stop);
+        let mut gatherer = SumGatherer::new(self.features(), folds, stop);
         for (series, fold) in series.iter().zip(&folds.of_rows) {
             let targets = scaling.scaled_output(&series.output);
-            let mut rows = Rows::new(&self.plane);
+            let mut rows = RelayRows::new(&self.plane);
             for ((sample, &fold), target) in series.samples.iter().zip(fold).zip(targets) {
                 if gatherer.is_over(4 * rows.features.len()) {
                     break;
@@ -209,7 +211,7 @@ impl Problem {
     fn weighted(
         &self,
         sums: FoldSums,
-        choice: Choice,
+        choice: PenaltyChoice,
         scaling: &Scaling,
         stop: StopCheck<'_>,
     ) -> Result<Preisach> {
@@ -231,7 +233,7 @@ impl Problem {
 }
 
 /// Features of one row after another: mean outputs of the relays of each interval and cell.
-struct Rows<'a> {
+struct RelayRows<'a> {
     plane: &'a Plane,
     stack: TurningPointStack<()>,
     /// Mean outputs of the cells at the last turning point.
@@ -239,7 +241,7 @@ struct Rows<'a> {
     features: Vec<f64>,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> RelayRows<'a> {
     fn new(plane: &'a Plane) -> Self {
         let n = plane.intervals();
         let settled = plane.indices().map(|(i, j)| plane.virgin_mean(i, j)).collect();
@@ -253,8 +255,8 @@ impl<'a> Rows<'a> {
         let (plane, settled) = (self.plane, &mut self.settled);
         // What was added when a point was put down is taken away again when it is wiped out.
         self.stack.advance_with(x, (), |change| match change {
-            Change::PutDown(points) => add_last(plane, points, 1.0, settled),
-            Change::WipedOut(points, count) => {
+            StackChange::PutDown(points) => add_last(plane, points, 1.0, settled),
+            StackChange::WipedOut(points, count) => {
                 for kept in 0..count {
                     add_last(plane, &points[..points.len() - kept], -1.0, settled);
                 }
@@ -267,7 +269,7 @@ impl<'a> Rows<'a> {
         self.features[1] = scaled;
         let (reversible, cells) = self.features[FIRST..].split_at_mut(n);
         plane.below(x, reversible);
-        reversible.iter_mut().for_each(|share| *share = 2.0 * *share - 1.0);
+        reversible.iter_mut().for_each(|share| *share = 2.0 * *share - 1.0); // (7.8): m_j
         cells.copy_from_slice(&self.settled);
         add_branch(plane, self.stack.points().last().map(|start| start.x), x, 1.0, cells);
     }
@@ -291,7 +293,7 @@ fn add_branch(plane: &Plane, start: Option<f64>, x: f64, factor: f64, cells: &mu
         None => {
             let change = 2.0 * factor * x.signum();
             for (cell, (i, j)) in cells.iter_mut().zip(plane.indices()) {
-                *cell += change * plane.virgin_share(i, j, x);
+                *cell += change * plane.virgin_share(i, j, x); // (7.11)
             }
         }
         Some(start) => {
@@ -299,6 +301,7 @@ fn add_branch(plane: &Plane, start: Option<f64>, x: f64, factor: f64, cells: &mu
             let (mut below_low, mut below_high) = (vec![0.0; n], vec![0.0; n]);
             plane.below(start.min(x), &mut below_low);
             plane.below(start.max(x), &mut below_high);
+            // (7.9)
             plane.add_swing(&below_high, &below_low, 2.0 * factor * (x - start).signum(), cells);
         }
     }

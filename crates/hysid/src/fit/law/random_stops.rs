@@ -23,7 +23,9 @@ use crate::error::{Error, Result};
 use crate::fit::random_start::{self, Capacities};
 use crate::fit::sums::{FoldSums, Sums, logarithmic};
 use crate::network::scaling::Scaling;
-use crate::network::{Architecture, Columns, Drive, GramOverRecords, Layout, Network, RowsOverRecords};
+use crate::network::{
+    Architecture, GramOverRecords, JacobianColumns, Network, NetworkDrive, ParameterLayout, RowsOverRecords,
+};
 use crate::optimise::non_negative::Penalty;
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
@@ -82,12 +84,12 @@ pub fn fit_random_stops(
     Ok(best.expect("at least one candidate"))
 }
 
-pub(crate) struct Drawn {
+pub(crate) struct DrawnStops {
     architecture: Architecture,
     parameters: Vec<f64>,
 }
 
-impl Drawn {
+impl DrawnStops {
     /// The stops for these data, with the first of the architectures that the options leave open.
     pub fn of(data: &Dataset, options: &ClassicalOptions) -> Result<Self> {
         let (deterioration, hidden) = (options.deterioration.unwrap_or(false), options.hidden.unwrap_or(0));
@@ -112,7 +114,7 @@ impl Drawn {
         let Self { architecture, parameters } = self;
         let drives = [scaling.drive(record, architecture, rate)?];
         let targets = [scaling.target(record)];
-        let columns = Columns { architecture, parameters, output: None };
+        let columns = JacobianColumns { architecture, parameters, output: None };
         let rows = RowsOverRecords { columns, first: 0, drives: &drives, targets: &targets, stop }.columns();
         if stop.is_asked() { Err(Error::Stopped) } else { Ok(rows) }
     }
@@ -144,7 +146,7 @@ fn drawn(architecture: &Architecture, seed: u64) -> Vec<f64> {
     let short = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
     let mut values: Vec<f64> =
         random_start::draw(architecture, CAPACITIES, None, seed).into_iter().map(short).collect();
-    Layout::new(*architecture).clamp(&mut values);
+    ParameterLayout::new(*architecture).clamp(&mut values);
     values
 }
 
@@ -156,12 +158,12 @@ fn fit_readout(
     stop: StopCheck<'_>,
 ) -> Result<RandomStops> {
     let used = || data.records().iter().filter(|record| record.scored() > 0);
-    let drives: Vec<Drive> =
+    let drives: Vec<NetworkDrive> =
         used().map(|record| scaling.drive(record, &architecture, options.rate)).collect::<Result<_>>()?;
     let targets: Vec<Vec<f64>> = used().map(|record| scaling.target(record)).collect();
     let parameters = drawn(&architecture, options.seed);
     let sums = fold_sums(
-        &Columns { architecture: &architecture, parameters: &parameters, output: None },
+        &JacobianColumns { architecture: &architecture, parameters: &parameters, output: None },
         &drives,
         &targets,
         &RowFolds::of(data),
@@ -171,7 +173,7 @@ fn fit_readout(
     let features = architecture.output_weights();
     let penalty = Penalty::ridge((0..features).map(|i| f64::from(u8::from(i > 0))));
     let choice = sums.choose(&penalty, &logarithmic(1e-9, 1e-1, 17), Some(Sign::Any), &(0..0), stop);
-    let output = sums.weights(&penalty, choice, 0..0, stop)?;
+    let output = sums.weights(&penalty, choice, 0..0, stop)?; // (7.1)
     Ok(RandomStops {
         network: Network::new(architecture, parameters, output)?,
         scaling: scaling.clone(),
@@ -181,8 +183,8 @@ fn fit_readout(
 
 /// Sums of the output layer's features, fold by fold; the memory runs through every row.
 fn fold_sums(
-    columns: &Columns,
-    drives: &[Drive],
+    columns: &JacobianColumns,
+    drives: &[NetworkDrive],
     targets: &[Vec<f64>],
     folds: &RowFolds,
     stop: StopCheck<'_>,
@@ -223,7 +225,7 @@ mod tests {
             direct: true,
             constant: true,
         };
-        let layout = Layout::new(architecture);
+        let layout = ParameterLayout::new(architecture);
         for seed in 0..40 {
             layout.check(&drawn(&architecture, seed)).unwrap();
         }

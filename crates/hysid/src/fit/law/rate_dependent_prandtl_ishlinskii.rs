@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::fit::law::SearchedLaw;
 use crate::fit::law::grids::check_count;
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::law::search::{Columns, Family, Memory, Unknowns, Variable, thinned};
+use crate::fit::law::search::{FeatureColumns, MemoryKind, SearchFamily, SearchVariable, Unknowns, thinned};
 use crate::law::Law;
 use crate::law::play_weights::MOST_PLAYS;
 use crate::law::rate_dependent_prandtl_ishlinskii::{
@@ -18,18 +18,18 @@ use crate::law::series::{Series, work};
 use crate::options::classical::ClassicalOptions;
 
 impl SearchedLaw for RateDependentPrandtlIshlinskii {
-    type Family = Plays;
+    type Family = RateDependentFamily;
 
-    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(Plays, Vec<Series>)> {
+    fn family(data: &Dataset, options: &ClassicalOptions) -> Result<(RateDependentFamily, Vec<Series>)> {
         check_count("operators", options.operators(), MOST_PLAYS)?;
         let rate = options.rate.ok_or(Error::RateNeeded(RateDependentPrandtlIshlinskii::FACTS.name))?;
         let series = Series::all(data, Some(rate))?;
-        let family = Plays::new(&series, options);
-        Ok((family, thinned(series, Memory::Path)))
+        let family = RateDependentFamily::new(&series, options);
+        Ok((family, thinned(series, MemoryKind::Path)))
     }
 }
 
-pub(crate) struct Plays {
+pub(crate) struct RateDependentFamily {
     /// Largest magnitudes of input and rate.
     input: f64,
     rate: f64,
@@ -39,7 +39,7 @@ pub(crate) struct Plays {
     unknowns: Unknowns,
 }
 
-impl Plays {
+impl RateDependentFamily {
     fn new(series: &[Series], options: &ClassicalOptions) -> Self {
         let operators = options.operators();
         let free_weights = options.free_weights.unwrap_or(true);
@@ -47,18 +47,18 @@ impl Plays {
         let input = samples().map(|sample| sample.x.abs()).fold(f64::MIN_POSITIVE, f64::max);
         let rate = samples().map(|sample| sample.rate.abs()).fold(1e-100, f64::max);
         // The largest threshold at rest, as a share of the largest input.
-        let mut variables = vec![Variable::logarithmic(0.01, 1.5)];
+        let mut variables = vec![SearchVariable::logarithmic(0.01, 1.5)];
         let logarithmic = options.logarithmic_thresholds;
         if logarithmic {
             // β, λ|x'|^ε at the largest rate, ε.
             variables.extend([
-                Variable::logarithmic(1.02, 20.0),
-                Variable::logarithmic(1e-3, 1e4),
-                Variable::linear(0.2, 2.0),
+                SearchVariable::logarithmic(1.02, 20.0),
+                SearchVariable::logarithmic(1e-3, 1e4),
+                SearchVariable::linear(0.2, 2.0),
             ]);
         } else {
             // Its growth at the largest rate.
-            variables.push(Variable::logarithmic(1e-4, 2.0));
+            variables.push(SearchVariable::logarithmic(1e-4, 2.0));
         }
         let mut non_negative = vec![false, false];
         if free_weights {
@@ -66,7 +66,7 @@ impl Plays {
             non_negative.extend(vec![work(series) < 0.0; operators]);
         } else {
             // τ times the largest threshold.
-            variables.push(Variable::linear(-3.0, 12.0));
+            variables.push(SearchVariable::linear(-3.0, 12.0));
             non_negative.push(false);
         }
         let unknowns = Unknowns { variables, non_negative };
@@ -94,7 +94,7 @@ impl Plays {
     }
 }
 
-impl LawFamily for Plays {
+impl LawFamily for RateDependentFamily {
     type Law = RateDependentPrandtlIshlinskii;
 
     fn whole(&self, searched: &[f64], weights: &[f64]) -> RateDependentPrandtlIshlinskii {
@@ -127,12 +127,12 @@ impl LawFamily for Plays {
     }
 }
 
-impl Family for Plays {
+impl SearchFamily for RateDependentFamily {
     fn unknowns(&self) -> &Unknowns {
         &self.unknowns
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>) {
         let law = self.law(parameters);
         let weights = law.weights.values(law.spacing, 1);
         let mut plays = vec![0.0; self.operators];
@@ -141,7 +141,7 @@ impl Family for Plays {
             if columns.is_over(8 * plays.len()) {
                 return;
             }
-            law.advance(&mut plays, sample);
+            law.advance(&mut plays, sample); // (8.15)
             if y.is_nan() {
                 continue;
             }
@@ -149,7 +149,7 @@ impl Family for Plays {
             if self.free_weights {
                 row[2..].copy_from_slice(&plays);
             } else {
-                row[2] = weights.iter().zip(&plays).map(|(weight, play)| weight * play).sum();
+                row[2] = weights.iter().zip(&plays).map(|(weight, play)| weight * play).sum(); // (8.18)
             }
             columns.push(&row);
         }

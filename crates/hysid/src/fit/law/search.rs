@@ -28,10 +28,10 @@ use serde_json::json;
 
 use crate::error::{Error, Result};
 use crate::fit::law::linearised::LawFamily;
-use crate::fit::progress::{LawSoFar, SearchObserver, SearchProgress};
+use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
 use crate::law::series::Series;
 use crate::law::{Classical, Law};
-use crate::optimise::multi_start::{MultiStart, Plan};
+use crate::optimise::multi_start::{MultiStart, RoundPlan};
 use crate::optimise::parallel;
 use crate::optimise::random::generator;
 use crate::options::classical::ClassicalOptions;
@@ -39,10 +39,10 @@ use crate::options::table::check;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use descent::Descent;
-pub(crate) use projection::Columns;
+pub(crate) use projection::FeatureColumns;
 use projection::{Projection, UNFINISHED};
 
-pub(crate) use rows::{Memory, measured, spread, thinned, thinned_to};
+pub(crate) use rows::{MemoryKind, measured, spread, thinned, thinned_to};
 
 /// Random points looked at for each start.
 const DRAWS_PER_START: usize = 24;
@@ -50,21 +50,21 @@ const DRAWS_PER_START: usize = 24;
 /// Least distance of starts, root mean square of the differences in `u`, where there are enough points.
 const APART: f64 = 0.12;
 
-/// After so many rounds half of the starts are given up, and again after as many more.
+/// Rounds after which half of the starts are given up, and again after as many more.
 const ROUNDS_TO_PROVE_ITSELF: usize = 6;
 
 const FINALISTS: usize = 2;
 
 /// Bounds of a searched parameter and the scale it is searched on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Variable {
+pub(crate) struct SearchVariable {
     pub low: f64,
     pub high: f64,
     /// Searched by its logarithm; needs `low > 0`.
     pub logarithmic: bool,
 }
 
-impl Variable {
+impl SearchVariable {
     pub fn linear(low: f64, high: f64) -> Self {
         Self { low, high, logarithmic: false }
     }
@@ -77,14 +77,14 @@ impl Variable {
     /// The parameter at `u`: `l + (h - l) u`, or `l (h/l)^u` on a logarithmic scale (theory.md (8.2)).
     pub fn value(self, u: f64) -> f64 {
         let value = if self.logarithmic {
-            self.low * powf(self.high / self.low, u)
+            self.low * powf(self.high / self.low, u) // (8.2)
         } else {
-            self.low + (self.high - self.low) * u
+            self.low + (self.high - self.low) * u // (8.2)
         };
         value.clamp(self.low, self.high)
     }
 
-    /// The inverse of [`Variable::value`].
+    /// The inverse of [`SearchVariable::value`].
     pub fn place(self, value: f64) -> f64 {
         let u = if self.logarithmic {
             ln(value / self.low) / ln(self.high / self.low)
@@ -95,19 +95,19 @@ impl Variable {
     }
 }
 
-/// What is searched, and whether the weight of each feature must not be negative.
+/// Search variables, and for each feature whether its weight must not be negative.
 pub(crate) struct Unknowns {
-    pub variables: Vec<Variable>,
+    pub variables: Vec<SearchVariable>,
     pub non_negative: Vec<bool>,
 }
 
-/// A family of laws, in the form of the search. The search knows it by reference only, so that the compiler makes one
-/// search for all families: a call costs nothing beside the run over a record that it asks for.
-pub(crate) trait Family: Sync {
+/// A family of laws, in the form of the search. The search takes it by reference only, so that the compiler makes one
+/// search for all families: a call costs nothing beside its run over a record.
+pub(crate) trait SearchFamily: Sync {
     fn unknowns(&self) -> &Unknowns;
 
-    /// Appends the features of every row with an output; ends early once [`Columns::is_over`].
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>);
+    /// Appends the features of every row with an output; ends early once [`FeatureColumns::is_over`].
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>);
 
     /// Starting points that the data suggest, better than random ones.
     fn suggestions(&self) -> Vec<Vec<f64>> {
@@ -120,8 +120,8 @@ type MakesLaw<'a> = dyn Fn(&[f64], &[f64]) -> Option<Classical> + Sync + 'a;
 
 /// An identified law with the result of its search.
 #[derive(Debug, Clone)]
-pub struct Identified<L> {
-    /// The law.
+pub struct IdentifiedLaw<L> {
+    /// The law with its searched parameters and weights.
     pub law: L,
     /// Error over the training rows, in percent of the standard deviation of the output.
     pub train_nrmse_percent: f64,
@@ -133,16 +133,16 @@ pub struct Identified<L> {
     pub searched: Vec<f64>,
 }
 
-impl<L> Identified<L> {
+impl<L> IdentifiedLaw<L> {
     /// A law that least squares found from one start, without rounds.
     pub(crate) fn by_least_squares(law: L) -> Self {
         let (termination, searched) = (Termination::Converged, Vec::new());
         Self { law, train_nrmse_percent: f64::NAN, evaluations: 1, termination, searched }
     }
 
-    pub(crate) fn try_map<M>(self, make: impl FnOnce(L) -> Result<M>) -> Result<Identified<M>> {
+    pub(crate) fn try_map<M>(self, make: impl FnOnce(L) -> Result<M>) -> Result<IdentifiedLaw<M>> {
         let Self { law, train_nrmse_percent, evaluations, termination, searched } = self;
-        Ok(Identified { law: make(law)?, train_nrmse_percent, evaluations, termination, searched })
+        Ok(IdentifiedLaw { law: make(law)?, train_nrmse_percent, evaluations, termination, searched })
     }
 }
 
@@ -151,15 +151,15 @@ pub(crate) fn check_effort(options: &ClassicalOptions) -> Result<()> {
 }
 
 /// The squared residual over the variance of the output, as a function of `u`.
-pub(super) struct Objective<'a> {
-    family: &'a dyn Family,
+pub(super) struct LawObjective<'a> {
+    family: &'a dyn SearchFamily,
     series: &'a [Series],
     target: Vec<f64>,
     variation: f64,
     stop: StopCheck<'a>,
 }
 
-impl Objective<'_> {
+impl LawObjective<'_> {
     fn parameters(&self, u: &[f64]) -> Vec<f64> {
         self.family.unknowns().variables.iter().zip(u).map(|(variable, &u)| variable.value(u)).collect()
     }
@@ -170,11 +170,11 @@ impl Objective<'_> {
         }
         let parameters = self.parameters(u);
         let non_negative = &self.family.unknowns().non_negative;
-        let mut columns = Columns::new(non_negative.len(), self.target.len(), self.stop);
+        let mut columns = FeatureColumns::new(non_negative.len(), self.target.len(), self.stop);
         for series in self.series {
             self.family.features(&parameters, series, &mut columns);
         }
-        columns.project(&self.target, non_negative)
+        columns.project(&self.target, non_negative) // (8.1)
     }
 
     fn nrmse_percent(&self, projection: &Projection) -> f64 {
@@ -186,7 +186,7 @@ impl Objective<'_> {
 /// start is walked by itself, and the starts are compared in their order.
 ///
 /// # Errors
-/// No start asked for, or a stop before any start was evaluated. The data must have been found identifiable
+/// No start requested, or a stop before any start was evaluated. The data must have been found identifiable
 /// before.
 pub(crate) fn search<F: LawFamily>(
     family: &F,
@@ -194,7 +194,7 @@ pub(crate) fn search<F: LawFamily>(
     options: &ClassicalOptions,
     observer: &mut SearchObserver<'_>,
     stop: StopCheck<'_>,
-) -> Result<Identified<F::Law>>
+) -> Result<IdentifiedLaw<F::Law>>
 where
     F::Law: Into<Classical>,
 {
@@ -205,20 +205,20 @@ where
     found.try_map(|weights| law(&searched, &weights))
 }
 
-/// Searches parameters and weights; `law` is made of both for an observer that asks for it.
+/// Searches parameters and weights; `law` is made of both for an observer that needs it.
 fn search_parameters(
-    family: &dyn Family,
+    family: &dyn SearchFamily,
     law: &MakesLaw<'_>,
     series: &[Series],
     options: &ClassicalOptions,
     observer: &mut SearchObserver<'_>,
     stop: StopCheck<'_>,
-) -> Result<Identified<Vec<f64>>> {
+) -> Result<IdentifiedLaw<Vec<f64>>> {
     check_effort(options)?;
     let target = measured(series);
     let (_, deviation) = spread(&target);
     let variation = target.len() as f64 * deviation * deviation;
-    let objective = Objective { family, series, target, variation, stop };
+    let objective = LawObjective { family, series, target, variation, stop };
 
     let begun = beginnings(&objective, options);
     if begun.first().is_none_or(|best| best.value().square_residual == UNFINISHED) {
@@ -226,7 +226,7 @@ fn search_parameters(
     }
     let drawn = options.starts() * DRAWS_PER_START;
     let rounds = options.epochs();
-    let plan = Plan { rounds, spared: 0, to_prove_itself: ROUNDS_TO_PROVE_ITSELF, finalists: FINALISTS };
+    let plan = RoundPlan { rounds, spared: 0, to_prove_itself: ROUNDS_TO_PROVE_ITSELF, finalists: FINALISTS };
     let mut descents = MultiStart::new(begun);
     let tell = |descents: &MultiStart<Descent>, round| {
         let best = descents.best();
@@ -236,13 +236,13 @@ fn search_parameters(
             rounds,
             evaluations: drawn + descents.evaluations(),
             train_nrmse_percent: objective.nrmse_percent(best.value()),
-            law: LawSoFar(Some(&law)),
+            law: PartialLaw(Some(&law)),
         });
         if stop.is_asked() { ControlFlow::Break(()) } else { told }
     };
     let termination = descents.run(plan, |descent, _| descent.advance(&objective), tell);
     let best = descents.best();
-    Ok(Identified {
+    Ok(IdentifiedLaw {
         law: best.value().weights.clone(),
         searched: objective.parameters(best.u()),
         train_nrmse_percent: objective.nrmse_percent(best.value()),
@@ -252,7 +252,7 @@ fn search_parameters(
 }
 
 /// The best of many points that lie apart: those of a similar fit, suggested and random ones.
-fn beginnings(objective: &Objective<'_>, options: &ClassicalOptions) -> Vec<Descent> {
+fn beginnings(objective: &LawObjective<'_>, options: &ClassicalOptions) -> Vec<Descent> {
     let variables = &objective.family.unknowns().variables;
     let starts = options.starts();
     let mut suggested = objective.family.suggestions();

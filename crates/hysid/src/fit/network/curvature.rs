@@ -7,7 +7,7 @@
 //! (A + D)⁻¹ (Uᵀv + t) = q + C⁻¹Uᵀ (I + U C⁻¹Uᵀ)⁻¹ (v - Uq),   C = κ + D,  q = C⁻¹t
 //! ```
 //!
-//! The second line (Woodbury) asks for a matrix as large as there are rows and features, in place of one as
+//! The second line (Woodbury) needs a matrix as large as there are rows and features, in place of one as
 //! large as there are parameters: 50 rows of 99 inputs need 2 MB, not 500.
 
 use crate::fit::sums::output_weights::OutputSolution;
@@ -27,7 +27,7 @@ pub(crate) fn has_few_rows(parameters: usize, features: usize, rows: usize) -> b
 pub enum Curvature {
     /// The Gauss-Newton matrix with decay.
     Matrix(Symmetric),
-    Rows(Rows),
+    Rows(CurvatureRows),
 }
 
 impl Curvature {
@@ -49,7 +49,7 @@ impl Curvature {
 }
 
 /// `U` with the residual `v` and the decay.
-pub struct Rows {
+pub struct CurvatureRows {
     /// Rows of `U`: those of the data, then one for each feature.
     height: usize,
     /// `U`, parameter by parameter.
@@ -60,7 +60,7 @@ pub struct Rows {
     pull: Vec<f64>,
 }
 
-impl Rows {
+impl CurvatureRows {
     /// From the columns of features, target and Jacobian and the output weights; `None` once stopped.
     pub fn new(
         columns: Vec<Vec<f64>>,

@@ -8,7 +8,7 @@ use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
 use crate::fit::network::objective::Objective;
-use crate::fit::network::soundness::Frame;
+use crate::fit::network::soundness::NetworkFrame;
 use crate::optimise::random::normal;
 
 /// Largest threshold, in half ranges of the input: beyond 1 a stop no longer slides.
@@ -77,8 +77,8 @@ impl Encoding {
     }
 
     /// True if all that its genes can stand for are parameters of the network.
-    pub fn is_sound(&self, frame: &Frame) -> bool {
-        let Frame { layout, architecture, .. } = frame;
+    pub fn is_sound(&self, frame: &NetworkFrame) -> bool {
+        let NetworkFrame { layout, architecture, .. } = frame;
         let has_layout = self.stop_weights == layout.stop_weights
             && self.channels == architecture.channels()
             && self.hidden == layout.hidden

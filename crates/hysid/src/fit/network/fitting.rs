@@ -1,7 +1,7 @@
 //! A fit on its way: which runs there are, and in which order.
 //!
 //! Several starts are trained on everything, and the lowest objective wins. The same is done on the folds of a
-//! cross-validation, from fewer starts: that tells the error on new data, and whether penalties are needed.
+//! cross-validation, from fewer starts: that estimates the error on new data, and shows whether penalties are needed.
 //!
 //! Runs advance in rounds, one epoch of a few runs at a time; between rounds the whole state is plain
 //! data, so that the observer can store it. No run depends on another, nor on how many advance
@@ -17,14 +17,14 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::network::objective::Objective;
 use crate::fit::network::run::{From, TrainingRun};
-use crate::fit::network::soundness::{Frame, require};
+use crate::fit::network::soundness::{NetworkFrame, require};
 use crate::fit::network::wanted_of;
-use crate::fit::progress::{Checkpoint, Fitted, HeldOutRows, Observer, Progress, SharedObserver, Unfinished};
+use crate::fit::progress::{Checkpoint, Fitted, HeldOutRows, Observer, PartialFit, Progress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::linear_algebra::dilated_space::DilatedSpace;
 use crate::model::history::Phase;
-use crate::model::input_transform::{InputTransform, Transformed};
-use crate::model::{Found, Model, Predictor};
+use crate::model::input_transform::{InputTransform, TransformedData};
+use crate::model::{Model, Predictor, ProvenanceDraft};
 use crate::network::free_run::FreeRun;
 use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Network};
@@ -39,7 +39,7 @@ const MOST_FOLDS: usize = 5;
 
 const STARTS_ON_FOLDS: usize = 3;
 
-/// Penalties of data without noise, as good as none: what they would bias is exact.
+/// Near-zero penalties for noise-free data, where any bias would show.
 const NO_PENALTIES: Regularisation = Regularisation { ridge: 1e-10, decay: 1e-12 };
 
 /// Largest error without penalties, as a share of the error with them, at which they are left out.
@@ -72,8 +72,8 @@ pub(crate) struct State {
 pub(crate) struct Fitting<'a> {
     measured: &'a Dataset,
     asked: FitOptions,
-    /// The data as the network sees them.
-    whole: Part<'a>,
+    /// The data in scaled units, with their rates.
+    whole: TrainingPart<'a>,
     architecture: Architecture,
     state: State,
     /// Epochs of all runs, as far as they are known.
@@ -81,7 +81,7 @@ pub(crate) struct Fitting<'a> {
 }
 
 /// Data that networks are trained on, as they see them.
-struct Part<'a> {
+struct TrainingPart<'a> {
     data: &'a Dataset,
     preprocessing: InputTransform,
     scaling: Scaling,
@@ -90,13 +90,13 @@ struct Part<'a> {
 }
 
 /// Where a run of a stage begins, and on which of its objectives.
-struct Beginning {
+struct StageStart {
     objective: usize,
     start: usize,
     from: From,
 }
 
-struct Stage<'o> {
+struct TrainingStage<'o> {
     phase: Phase,
     runs: Runs,
     objectives: &'o [Objective<'o>],
@@ -113,9 +113,9 @@ struct Validation {
     is_exact: bool,
 }
 
-impl<'a> Part<'a> {
+impl<'a> TrainingPart<'a> {
     /// `seen` is what the shaping of the options makes of data measured.
-    fn of(seen: &'a Transformed<'_>, asked: &FitOptions) -> Result<Self> {
+    fn of(seen: &'a TransformedData<'_>, asked: &FitOptions) -> Result<Self> {
         Ok(Self {
             data: &seen.data,
             preprocessing: seen.preprocessing.clone(),
@@ -130,7 +130,7 @@ impl<'a> Part<'a> {
         Objective::new(self.data, &self.scaling, architecture, &options)
     }
 
-    /// What a network predicts of the rows of a fold that are held out, in the user's unit.
+    /// Predictions of a network for the held-out rows of a fold, in the user's unit.
     fn predicted(&self, network: &Network, fold: &Fold, rate: Option<RateMethod>) -> Result<Vec<f64>> {
         let (seen, rate) = self.preprocessing.data(&fold.held_out, rate)?;
         let mut run = FreeRun::new(network, &self.scaling, rate);
@@ -145,13 +145,13 @@ impl<'a> Part<'a> {
 
 impl<'a> Fitting<'a> {
     /// `seen` is what the shaping of the options makes of the data measured.
-    pub fn new(measured: &'a Dataset, seen: &'a Transformed<'_>, asked: FitOptions) -> Result<Self> {
+    pub fn new(measured: &'a Dataset, seen: &'a TransformedData<'_>, asked: FitOptions) -> Result<Self> {
         asked.check()?;
         let starts = asked.starts;
         let on_folds = if starts > 1 { MOST_FOLDS * STARTS_ON_FOLDS.min(starts) } else { 0 };
         Ok(Self {
             architecture: asked.architecture(measured)?,
-            whole: Part::of(seen, &asked)?,
+            whole: TrainingPart::of(seen, &asked)?,
             epochs_expected: (starts + on_folds) * asked.epochs,
             measured,
             asked,
@@ -168,7 +168,7 @@ impl<'a> Fitting<'a> {
         most(&state.folds_exact, MOST_FOLDS)?;
         most(&state.all_exact, FINALISTS)?;
         most(&state.all_rows, 1)?;
-        let frame = Frame::new(&self.asked, &self.architecture);
+        let frame = NetworkFrame::new(&self.asked, &self.architecture);
         state.all_runs().try_for_each(|run| run.check(&frame))?;
         Ok(Self { state, ..self })
     }
@@ -189,7 +189,7 @@ impl<'a> Fitting<'a> {
         let runs =
             self.state.folds.iter().flat_map(TrainingRun::runs).chain(winner.runs()).cloned().collect();
         let evaluations = self.state.all_runs().map(TrainingRun::evaluations).sum();
-        let found = Found {
+        let found = ProvenanceDraft {
             termination: observer.termination(winner.termination()),
             runs,
             validation: validation.errors,
@@ -199,18 +199,18 @@ impl<'a> Fitting<'a> {
         Ok(Fitted::of(model, evaluations).with_held_out(validation.held_out))
     }
 
-    /// What is known of a run on everything.
-    fn found(&self, run: &TrainingRun, penalties: Regularisation) -> Found {
-        Found {
+    /// Provenance of a run on all data, without its errors.
+    fn found(&self, run: &TrainingRun, penalties: Regularisation) -> ProvenanceDraft {
+        ProvenanceDraft {
             chosen_start: run.start(),
             runs: run.runs().to_vec(),
             penalties: Some(penalties),
-            ..Found::of(FitSpec::Network(self.asked.clone()), run.termination())
+            ..ProvenanceDraft::of(FitSpec::Network(self.asked.clone()), run.termination())
         }
     }
 
-    fn model(&self, network: Network, found: Found) -> Result<Model> {
-        let Part { preprocessing, scaling, .. } = &self.whole;
+    fn model(&self, network: Network, found: ProvenanceDraft) -> Result<Model> {
+        let TrainingPart { preprocessing, scaling, .. } = &self.whole;
         let body = Predictor::Network { network, scaling: scaling.clone() };
         Model::new(body, preprocessing.clone(), self.asked.rate, self.measured, found)
     }
@@ -223,14 +223,14 @@ impl<'a> Fitting<'a> {
     ) -> Result<()> {
         let is_to_stop = || observer.is_to_stop();
         let objective = self.whole.objective(self.architecture, penalties)?.thinned(self.asked.thin);
-        let stage = Stage {
+        let stage = TrainingStage {
             phase: Phase::AllData,
             runs: |state| &mut state.all_data,
             objectives: &[objective.until(StopCheck::new(&is_to_stop))],
             epochs: self.asked.epochs,
             epochs_before: 0,
         };
-        let random = |start| Beginning { objective: 0, start, from: From::Random };
+        let random = |start| StageStart { objective: 0, start, from: From::Random };
         self.drive(&stage, (0..self.asked.starts).map(random).collect(), observer)?;
         if self.state.all_data.is_empty() { Err(Error::Stopped) } else { Ok(()) }
     }
@@ -248,13 +248,14 @@ impl<'a> Fitting<'a> {
         let stop = StopCheck::new(&is_to_stop);
         let folds = wanted_of(&self.asked).on_folds(self.folds(), stop)?;
         let (shaping, rate) = (self.asked.shaping, self.asked.rate);
-        let seen: Vec<Transformed> = folds
+        let seen: Vec<TransformedData> = folds
             .iter()
-            .map(|fold| Transformed::of(&fold.train, &shaping, rate, Origin::OfData))
+            .map(|fold| TransformedData::of(&fold.train, &shaping, rate, Origin::OfData))
             .collect::<Result<_>>()?;
-        let parts: Vec<Part> = seen.iter().map(|seen| Part::of(seen, &self.asked)).collect::<Result<_>>()?;
+        let parts: Vec<TrainingPart> =
+            seen.iter().map(|seen| TrainingPart::of(seen, &self.asked)).collect::<Result<_>>()?;
         let starts = STARTS_ON_FOLDS.min(self.asked.starts);
-        let random = |(objective, start)| Beginning { objective, start, from: From::Random };
+        let random = |(objective, start)| StageStart { objective, start, from: From::Random };
         let all = (0..folds.len()).flat_map(|fold| (0..starts).map(move |start| (fold, start)));
         let stage = FoldStage { runs: |state| &mut state.folds, phase: Phase::Starts, penalties };
         self.drive_on_folds(&stage, &parts, all.map(random).collect(), observer, stop)?;
@@ -274,8 +275,8 @@ impl<'a> Fitting<'a> {
                 .min_by(|&a, &b| self.state.folds[a].objective().total_cmp(&self.state.folds[b].objective()))
         };
         let best: Vec<usize> = (0..folds.len()).filter_map(lowest).collect();
-        let with_penalties: Vec<&OnFold> = best.iter().map(|&index| &on_folds[index]).collect();
-        let onward: Vec<Beginning> =
+        let with_penalties: Vec<&FoldPredictions> = best.iter().map(|&index| &on_folds[index]).collect();
+        let onward: Vec<StageStart> =
             best.iter().enumerate().map(|(fold, &index)| onward(fold, &self.state.folds[index])).collect();
         let validation = self.validation(&with_penalties, &folds, false)?;
         if self.asked.keeps_penalties() {
@@ -287,7 +288,7 @@ impl<'a> Fitting<'a> {
             return Ok(validation);
         }
         let without = self.on_folds(&self.state.folds_exact, &parts, &folds, NO_PENALTIES, stop)?;
-        let without: Vec<&OnFold> = without.iter().collect();
+        let without: Vec<&FoldPredictions> = without.iter().collect();
         if observer.is_over() {
             return Ok(validation);
         }
@@ -309,49 +310,54 @@ impl<'a> Fitting<'a> {
     fn drive_on_folds(
         &mut self,
         stage: &FoldStage,
-        parts: &[Part],
-        beginnings: Vec<Beginning>,
+        parts: &[TrainingPart],
+        beginnings: Vec<StageStart>,
         observer: &SharedObserver<'_, '_>,
         stop: StopCheck<'_>,
     ) -> Result<()> {
         let FoldStage { phase, runs, penalties } = *stage;
-        let objective = |part: &Part| {
+        let objective = |part: &TrainingPart| {
             Ok(part.objective(self.architecture, penalties)?.thinned(self.asked.thin).until(stop))
         };
         let objectives: Vec<Objective> = parts.iter().map(objective).collect::<Result<_>>()?;
-        let stage =
-            Stage { phase, runs, objectives: &objectives, epochs: self.asked.epochs, epochs_before: 0 };
+        let stage = TrainingStage {
+            phase,
+            runs,
+            objectives: &objectives,
+            epochs: self.asked.epochs,
+            epochs_before: 0,
+        };
         self.drive(&stage, beginnings, observer)
     }
 
-    /// What runs predict of the folds, as many of each, fold by fold. Their output weights are those of all rows.
+    /// Predictions of runs for the folds, as many of each, fold by fold. Their output weights are those of all rows.
     fn on_folds(
         &self,
         runs: &[TrainingRun],
-        parts: &[Part],
+        parts: &[TrainingPart],
         folds: &[Fold],
         penalties: Regularisation,
         stop: StopCheck<'_>,
-    ) -> Result<Vec<OnFold>> {
+    ) -> Result<Vec<FoldPredictions>> {
         let mut on_folds = Vec::with_capacity(runs.len());
         let of_folds = runs.chunks(runs.len() / folds.len());
         for ((runs, part), fold) in of_folds.zip(parts).zip(folds) {
             let objective = part.objective(self.architecture, penalties)?.until(stop);
             for run in runs {
-                on_folds.push(OnFold::of(run, part, &objective, fold, self.asked.rate)?);
+                on_folds.push(FoldPredictions::of(run, part, &objective, fold, self.asked.rate)?);
             }
         }
         Ok(on_folds)
     }
 
     /// Errors of one run on each fold, on what was held out, all together.
-    fn pooled(&self, runs: &[&OnFold], folds: &[Fold]) -> Option<Errors> {
+    fn pooled(&self, runs: &[&FoldPredictions], folds: &[Fold]) -> Option<Errors> {
         let mut pooled = PooledErrors::default();
         runs.iter().zip(folds).for_each(|(run, fold)| pooled.add(&fold.held_out, &run.predicted));
         pooled.errors(&self.measured.names().output)
     }
 
-    fn validation(&self, runs: &[&OnFold], folds: &[Fold], is_exact: bool) -> Result<Validation> {
+    fn validation(&self, runs: &[&FoldPredictions], folds: &[Fold], is_exact: bool) -> Result<Validation> {
         let predicted = folds.iter().zip(runs.iter().map(|run| run.predicted.as_slice()));
         let held_out = HeldOutRows::of(self.measured.names(), predicted)?;
         Ok(Validation { errors: self.pooled(runs, folds), held_out, is_exact })
@@ -364,7 +370,7 @@ impl<'a> Fitting<'a> {
         best.truncate(FINALISTS);
         let is_to_stop = || observer.is_to_stop();
         let objective = self.whole.objective(self.architecture, NO_PENALTIES)?.thinned(self.asked.thin);
-        let stage = Stage {
+        let stage = TrainingStage {
             phase: Phase::AllData,
             runs: |state| &mut state.all_exact,
             objectives: &[objective.until(StopCheck::new(&is_to_stop))],
@@ -400,7 +406,7 @@ impl<'a> Fitting<'a> {
             self.whole.objective(self.architecture, penalties)?.until(StopCheck::new(&is_to_stop));
         let is_whole = objective.scored() <= self.asked.thin;
         if self.asked.training == Trainer::LevenbergMarquardt && !is_whole {
-            let stage = Stage {
+            let stage = TrainingStage {
                 phase: Phase::AllData,
                 runs: |state| &mut state.all_rows,
                 objectives: std::slice::from_ref(&objective),
@@ -425,8 +431,8 @@ impl<'a> Fitting<'a> {
     /// observer said stop is thrown away: it stays as it was before the round.
     fn drive(
         &mut self,
-        stage: &Stage,
-        beginnings: Vec<Beginning>,
+        stage: &TrainingStage,
+        beginnings: Vec<StageStart>,
         observer: &SharedObserver<'_, '_>,
     ) -> Result<()> {
         let objective_of: Vec<usize> = beginnings.iter().map(|beginning| beginning.objective).collect();
@@ -438,8 +444,8 @@ impl<'a> Fitting<'a> {
         while !observer.is_over() {
             let (options, runs) = (&self.whole.options, (stage.runs)(&mut self.state));
             let under_way = runs.iter().filter(|run| !run.is_over()).count();
-            let next: Vec<Beginning> = waiting.by_ref().take(room.saturating_sub(under_way)).collect();
-            let begin = |Beginning { objective, start, from }| {
+            let next: Vec<StageStart> = waiting.by_ref().take(room.saturating_sub(under_way)).collect();
+            let begin = |StageStart { objective, start, from }| {
                 let objective = &stage.objectives[objective];
                 let run = TrainingRun::new(objective, options, stage.phase, start, stage.epochs, from);
                 if objective.is_long() && observer.is_over() { Ok(None) } else { run.map(Some) }
@@ -482,7 +488,7 @@ impl<'a> Fitting<'a> {
         Ok(())
     }
 
-    fn progress(&mut self, stage: &Stage, index: usize) -> Progress<'_> {
+    fn progress(&mut self, stage: &TrainingStage, index: usize) -> Progress<'_> {
         let done = self.done();
         let run = &(stage.runs)(&mut self.state)[index];
         let told = Progress {
@@ -507,7 +513,7 @@ impl<'a> Fitting<'a> {
     }
 }
 
-impl Unfinished for Fitting<'_> {
+impl PartialFit for Fitting<'_> {
     fn checkpoint(&self) -> Option<Checkpoint> {
         Some(Checkpoint::of(&self.asked, self.measured, &self.state))
     }
@@ -518,12 +524,12 @@ impl Unfinished for Fitting<'_> {
         let run = [all_rows, all_exact, all_data].into_iter().find_map(|runs| best_of(runs))?;
         let penalties = if all_exact.is_empty() { self.asked.penalties() } else { NO_PENALTIES };
         let network = run.network_as_trained(self.architecture).ok()?;
-        let found = Found { termination: Termination::Stopped, ..self.found(run, penalties) };
+        let found = ProvenanceDraft { termination: Termination::Stopped, ..self.found(run, penalties) };
         self.model(network, found).ok()
     }
 }
 
-/// Runs of so many parameters and epochs that advance together: the state of one may be a dilated space.
+/// Runs with this number of parameters and epochs that advance together: the state of one may be a dilated space.
 pub(crate) fn room(parameters: usize, epochs: usize, threads: usize) -> usize {
     let numbers = DilatedSpace::numbers(parameters, epochs);
     (MOST_NUMBERS / numbers.max(1)).clamp(1, RUNS_PER_THREAD * threads)
@@ -539,16 +545,16 @@ struct FoldStage {
     penalties: Regularisation,
 }
 
-/// What a run on the training part of a fold predicts of what is held out.
-struct OnFold {
+/// Predictions for the held-out rows of a fold by a run on its training part.
+struct FoldPredictions {
     predicted: Vec<f64>,
     errors: Option<Errors>,
 }
 
-impl OnFold {
+impl FoldPredictions {
     fn of(
         run: &TrainingRun,
-        part: &Part,
+        part: &TrainingPart,
         objective: &Objective,
         fold: &Fold,
         rate: Option<RateMethod>,
@@ -566,14 +572,14 @@ impl OnFold {
 }
 
 /// Geometric mean of the errors on several folds: one fold that goes far beyond the others does not decide it.
-fn mean_error(folds: &[&OnFold]) -> f64 {
+fn mean_error(folds: &[&FoldPredictions]) -> f64 {
     let errors = folds.iter().filter_map(|fold| fold.errors.as_ref());
     let logarithms: Vec<f64> = errors.map(|errors| ln(errors.rmse.max(f64::MIN_POSITIVE))).collect();
     exp(logarithms.iter().sum::<f64>() / logarithms.len() as f64)
 }
 
-fn onward(objective: usize, run: &TrainingRun) -> Beginning {
-    Beginning { objective, start: run.start(), from: From::Parameters(run.best().parameters.clone()) }
+fn onward(objective: usize, run: &TrainingRun) -> StageStart {
+    StageStart { objective, start: run.start(), from: From::Parameters(run.best().parameters.clone()) }
 }
 
 fn best_of(runs: &[TrainingRun]) -> Option<&TrainingRun> {

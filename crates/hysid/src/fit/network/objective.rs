@@ -11,16 +11,17 @@
 //! for each of the `N` scored samples and one column for each output weight; `y` is the scaled measured
 //! output.
 
-use crate::data::polyline::{Column, noise, polyline};
+use crate::data::polyline::{PolylineColumn, noise, polyline};
 use crate::data::record::{Dataset, Thinning};
 use crate::error::Result;
 use crate::fit::network::curvature::{self, Curvature, has_few_rows};
 use crate::fit::sums::output_weights::{OutputProblem, OutputSolution};
 use crate::network::scaling::Scaling;
 use crate::network::{
-    Architecture, Columns, Drive, GradientOverRecords, GramOverRecords, Layout, RowsOverRecords,
+    Architecture, GradientOverRecords, GramOverRecords, JacobianColumns, NetworkDrive, ParameterLayout,
+    RowsOverRecords,
 };
-use crate::optimise::levenberg_marquardt::{Problem, Rules, Slope};
+use crate::optimise::levenberg_marquardt::{DescentSettings, LeastSquaresProblem, Slope};
 use crate::options::network::{FitOptions, Regularisation};
 use crate::stop_check::StopCheck;
 
@@ -28,9 +29,9 @@ use crate::stop_check::StopCheck;
 #[derive(Debug, Clone)]
 pub struct Objective<'a> {
     architecture: Architecture,
-    layout: Layout,
+    layout: ParameterLayout,
     regularisation: Regularisation,
-    drives: Vec<Drive>,
+    drives: Vec<NetworkDrive>,
     targets: Vec<Vec<f64>>,
     /// Mean time step and duration of the longest record as measured.
     time_scales: Option<(f64, f64)>,
@@ -42,7 +43,7 @@ pub struct Objective<'a> {
 
 /// The objective at a point, with the output weights there.
 #[derive(Debug, Clone)]
-pub struct Value {
+pub struct ObjectiveValue {
     /// The objective `F`, in scaled units.
     pub objective: f64,
     /// Mean square residual in scaled units.
@@ -50,7 +51,7 @@ pub struct Value {
     solution: OutputSolution,
 }
 
-impl Value {
+impl ObjectiveValue {
     /// Output weights at the point.
     pub fn output_weights(&self) -> &[f64] {
         &self.solution.weights
@@ -80,11 +81,11 @@ impl<'a> Objective<'a> {
     ) -> Result<Self> {
         let used = || data.records().iter().filter(|record| record.scored() > 0);
         let drives = used().map(|record| scaling.drive(record, &architecture, options.rate));
-        let drives: Vec<Drive> = drives.collect::<Result<_>>()?;
+        let drives: Vec<NetworkDrive> = drives.collect::<Result<_>>()?;
         let targets: Vec<Vec<f64>> = used().map(|record| scaling.target(record)).collect();
         Ok(Self {
             architecture,
-            layout: Layout::new(architecture),
+            layout: ParameterLayout::new(architecture),
             regularisation: options.penalties(),
             time_scales: time_scales(&drives),
             drives,
@@ -99,7 +100,7 @@ impl<'a> Objective<'a> {
     pub(crate) fn until(self, stop: StopCheck<'a>) -> Self {
         let columns = self.layout.len() + self.architecture.output_weights();
         // Rows without a target are run through, but not gathered.
-        let run: usize = self.drives.iter().map(Drive::len).sum();
+        let run: usize = self.drives.iter().map(NetworkDrive::len).sum();
         let is_long =
             columns.saturating_mul(columns.saturating_mul(self.rows).saturating_add(10 * run)) > LONG;
         if is_long { Self { stop, is_long, ..self } } else { self }
@@ -118,7 +119,7 @@ impl<'a> Objective<'a> {
     /// rows that are not scored are left out on straight parts of the input path; elsewhere they advance the memory.
     pub fn thinned(mut self, most: usize) -> Self {
         self.rows = Thinning::new(self.rows, most).blank(self.targets.iter_mut().flatten());
-        if self.drives.iter().map(Drive::len).sum::<usize>() > most {
+        if self.drives.iter().map(NetworkDrive::len).sum::<usize>() > most {
             for (drive, target) in self.drives.iter_mut().zip(&mut self.targets) {
                 let rows = rows_of_path(drive, self.architecture.rate, target);
                 *target = rows.iter().map(|&row| target[row]).collect();
@@ -134,7 +135,7 @@ impl<'a> Objective<'a> {
     }
 
     /// Names and bounds of the parameters.
-    pub fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &ParameterLayout {
         &self.layout
     }
 
@@ -151,15 +152,15 @@ impl<'a> Objective<'a> {
     }
 
     /// The value at a point.
-    pub fn value(&self, parameters: &[f64]) -> Value {
+    pub fn value(&self, parameters: &[f64]) -> ObjectiveValue {
         if self.stop.is_asked() {
             let solution = OutputSolution::broken_off(self.architecture.output_weights());
-            return Value { objective: f64::INFINITY, mean_square: f64::INFINITY, solution };
+            return ObjectiveValue { objective: f64::INFINITY, mean_square: f64::INFINITY, solution };
         }
         let gram = self.gram(parameters, None);
         let solution = self.output_problem(&gram).solve();
         let decay: f64 = self.weights(parameters).map(|(_, w)| w * w).sum();
-        Value {
+        ObjectiveValue {
             objective: solution.objective + 0.5 * self.regularisation.decay * decay,
             mean_square: solution.mean_square,
             solution,
@@ -167,7 +168,7 @@ impl<'a> Objective<'a> {
     }
 
     /// Gradient `g` of `F`, at a point with its value.
-    pub fn gradient(&self, parameters: &[f64], value: &Value) -> Vec<f64> {
+    pub fn gradient(&self, parameters: &[f64], value: &ObjectiveValue) -> Vec<f64> {
         let sums = GradientOverRecords {
             architecture: &self.architecture,
             parameters,
@@ -184,7 +185,7 @@ impl<'a> Objective<'a> {
         gradient
     }
 
-    fn slope_by_matrix(&self, parameters: &[f64], value: &Value) -> Option<Slope<Curvature>> {
+    fn slope_by_matrix(&self, parameters: &[f64], value: &ObjectiveValue) -> Option<Slope<Curvature>> {
         let gram = self.gram(parameters, Some(&value.solution.weights));
         let (mut gradient, mut matrix) =
             self.output_problem(&gram).linearise(&value.solution, parameters.len());
@@ -195,9 +196,9 @@ impl<'a> Objective<'a> {
         (!self.stop.is_asked()).then(|| slope(gradient, Curvature::Matrix(matrix)))
     }
 
-    fn slope_of_few_rows(&self, parameters: &[f64], value: &Value) -> Option<Slope<Curvature>> {
+    fn slope_of_few_rows(&self, parameters: &[f64], value: &ObjectiveValue) -> Option<Slope<Curvature>> {
         let output = Some(value.solution.weights.as_slice());
-        let columns = Columns { architecture: &self.architecture, parameters, output };
+        let columns = JacobianColumns { architecture: &self.architecture, parameters, output };
         let (drives, targets, stop) = (&self.drives, &self.targets, self.stop);
         let columns = RowsOverRecords { columns, first: 0, drives, targets, stop }.columns();
         let mut decay = vec![0.0; parameters.len()];
@@ -205,12 +206,12 @@ impl<'a> Objective<'a> {
         if stop.is_asked() {
             return None;
         }
-        let rows = curvature::Rows::new(columns, &value.solution, decay, parameters, stop)?;
+        let rows = curvature::CurvatureRows::new(columns, &value.solution, decay, parameters, stop)?;
         Some(slope(rows.gradient(), Curvature::Rows(rows)))
     }
 
     fn gram(&self, parameters: &[f64], output: Option<&[f64]>) -> crate::linear_algebra::Gram {
-        let columns = Columns { architecture: &self.architecture, parameters, output };
+        let columns = JacobianColumns { architecture: &self.architecture, parameters, output };
         let (drives, targets, stop) = (&self.drives, &self.targets, self.stop);
         GramOverRecords { columns, drives, targets, stop }.gram()
     }
@@ -232,25 +233,25 @@ impl<'a> Objective<'a> {
 }
 
 /// Indices of the kept rows of a long record: rows with a target, and those of a polyline that follows the inputs.
-fn rows_of_path(drive: &Drive, rate: bool, target: &[f64]) -> Vec<usize> {
+fn rows_of_path(drive: &NetworkDrive, rate: bool, target: &[f64]) -> Vec<usize> {
     let is_rate = |channel: usize| rate && channel == 1;
     let tolerance = |channel: usize, values: &[f64]| {
         let most = if is_rate(channel) { f64::INFINITY } else { MOST_OFF_PATH };
         (NOISE_OFF_PATH * noise(values)).clamp(LEAST_OFF_PATH, most)
     };
-    let columns = drive.channels.iter().enumerate().map(|(channel, values)| Column {
+    let columns = drive.channels.iter().enumerate().map(|(channel, values)| PolylineColumn {
         values,
         tolerance: tolerance(channel, values),
         longest: f64::INFINITY,
     });
-    let columns: Vec<Column> = columns.collect();
+    let columns: Vec<PolylineColumn> = columns.collect();
     let step = |row: usize| drive.steps.get(row).copied().unwrap_or(1.0);
     polyline(&columns, step, |row| !target[row].is_nan())
 }
 
-fn time_scales(drives: &[Drive]) -> Option<(f64, f64)> {
+fn time_scales(drives: &[NetworkDrive]) -> Option<(f64, f64)> {
     // The rows of a lead-in take an infinite time.
-    fn measured(drive: &Drive) -> impl Iterator<Item = &f64> {
+    fn measured(drive: &NetworkDrive) -> impl Iterator<Item = &f64> {
         drive.steps.iter().filter(|step| step.is_finite())
     }
     let durations = drives.iter().map(|drive| measured(drive).sum::<f64>());
@@ -266,20 +267,20 @@ fn slope(gradient: Vec<f64>, curvature: Curvature) -> Slope<Curvature> {
     Slope { gradient, diagonal, curvature, evaluations: 1 }
 }
 
-impl Problem for Objective<'_> {
-    type Value = Value;
+impl LeastSquaresProblem for Objective<'_> {
+    type Value = ObjectiveValue;
     type Curvature = Curvature;
-    const RULES: Rules = Rules::SMOOTH;
+    const RULES: DescentSettings = DescentSettings::SMOOTH;
 
-    fn value(&self, parameters: &[f64]) -> Value {
+    fn value(&self, parameters: &[f64]) -> ObjectiveValue {
         self.value(parameters)
     }
 
-    fn objective(value: &Value) -> f64 {
+    fn objective(value: &ObjectiveValue) -> f64 {
         value.objective
     }
 
-    fn slope(&self, parameters: &[f64], value: &Value) -> Option<Slope<Curvature>> {
+    fn slope(&self, parameters: &[f64], value: &ObjectiveValue) -> Option<Slope<Curvature>> {
         match has_few_rows(parameters.len(), self.architecture.output_weights(), self.rows) {
             true => self.slope_of_few_rows(parameters, value),
             false => self.slope_by_matrix(parameters, value),
@@ -324,7 +325,7 @@ mod tests {
         assert!(!has_few_rows(p, architecture.output_weights(), rows), "compare with the matrix");
         let point = crate::fit::random_start::random(objective.architecture(), objective.time_scales(), 1, 0);
         let value = objective.value(&point);
-        let by_matrix = Problem::slope(&objective, &point, &value).unwrap();
+        let by_matrix = LeastSquaresProblem::slope(&objective, &point, &value).unwrap();
         let by_rows = objective.slope_of_few_rows(&point, &value).unwrap();
         let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
         let assert_near = |a: &[f64], b: &[f64], tolerance: f64| {
@@ -369,7 +370,7 @@ mod tests {
             let whole = Objective::new(&data, &scaling, architecture, &options).unwrap();
             let thinned = whole.clone().thinned(4000);
             assert_eq!(thinned.scored(), 4000);
-            let run: usize = thinned.drives.iter().map(Drive::len).sum();
+            let run: usize = thinned.drives.iter().map(NetworkDrive::len).sum();
             assert!(run < if noise == 0.0 { 12_000 } else { 30_000 }, "{run} rows");
             assert_eq!(thinned.time_scales(), whole.time_scales());
             let point = crate::fit::random_start::random(whole.architecture(), whole.time_scales(), 1, 0);
@@ -398,7 +399,7 @@ mod tests {
                 let point =
                     crate::fit::random_start::random(objective.architecture(), objective.time_scales(), 1, 0);
                 let value = objective.value(&point);
-                let of_slope = Problem::slope(&objective, &point, &value).unwrap().gradient;
+                let of_slope = LeastSquaresProblem::slope(&objective, &point, &value).unwrap().gradient;
                 let size = of_slope.iter().fold(0.0, |size: f64, g| size.max(g.abs()));
                 assert!(size > 1e-4);
                 for (a, b) in of_slope.iter().zip(objective.gradient(&point, &value)) {

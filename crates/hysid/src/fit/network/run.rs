@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::fit::network::encoding::Encoding;
-use crate::fit::network::objective::{Objective, Value};
-use crate::fit::network::soundness::{Frame, are_finite, require};
+use crate::fit::network::objective::{Objective, ObjectiveValue};
+use crate::fit::network::soundness::{NetworkFrame, are_finite, require};
 use crate::fit::random_start::random;
 use crate::model::history::{HistoryPoint, Phase, Run};
-use crate::network::{Architecture, Layout, Network};
+use crate::network::{Architecture, Network, ParameterLayout};
 use crate::optimise::MOST_COUNTED;
 use crate::optimise::genetic::{self, Genetic};
-use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem};
+use crate::optimise::levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use crate::optimise::random::mix;
 use crate::optimise::space_dilatation::{DilatationOptions, SpaceDilatation, Subdifferentiable};
 use crate::optimise::stall::Stall;
@@ -54,7 +54,7 @@ pub(crate) struct Point {
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
 enum Search {
-    LevenbergMarquardt(LevenbergMarquardt<Value>),
+    LevenbergMarquardt(LevenbergMarquardt<ObjectiveValue>),
     Genetic {
         search: Genetic,
         encoding: Encoding,
@@ -118,7 +118,7 @@ impl TrainingRun {
     }
 
     /// Refuses a state of a file that no run with these options comes to.
-    pub fn check(&self, frame: &Frame) -> Result<()> {
+    pub fn check(&self, frame: &NetworkFrame) -> Result<()> {
         let methods = |plan: &[(Method, usize)]| plan.iter().map(|step| step.0).collect::<Vec<Method>>();
         let (all, left) = (methods(&frame.options.training.plan(0)), methods(&self.plan));
         require(!left.is_empty() && all.ends_with(&left), "methods of a run")?;
@@ -256,7 +256,7 @@ impl TrainingRun {
         }
     }
 
-    /// Ends it where it is, because the user wants no more.
+    /// Ends the run where it is, after a stop.
     pub fn stop(&mut self) {
         if self.termination.is_none() {
             self.end(Termination::Stopped);
@@ -326,12 +326,12 @@ impl TrainingRun {
         self.termination.is_some()
     }
 
-    /// Why it ended; a run that was not asked to go on was stopped.
+    /// Why it ended; a run that could have gone on was stopped.
     pub fn termination(&self) -> Termination {
         self.termination.unwrap_or(Termination::Stopped)
     }
 
-    /// What became of each method.
+    /// History of each method.
     pub fn runs(&self) -> &[Run] {
         &self.runs
     }
@@ -366,12 +366,12 @@ impl Search {
 }
 
 impl Point {
-    fn of(parameters: Vec<f64>, value: &Value) -> Self {
+    fn of(parameters: Vec<f64>, value: &ObjectiveValue) -> Self {
         let (objective, mean_square) = (value.objective, value.mean_square);
         Self { parameters, output: value.output_weights().to_vec(), objective, mean_square }
     }
 
-    fn take_if_lower(&mut self, parameters: &[f64], value: &Value) {
+    fn take_if_lower(&mut self, parameters: &[f64], value: &ObjectiveValue) {
         if value.objective < self.objective {
             *self = Self::of(parameters.to_vec(), value);
         }
@@ -392,8 +392,12 @@ fn problem<'a>(
     options: &FitOptions,
     start: usize,
     cost: &'a (dyn Fn(&[f64]) -> f64 + Sync),
-) -> genetic::Problem<'a> {
-    genetic::Problem { bounds: encoding.bounds(), seed: mix(options.seed).wrapping_add(start as u64), cost }
+) -> genetic::BoundedProblem<'a> {
+    genetic::BoundedProblem {
+        bounds: encoding.bounds(),
+        seed: mix(options.seed).wrapping_add(start as u64),
+        cost,
+    }
 }
 
 fn begin_genetic(objective: &Objective, options: &FitOptions, start: usize) -> Result<(Search, Point)> {
@@ -434,7 +438,7 @@ fn begin(
 }
 
 /// Typical lengths of the parameters: a weight's own magnitude, but no less than a tenth.
-fn scales(layout: &Layout, parameters: &[f64]) -> Vec<f64> {
+fn scales(layout: &ParameterLayout, parameters: &[f64]) -> Vec<f64> {
     let scale = |(index, value): (usize, &f64)| match layout.is_weight(index) {
         true => value.abs().max(0.1),
         false => 1.0,

@@ -2,18 +2,18 @@
 //! length that of the network. A checksum detects damage, but not edited files.
 
 use crate::error::{Error, Result};
-use crate::network::{Architecture, Layout};
+use crate::network::{Architecture, ParameterLayout};
 use crate::options::network::FitOptions;
 
-pub(super) struct Frame<'a> {
+pub(super) struct NetworkFrame<'a> {
     pub options: &'a FitOptions,
     pub architecture: &'a Architecture,
-    pub layout: Layout,
+    pub layout: ParameterLayout,
 }
 
-impl<'a> Frame<'a> {
+impl<'a> NetworkFrame<'a> {
     pub fn new(options: &'a FitOptions, architecture: &'a Architecture) -> Self {
-        Self { options, architecture, layout: Layout::new(*architecture) }
+        Self { options, architecture, layout: ParameterLayout::new(*architecture) }
     }
 
     /// Parameters within their bounds.

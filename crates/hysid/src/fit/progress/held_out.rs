@@ -1,4 +1,4 @@
-//! What models that were fitted without some rows give for these rows.
+//! Predictions of rows by models that were fitted without them.
 
 use std::collections::HashMap;
 

@@ -9,22 +9,25 @@ use crate::fit::progress::{Observer, Progress};
 use crate::termination::Termination;
 
 pub(crate) struct SharedObserver<'o, 'a> {
-    observer: Mutex<Told<'o, 'a>>,
+    observer: Mutex<ObserverState<'o, 'a>>,
     is_over: AtomicBool,
 }
 
-struct Told<'o, 'a> {
+struct ObserverState<'o, 'a> {
     observer: &'o mut Observer<'a>,
     last: Option<Progress<'static>>,
 }
 
 impl<'o, 'a> SharedObserver<'o, 'a> {
-    /// `first` is told if it is asked before there is any progress; without it, it is not asked then.
+    /// `first` is the progress to report before there is any; without it, nothing is reported then.
     pub fn new(observer: &'o mut Observer<'a>, first: Option<Progress<'static>>) -> Self {
-        Self { observer: Mutex::new(Told { observer, last: first }), is_over: AtomicBool::new(false) }
+        Self {
+            observer: Mutex::new(ObserverState { observer, last: first }),
+            is_over: AtomicBool::new(false),
+        }
     }
 
-    /// Tells the progress. After it has said stop it is not asked again.
+    /// Reports the progress. Once the observer has broken off, it is not called again.
     pub fn tell(&self, progress: &Progress) -> ControlFlow<()> {
         let mut told = self.told();
         // It may have said stop to another thread that was waited for.
@@ -52,7 +55,7 @@ impl<'o, 'a> SharedObserver<'o, 'a> {
         }
         // Another thread is asking, and will be answered.
         let Ok(mut told) = self.observer.try_lock() else { return self.is_over() };
-        let Told { observer, last } = &mut *told;
+        let ObserverState { observer, last } = &mut *told;
         if last.as_ref().is_some_and(|last| observer(last).is_break()) {
             self.is_over.store(true, Ordering::Relaxed);
         }
@@ -69,7 +72,7 @@ impl<'o, 'a> SharedObserver<'o, 'a> {
         if self.is_over() { Termination::Stopped } else { otherwise }
     }
 
-    fn told(&self) -> MutexGuard<'_, Told<'o, 'a>> {
+    fn told(&self) -> MutexGuard<'_, ObserverState<'o, 'a>> {
         self.observer.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }

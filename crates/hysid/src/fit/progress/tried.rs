@@ -1,8 +1,8 @@
-//! What an observer learns of a candidate.
+//! News of a candidate for the observer.
 
 use crate::model::Model;
 
-/// What has become known of a candidate of `auto`.
+/// Errors and standing of a candidate of `auto` so far.
 ///
 /// The observer gets it when a candidate has been fitted to further folds, when it is complete and when it is dropped.
 /// The model with the lowest error of those tried is a good one to look at until the fit ends.

@@ -38,7 +38,7 @@ pub struct OutputSolution {
 }
 
 impl OutputSolution {
-    /// What stands for a solution that was broken off: worse than any other.
+    /// Stands for a solution that was broken off: worse than any other.
     pub fn broken_off(features: usize) -> Self {
         Self {
             weights: vec![0.0; features],

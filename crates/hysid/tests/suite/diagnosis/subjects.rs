@@ -93,10 +93,15 @@ pub fn jiles_atherton(x: &[f64]) -> Dataset {
     record(h, m)
 }
 
-fn network(family: Family, x: &[f64], fill: impl Fn(&Layout, &mut Vec<f64>), output: Vec<f64>) -> Dataset {
+fn network(
+    family: Family,
+    x: &[f64],
+    fill: impl Fn(&ParameterLayout, &mut Vec<f64>),
+    output: Vec<f64>,
+) -> Dataset {
     let sizes = Sizes { stops: 6, hidden: 4, relaxation: 0 };
     let architecture = Architecture::new(family, sizes, 1, false, false).unwrap();
-    let layout = Layout::new(architecture);
+    let layout = ParameterLayout::new(architecture);
     let mut parameters = vec![0.0; layout.len()];
     fill(&layout, &mut parameters);
     for (weight, threshold) in
@@ -112,13 +117,14 @@ fn network(family: Family, x: &[f64], fill: impl Fn(&Layout, &mut Vec<f64>), out
 
 /// A generalized Prandtl network whose stops wear out: β = 25.
 pub fn gpnn(x: &[f64]) -> Dataset {
-    let fill = |layout: &Layout, values: &mut Vec<f64>| values[layout.ln_beta.clone()].fill(ln(25.0));
+    let fill =
+        |layout: &ParameterLayout, values: &mut Vec<f64>| values[layout.ln_beta.clone()].fill(ln(25.0));
     network(Family::Gpnn, x, fill, vec![0.0, 0.5, 0.4, 0.4, 0.3, 0.3, 0.3])
 }
 
 /// A Preisach network that mixes its stops in tanh neurons with bias.
 pub fn preisach_nn(x: &[f64]) -> Dataset {
-    let fill = |layout: &Layout, values: &mut Vec<f64>| {
+    let fill = |layout: &ParameterLayout, values: &mut Vec<f64>| {
         if !layout.linear.is_empty() {
             values[layout.linear.start] = 1.0;
         }

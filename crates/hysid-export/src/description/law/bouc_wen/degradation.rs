@@ -19,7 +19,7 @@ pub(super) fn limited(builder: &mut Builder, e: &Real) -> Real {
 }
 
 /// `A`, `ν`, `η`, `ζ1`, `ζ2` and the centre of the pinched range at one energy.
-pub(super) struct Properties {
+pub(super) struct ElementProperties {
     a: Real,
     nu: Real,
     eta: Real,
@@ -28,7 +28,7 @@ pub(super) struct Properties {
     centre: Real,
 }
 
-impl Properties {
+impl ElementProperties {
     /// `dz/dx` on the way up (theory.md (8.6)).
     pub fn slope(&self, builder: &mut Builder, z: &Real, softening: &Real) -> Real {
         let pinching = self.pinching(builder, z);
@@ -49,20 +49,20 @@ struct Steady {
     exists: Real,
 }
 
-pub(super) struct Element<'a> {
+pub(super) struct DegradingElement<'a> {
     pub degradation: &'a Degradation,
     pub n: f64,
 }
 
-impl Element<'_> {
+impl DegradingElement<'_> {
     /// The properties after the dissipated energy `e`.
-    pub fn properties(&self, builder: &mut Builder, e: &Real) -> Properties {
+    pub fn properties(&self, builder: &mut Builder, e: &Real) -> ElementProperties {
         let d = self.degradation;
         let e = limited(builder, e);
         let a = builder.value(1.0 - d.delta_a * &e);
         let nu = builder.value(1.0 + d.delta_nu * &e);
         let zeta_1 = builder.value(d.zeta_s * (1.0 - (-d.p * &e).exp()));
-        Properties {
+        ElementProperties {
             a: builder.value(a.max(0.0)),
             eta: builder.value(1.0 + d.delta_eta * &e),
             zeta_2: builder.value((d.psi_0 + d.delta_psi * &e) * (d.lambda + &zeta_1)),
@@ -96,7 +96,7 @@ impl Element<'_> {
         builder.value(ratio * largest.powf(self.n - 1.0))
     }
 
-    /// Parts for a yield displacement that a narrow pinched range asks for.
+    /// Parts for a yield displacement that a narrow pinched range requires.
     pub fn narrowness(&self) -> f64 {
         let d = self.degradation;
         (0.5 / (d.psi_0 * (d.lambda + d.zeta_s))).clamp(1.0, 2.0)

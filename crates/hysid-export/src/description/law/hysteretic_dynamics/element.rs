@@ -1,6 +1,6 @@
 //! A hysteretic element: its step to a displacement, and the force there.
 
-use hysid_core::law::hysteretic_dynamics::{Dynamics, Element, Shape};
+use hysid_core::law::hysteretic_dynamics::{Dynamics, Element, ElementShape};
 
 use crate::description::law::tanh_layer::{Slice, layer, partial_sums, product};
 use crate::description::network::tanh;
@@ -32,7 +32,7 @@ struct StopParts {
 impl StopParts {
     /// `None` for an element without stops.
     fn new(builder: &mut Builder, name: &impl Fn(&str) -> String, element: &Element) -> Option<Self> {
-        let Shape { stops, deteriorates, .. } = element.shape();
+        let ElementShape { stops, deteriorates, .. } = element.shape();
         if stops == 0 {
             return None;
         }
@@ -49,7 +49,7 @@ impl StopParts {
 
 pub(super) struct ElementParts<'l> {
     element: &'l Element,
-    shape: Shape,
+    shape: ElementShape,
     index: usize,
     /// How its displacement follows from displacement and velocity of each mode.
     of_displacements: Array,
@@ -200,7 +200,7 @@ impl<'l> ElementParts<'l> {
     }
 
     fn states(&self, builder: &mut Builder, moved: &Real) {
-        let Shape { stops, states, neurons, .. } = self.shape;
+        let ElementShape { stops, states, neurons, .. } = self.shape;
         let path = builder.value(moved.abs());
         let rows = builder.whole_variable(0_usize);
         builder.when(moved.below(0.0), |builder| builder.assign_whole(rows, states * neurons));

@@ -1,6 +1,6 @@
 //! The forces of the elements at the end of a step, which follow from the displacements that they cause.
 
-use super::{Elements, Parts};
+use super::{DynamicsElements, DynamicsParts};
 use crate::program::expression::{Real, RealVariable, Whole};
 use crate::program::{Builder, Precision};
 
@@ -14,16 +14,16 @@ const STEEPEST_SLOPE: f64 = 0.9;
 const PASSES: usize = 3;
 
 /// Differences of forces, relative to the largest.
-struct Sizes {
-    /// Two trials that differ by less do not tell the slope.
+struct ForceDifferences {
+    /// Least difference of two trials that determines the slope.
     least_difference: f64,
-    /// A mismatch that counts as none.
+    /// Largest mismatch that is neglected.
     tolerance: f64,
-    /// How far the trial goes that tells the slope for derivatives.
+    /// Distance of the trial that determines the slope for derivatives.
     probe: f64,
 }
 
-impl Sizes {
+impl ForceDifferences {
     fn of(precision: Precision) -> Self {
         match precision {
             Precision::Double => Self { least_difference: 1e-9, tolerance: 1e-12, probe: 1e-6 },
@@ -32,10 +32,10 @@ impl Sizes {
     }
 }
 
-impl Parts<'_> {
+impl DynamicsParts<'_> {
     /// Finds forces `r` with `R(r) = r`, where `R` follows from the displacements under `r` (theory.md (15.11)).
-    pub(super) fn find_forces(&self, builder: &mut Builder, elements: &Elements<'_>, input: &Real) {
-        let (count, sizes) = (elements.count(), Sizes::of(builder.precision()));
+    pub(super) fn find_forces(&self, builder: &mut Builder, elements: &DynamicsElements<'_>, input: &Real) {
+        let (count, sizes) = (elements.count(), ForceDifferences::of(builder.precision()));
         builder.each(0_usize, count, |builder, e| {
             let before = builder.value(elements.forces_before.at(&e));
             let here = builder.value(elements.forces.at(&e));
@@ -78,7 +78,7 @@ impl Parts<'_> {
     }
 
     /// The modes and the elements under the assumed forces.
-    fn follow(&self, builder: &mut Builder, elements: &Elements<'_>, input: &Real) {
+    fn follow(&self, builder: &mut Builder, elements: &DynamicsElements<'_>, input: &Real) {
         self.move_modes(builder);
         for element in &elements.each {
             element.go(builder, (self.displacements, self.velocities), input);
@@ -86,8 +86,14 @@ impl Parts<'_> {
     }
 
     /// The derivatives of the forces by the input: each pass moves them by their mismatch over `1 - ∂R/∂r`, as trials
-    /// move the forces themselves, which stay as they are. Before, a trial beside the forces tells `∂R/∂r`.
-    fn derive_forces(&self, builder: &mut Builder, elements: &Elements<'_>, input: &Real, sizes: &Sizes) {
+    /// move the forces themselves, which stay as they are. Before, a trial beside the forces gives `∂R/∂r`.
+    fn derive_forces(
+        &self,
+        builder: &mut Builder,
+        elements: &DynamicsElements<'_>,
+        input: &Real,
+        sizes: &ForceDifferences,
+    ) {
         let count = elements.count();
         let [found, followed] = [elements.tried, elements.tried_following];
         let slopes = elements.probed;
@@ -126,14 +132,14 @@ impl Parts<'_> {
     }
 }
 
-impl Elements<'_> {
+impl DynamicsElements<'_> {
     fn limited(&self, e: &Whole, force: &Real) -> Real {
         let largest = self.largest.at(e);
         force.clamp(-&largest, largest)
     }
 
     /// Assumes the force next that the mismatch over `1 - ∂R/∂r` gives.
-    fn assume_next(&self, builder: &mut Builder, e: &Whole, sizes: &Sizes) {
+    fn assume_next(&self, builder: &mut Builder, e: &Whole, sizes: &ForceDifferences) {
         let assumed = builder.value(self.forces.at(e));
         let follows = builder.value(self.following.at(e));
         // The first trial is compared with itself, which tells nothing.

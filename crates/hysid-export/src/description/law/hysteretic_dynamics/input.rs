@@ -2,7 +2,7 @@
 
 use hysid_core::law::hysteretic_dynamics::{Dynamics, Hold};
 
-use crate::description::Sample;
+use crate::description::PartInputs;
 use crate::program::expression::{Real, RealVariable, Truth, Whole, WholeVariable};
 use crate::program::{Array, Builder};
 
@@ -27,7 +27,7 @@ pub(super) struct Steps {
 
 impl Steps {
     /// Takes the next sample of the scaled input.
-    pub fn of_row(builder: &mut Builder, name: &str, law: &Dynamics, u: &Real, sample: &Sample) -> Self {
+    pub fn of_row(builder: &mut Builder, name: &str, law: &Dynamics, u: &Real, sample: &PartInputs) -> Self {
         let samples = if law.hold == Hold::Cubic { 4 } else { 2 };
         let steps = Self {
             count: builder.whole_variable(0_usize),

@@ -12,7 +12,7 @@ const TERMS: usize = 20;
 const SHORT: f64 = 1.0;
 
 /// The factors of all modes: `Φ_qq, Φ_qp, α_0, α_1, Φ_pq, Φ_pp, β_0, β_1`, each of every mode.
-pub struct Factors {
+pub struct ModeFactors {
     modes: usize,
     factors: Array,
     frequencies: Array,
@@ -24,12 +24,12 @@ pub struct Factors {
 }
 
 /// The weights `α_0, α_1, β_0, β_1` of the forces at the ends of a step.
-struct Weights {
+struct EndWeights {
     alpha: [RealVariable; 2],
     beta: [RealVariable; 2],
 }
 
-impl Factors {
+impl ModeFactors {
     pub fn new(builder: &mut Builder, name: &str, modes: &[Mode]) -> Self {
         let of_modes = |of: fn(&Mode) -> f64| modes.iter().map(of).collect::<Vec<f64>>();
         let inverses = (0..=TERMS + 1).map(|k| if k == 0 { 0.0 } else { 1.0 / k as f64 }).collect();
@@ -76,7 +76,7 @@ impl Factors {
         });
     }
 
-    fn weights(&self, builder: &mut Builder, theta: &Real, ratio: &Real, reach: &Real) -> Weights {
+    fn weights(&self, builder: &mut Builder, theta: &Real, ratio: &Real, reach: &Real) -> EndWeights {
         let part = builder.variable(theta);
         builder.while_true((Real::from(part) * reach).at_least(SHORT), |builder| {
             builder.assign(part, 0.5 * Real::from(part));
@@ -90,11 +90,11 @@ impl Factors {
     }
 
     /// From the power series of `S`.
-    fn of_short_step(&self, builder: &mut Builder, angle: &Real, ratio: &Real) -> Weights {
+    fn of_short_step(&self, builder: &mut Builder, angle: &Real, ratio: &Real) -> EndWeights {
         let square = builder.value(angle * angle);
         let drag = builder.value(2.0 * (ratio * angle));
         let mut zero = || builder.variable(0.0);
-        let weights = Weights { alpha: [zero(), zero()], beta: [zero(), zero()] };
+        let weights = EndWeights { alpha: [zero(), zero()], beta: [zero(), zero()] };
         let (before, term) = (zero(), builder.variable(angle));
         let add = |builder: &mut Builder, to: RealVariable, value: Real| {
             builder.assign(to, Real::from(to) + value);
@@ -116,7 +116,7 @@ impl Factors {
     }
 }
 
-impl Weights {
+impl EndWeights {
     /// `Φ_qq - 1`, `S` and `Φ_pp - 1`.
     fn changes(&self, builder: &mut Builder, ratio: &Real) -> [Real; 3] {
         let ([alpha_0, alpha_1], [beta_0, beta_1]) = (self.alpha.map(Real::from), self.beta.map(Real::from));

@@ -4,10 +4,11 @@
 use hysid_core::elementary::{ln, powf, square};
 
 use super::records::Records;
-use super::task::{Beginning, Begun, Task, Value};
-use super::{Asked, Kind};
+use super::task::{DrivenRecord, DynamicsTask, DynamicsValue, InitialMotion};
+use super::{DynamicsSpec, StartKind};
 use crate::law::hysteretic_dynamics::{
-    DAMPING_RATIOS, Drive, Dynamics, Form, Hold, Layout, Mode, Run, Shape,
+    DAMPING_RATIOS, Dynamics, DynamicsDrive, DynamicsForm, DynamicsLayout, DynamicsRun, ElementShape, Hold,
+    Mode,
 };
 use crate::linear_algebra::{Gram, Symmetric};
 use crate::optimise::levenberg_marquardt::LevenbergMarquardt;
@@ -40,7 +41,7 @@ const OF_RANDOM_SEQUENCE: f64 = 70.0;
 /// state space model follow a constant and a linear hold equally well, because a velocity in the output shifts it in time.
 const CLEARLY_BETTER: f64 = 0.95;
 
-/// Rows at most that tell how a motion began.
+/// Rows at most from which the beginning of a motion is found.
 const MOST_FIRST_ROWS: f64 = 1000.0;
 
 /// Largest distance of the first rows from a motion from rest, in standard deviations, for a record at rest.
@@ -49,7 +50,7 @@ const LEAST_MOTION: f64 = 0.1;
 /// Records whose beginnings are searched, at most: the first. Each adds parameters.
 const MOST_IN_MOTION: usize = 50;
 
-/// Rows at the beginning of a record whose input tells how far the hold may be off between the first of them.
+/// Rows at the beginning of a record whose input bounds the error of the hold between the first of them.
 const FIRST_ROWS: usize = 4;
 
 /// An expected displacement or velocity below this, in standard deviations of the output, is rest.
@@ -67,7 +68,7 @@ pub(super) struct LinearStarts {
 
 impl LinearStarts {
     /// `None` once stopped.
-    pub fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Option<Self> {
+    pub fn find(records: &Records, asked: &DynamicsSpec, stop: StopCheck<'_>) -> Option<Self> {
         let rows: usize = records.drives.iter().map(|drive| drive.x.len()).sum();
         let few = records.first(ROWS_OF_GRID as f64 / rows as f64);
         let systems = mode_by_mode(records, &few, asked, stop)?;
@@ -87,18 +88,18 @@ impl LinearStarts {
     }
 
     /// The system that a start of this kind begins with.
-    pub fn of(&self, kind: Kind) -> &Dynamics {
+    pub fn of(&self, kind: StartKind) -> &Dynamics {
         if kind.has_one_mode_first { &self.one_mode } else { &self.all_modes }
     }
 
     /// Records with how they begin.
-    pub fn begun(&self, drives: Vec<Drive>) -> Vec<Begun> {
+    pub fn begun(&self, drives: Vec<DynamicsDrive>) -> Vec<DrivenRecord> {
         let mut records = begun(drives, &self.are_in_motion);
         for record in records.iter_mut().take(MOST_IN_MOTION) {
             let kicks = self.all_modes.modes.iter().map(|mode| kick(mode, &self.all_modes, &record.drive));
             let kicks: Vec<f64> = kicks.collect();
-            if record.beginning == Beginning::AtRest && kicks.iter().any(|kick| *kick > LEAST_KICK) {
-                record.beginning = Beginning::NearRest(kicks);
+            if record.beginning == InitialMotion::AtRest && kicks.iter().any(|kick| *kick > LEAST_KICK) {
+                record.beginning = InitialMotion::NearRest(kicks);
             }
         }
         records
@@ -108,7 +109,7 @@ impl LinearStarts {
 /// Expected error of the velocity `p` of a mode after the first rows of a record, theory.md (15.24). A straight line
 /// between two samples misses `Δ²u h/12` of the impulse of a curved input. In later rows this acts like a fixed linear
 /// filter, which the modes compensate.
-fn kick(mode: &Mode, system: &Dynamics, drive: &Drive) -> f64 {
+fn kick(mode: &Mode, system: &Dynamics, drive: &DynamicsDrive) -> f64 {
     let has_interpolation = drive.x.len() >= FIRST_ROWS && drive.steps[1].is_finite();
     if system.hold == Hold::Constant || !has_interpolation {
         return LEAST_KICK;
@@ -123,11 +124,11 @@ pub(crate) fn first_second_difference(input: &[f64]) -> f64 {
     input[..input.len().min(FIRST_ROWS)].windows(3).map(curved).fold(0.0, f64::max)
 }
 
-fn begun(drives: Vec<Drive>, are_in_motion: &[bool]) -> Vec<Begun> {
+fn begun(drives: Vec<DynamicsDrive>, are_in_motion: &[bool]) -> Vec<DrivenRecord> {
     let records = drives.into_iter().zip(are_in_motion);
-    let begun = |(drive, &is_in_motion)| Begun {
+    let begun = |(drive, &is_in_motion)| DrivenRecord {
         drive,
-        beginning: if is_in_motion { Beginning::InMotion } else { Beginning::AtRest },
+        beginning: if is_in_motion { InitialMotion::InMotion } else { InitialMotion::AtRest },
     };
     records.map(begun).collect()
 }
@@ -138,7 +139,7 @@ fn holds(records: &Records) -> &'static [Hold] {
 }
 
 /// Records of which it is not known how they begin: the first may be in motion.
-fn perhaps_in_motion(few: Vec<Drive>) -> Vec<Begun> {
+fn perhaps_in_motion(few: Vec<DynamicsDrive>) -> Vec<DrivenRecord> {
     let may_be: Vec<bool> = (0..few.len()).map(|record| record < MOST_IN_MOTION).collect();
     begun(few, &may_be)
 }
@@ -146,8 +147,8 @@ fn perhaps_in_motion(few: Vec<Drive>) -> Vec<Begun> {
 /// Linear systems of one mode, of two and so on, each with one mode more than the last; `None` once stopped.
 fn mode_by_mode(
     records: &Records,
-    few: &[Drive],
-    asked: &Asked,
+    few: &[DynamicsDrive],
+    asked: &DynamicsSpec,
     stop: StopCheck<'_>,
 ) -> Option<Vec<Dynamics>> {
     let mut system = Dynamics {
@@ -175,8 +176,8 @@ fn mode_by_mode(
 fn finished(
     system: &Dynamics,
     records: &Records,
-    few: Vec<Drive>,
-    asked: &Asked,
+    few: Vec<DynamicsDrive>,
+    asked: &DynamicsSpec,
     stop: StopCheck<'_>,
 ) -> Option<(Dynamics, Vec<bool>)> {
     let mut system = system.clone();
@@ -197,7 +198,7 @@ fn finished(
     let (at_rest, half_square) = best?;
     let under_input = Dynamics { begins_under_input: true, ..at_rest.clone() };
     let first = records.first_rows(first_rows(&at_rest, records.step));
-    let square = |dynamics: &Dynamics| Run::from_rest(dynamics, &first, stop).half_square();
+    let square = |dynamics: &Dynamics| DynamicsRun::from_rest(dynamics, &first, stop).half_square();
     let begins = if square(&under_input)? < square(&at_rest)? { under_input } else { at_rest };
     let are_in_motion = are_in_motion(&begins, records, (2.0 * half_square).sqrt(), stop)?;
     let (system, _) = improved(begins, asked, &begun(records.drives.clone(), &are_in_motion), stop)?;
@@ -213,8 +214,8 @@ fn are_in_motion(system: &Dynamics, records: &Records, error: f64, stop: StopChe
         true => rows_of_quarter(slowest, records.step),
         false => first_rows(system, records.step),
     };
-    let of_record = |drive: &Drive| {
-        let run = Run::from_rest(system, std::slice::from_ref(drive), stop);
+    let of_record = |drive: &DynamicsDrive| {
+        let run = DynamicsRun::from_rest(system, std::slice::from_ref(drive), stop);
         let mean_square = 2.0 * run.half_square()? / drive.rows().max(1.0);
         Some(mean_square.sqrt() > error.max(LEAST_MOTION))
     };
@@ -235,7 +236,7 @@ fn rows_of_quarter(frequency: f64, step: f64) -> usize {
 }
 
 /// True if the input has next to no power at the highest frequencies, by the variance of its fourth difference.
-fn is_smooth(drives: &[Drive]) -> bool {
+fn is_smooth(drives: &[DynamicsDrive]) -> bool {
     let (mut difference, mut squares) = (0.0, 0.0);
     for drive in drives {
         let mean = drive.x.iter().sum::<f64>() / drive.x.len() as f64;
@@ -249,15 +250,16 @@ fn is_smooth(drives: &[Drive]) -> bool {
 /// The mode that lowers the error most beside those that there are.
 fn best_of_grid(
     system: &Dynamics,
-    drives: &[Drive],
+    drives: &[DynamicsDrive],
     records: &Records,
-    asked: &Asked,
+    asked: &DynamicsSpec,
     stop: StopCheck<'_>,
 ) -> Option<Mode> {
     let longest = drives.iter().map(|drive| drive.steps.iter().filter(|step| step.is_finite()).sum::<f64>());
     let lowest = std::f64::consts::TAU / longest.fold(records.step, f64::max);
     let highest = std::f64::consts::TAU * HIGHEST / records.step;
-    let ratios: &[f64] = if asked.form == Form::Oscillator { &RATIOS } else { &RATIOS_OF_STATE_SPACE };
+    let ratios: &[f64] =
+        if asked.form == DynamicsForm::Oscillator { &RATIOS } else { &RATIOS_OF_STATE_SPACE };
     let points: Vec<(f64, f64)> = (0..FREQUENCIES)
         .flat_map(|k| {
             let share = k as f64 / (FREQUENCIES - 1) as f64;
@@ -265,11 +267,11 @@ fn best_of_grid(
             ratios.iter().map(move |&ratio| (frequency, ratio))
         })
         .collect();
-    let layout = Layout::new(asked.form, system.modes.len() + 1, 0, NO_ELEMENT);
+    let layout = DynamicsLayout::new(asked.form, system.modes.len() + 1, 0, NO_ELEMENT);
     let of_point = |&(frequency, damping): &(f64, f64)| {
         let mut tried = system.clone();
         tried.modes.push(Mode { frequency, damping, gain: 1.0, velocity_in_output: 0.0 });
-        let run = Run::from_rest(&tried, drives, stop);
+        let run = DynamicsRun::from_rest(&tried, drives, stop);
         let (square, gain, velocity) = linear_part(&run.gram(&layout)?, &layout)?;
         Some((square, Mode { gain, velocity_in_output: velocity, ..tried.modes[system.modes.len()] }))
     };
@@ -277,10 +279,10 @@ fn best_of_grid(
     found.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
 }
 
-const NO_ELEMENT: Shape = Shape { stops: 0, states: 0, neurons: 1, deteriorates: false };
+const NO_ELEMENT: ElementShape = ElementShape { stops: 0, states: 0, neurons: 1, deteriorates: false };
 
 /// Least square with the best linear coefficients, and gain and velocity of the last mode; `None` if not determined.
-fn linear_part(gram: &Gram, layout: &Layout) -> Option<(f64, f64, f64)> {
+fn linear_part(gram: &Gram, layout: &DynamicsLayout) -> Option<(f64, f64, f64)> {
     let mut places = vec![0, 1];
     for mode in &layout.modes {
         places.push(mode.gain);
@@ -306,17 +308,18 @@ fn linear_part(gram: &Gram, layout: &Layout) -> Option<(f64, f64, f64)> {
 /// A linear system improved by Levenberg-Marquardt, with half its mean square error; `None` once stopped.
 fn improved(
     system: Dynamics,
-    asked: &Asked,
-    records: &[Begun],
+    asked: &DynamicsSpec,
+    records: &[DrivenRecord],
     stop: StopCheck<'_>,
 ) -> Option<(Dynamics, f64)> {
     let mut system = system;
     for mode in &mut system.modes {
         mode.damping = mode.damping.clamp(DAMPING_RATIOS.0, DAMPING_RATIOS.1);
     }
-    let layout = Layout::new(asked.form, system.modes.len(), 0, NO_ELEMENT);
-    let task = Task::new(&layout, &system, records, stop);
-    let mut search: LevenbergMarquardt<Value> = LevenbergMarquardt::new(&task, task.parameters(&system));
+    let layout = DynamicsLayout::new(asked.form, system.modes.len(), 0, NO_ELEMENT);
+    let task = DynamicsTask::new(&layout, &system, records, stop);
+    let mut search: LevenbergMarquardt<DynamicsValue> =
+        LevenbergMarquardt::new(&task, task.parameters(&system));
     for _ in 0..EPOCHS {
         if search.advance(&task).is_some() {
             break;
@@ -354,7 +357,7 @@ mod tests {
             modes: vec![mode],
             elements: Vec::new(),
         };
-        let drive = Drive {
+        let drive = DynamicsDrive {
             x: (0..4).map(|row| parabola(f64::from(row))).collect(),
             steps: vec![step; 4],
             targets: vec![0.0; 4],

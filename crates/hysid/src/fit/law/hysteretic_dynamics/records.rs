@@ -8,7 +8,7 @@ use hysid_core::elementary::square;
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::search::{measured, spread};
-use crate::law::hysteretic_dynamics::Drive;
+use crate::law::hysteretic_dynamics::DynamicsDrive;
 use crate::law::series::Series;
 
 /// Rows that a fit runs over at most: the beginnings of the records.
@@ -32,7 +32,7 @@ const EVEN: f64 = 1e-7;
 const LARGEST_TRANSIENT: f64 = 1.3;
 
 pub(super) struct Records {
-    pub drives: Vec<Drive>,
+    pub drives: Vec<DynamicsDrive>,
     pub input_scale: f64,
     /// Mean and standard deviation of the output, in its unit.
     pub output_mean: f64,
@@ -49,7 +49,7 @@ impl Records {
         let largest = inputs().fold(0.0, f64::max);
         let rows: usize = series.iter().map(|series| series.samples.len()).sum();
         let share = (MOST_ROWS as f64 / rows as f64).min(1.0);
-        let drives: Vec<Drive> = series
+        let drives: Vec<DynamicsDrive> = series
             .iter()
             .map(|series| {
                 let whole = scaled(series, output_scale);
@@ -70,27 +70,27 @@ impl Records {
     }
 
     /// The beginnings of the records.
-    pub fn beginning(&self) -> Vec<Drive> {
+    pub fn beginning(&self) -> Vec<DynamicsDrive> {
         let rows: usize = self.drives.iter().map(|drive| drive.x.len()).sum();
         self.first(EARLY.max(FEWEST_EARLY as f64 / rows as f64))
     }
 
     /// So many rows of each record.
-    pub fn first_rows(&self, rows: usize) -> Vec<Drive> {
+    pub fn first_rows(&self, rows: usize) -> Vec<DynamicsDrive> {
         self.drives.iter().map(|drive| begun(drive, rows as f64 / drive.x.len() as f64)).collect()
     }
 
     /// A share of each record, from its beginning.
-    pub fn first(&self, share: f64) -> Vec<Drive> {
+    pub fn first(&self, share: f64) -> Vec<DynamicsDrive> {
         let share = share.min(1.0);
-        let all: Vec<Drive> = self.drives.iter().map(|drive| begun(drive, share)).collect();
-        let is_compared = |drive: &Drive| drive.targets.iter().any(|target| !target.is_nan());
+        let all: Vec<DynamicsDrive> = self.drives.iter().map(|drive| begun(drive, share)).collect();
+        let is_compared = |drive: &DynamicsDrive| drive.targets.iter().any(|target| !target.is_nan());
         if all.iter().any(is_compared) { all } else { self.drives.clone() }
     }
 }
 
-fn scaled(series: &Series, deviation: f64) -> Drive {
-    Drive {
+fn scaled(series: &Series, deviation: f64) -> DynamicsDrive {
+    DynamicsDrive {
         x: series.samples.iter().map(|sample| sample.x).collect(),
         steps: evened(series.samples.iter().map(|sample| sample.step).collect()),
         targets: series.output.iter().map(|y| y / deviation).collect(),
@@ -113,10 +113,10 @@ fn evened(mut steps: Vec<f64>) -> Vec<f64> {
     steps
 }
 
-fn begun(drive: &Drive, share: f64) -> Drive {
+fn begun(drive: &DynamicsDrive, share: f64) -> DynamicsDrive {
     let rows = (share * drive.x.len() as f64).ceil() as usize;
     let first = |values: &[f64]| values[..rows.min(values.len())].to_vec();
-    Drive {
+    DynamicsDrive {
         x: first(&drive.x),
         steps: first(&drive.steps),
         targets: first(&drive.targets),
@@ -125,7 +125,7 @@ fn begun(drive: &Drive, share: f64) -> Drive {
 }
 
 /// A record of equal periods as its first and the mean of the others; `None` if not in steady state from the second on.
-fn averaged(drive: &Drive, equal: f64) -> Option<Drive> {
+fn averaged(drive: &DynamicsDrive, equal: f64) -> Option<DynamicsDrive> {
     let rows = drive.x.len();
     if drive.targets.iter().any(|target| target.is_nan()) {
         return None;
@@ -174,13 +174,13 @@ mod tests {
     use super::*;
 
     /// A periodic input, and an output with a transient and a little noise that differs from period to period.
-    fn drive(periods: usize, transient: f64) -> Drive {
+    fn drive(periods: usize, transient: f64) -> DynamicsDrive {
         let period = 64;
         let rows = periods * period + 10;
         let x = |k: usize| sin(0.1 * (k % period) as f64) + 0.3 * cos(0.7 * (k % period) as f64);
         let noise = |k: usize| 1e-3 * ((k * k) as f64 * 0.618_033_988_749_895).fract();
         let y = |k: usize| x(k) + transient * exp(-(k as f64) / 40.0) + noise(k);
-        Drive {
+        DynamicsDrive {
             x: (0..rows).map(x).collect(),
             steps: vec![0.1; rows],
             targets: (0..rows).map(y).collect(),
@@ -223,7 +223,7 @@ mod tests {
         let mut changed = drive(5, 0.01);
         changed.x[200] += 1e-3;
         assert!(averaged(&changed, 1e-9).is_none(), "not quite periodic");
-        let constant = Drive {
+        let constant = DynamicsDrive {
             x: vec![1.0; 300],
             steps: vec![0.1; 300],
             targets: vec![0.0; 300],

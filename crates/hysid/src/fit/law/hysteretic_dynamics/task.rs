@@ -1,4 +1,4 @@
-//! What a start is trained on: the error of the free run over records, with a penalty on weights.
+//! Objective of a start: the error of the free run over records, with a penalty on weights.
 
 use std::ops::Range;
 
@@ -6,9 +6,11 @@ use hysid_core::elementary::ln;
 
 use super::EXPECTED_SQUARE;
 use crate::error::LARGEST_VALUE;
-use crate::law::hysteretic_dynamics::{DAMPING_RATIOS, Drive, Dynamics, LARGEST_WEIGHT, Layout, Run};
+use crate::law::hysteretic_dynamics::{
+    DAMPING_RATIOS, Dynamics, DynamicsDrive, DynamicsLayout, DynamicsRun, LARGEST_WEIGHT,
+};
 use crate::linear_algebra::{Gram, Symmetric};
-use crate::optimise::levenberg_marquardt::{Problem, Rules, Slope, step_within};
+use crate::optimise::levenberg_marquardt::{DescentSettings, LeastSquaresProblem, Slope, step_within};
 use crate::optimise::parallel;
 use crate::stop_check::StopCheck;
 
@@ -23,11 +25,11 @@ const LARGEST_SHIFT: f64 = 30.0;
 
 /// Records and searched parameters: those of the model, then the first displacements and velocities of moving records.
 #[derive(Clone, Copy)]
-pub(super) struct Task<'a> {
-    pub layout: &'a Layout,
-    /// What is not searched.
+pub(super) struct DynamicsTask<'a> {
+    pub layout: &'a DynamicsLayout,
+    /// Model with all coefficients that are not searched.
     pub template: &'a Dynamics,
-    pub records: &'a [Begun],
+    pub records: &'a [DrivenRecord],
     /// `N`.
     pub rows: f64,
     /// Penalty on the square of each parameter; empty if there is none.
@@ -38,14 +40,14 @@ pub(super) struct Task<'a> {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Begun {
-    pub drive: Drive,
-    pub beginning: Beginning,
+pub(super) struct DrivenRecord {
+    pub drive: DynamicsDrive,
+    pub beginning: InitialMotion,
 }
 
 /// How the modes move at the first row of a record.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Beginning {
+pub(super) enum InitialMotion {
     AtRest,
     /// At rest, but an unknown input between the first rows adds displacements and velocities of these expected sizes.
     NearRest(Vec<f64>),
@@ -53,7 +55,7 @@ pub(super) enum Beginning {
     InMotion,
 }
 
-impl Beginning {
+impl InitialMotion {
     /// Number of displacements and velocities that are searched.
     fn count(&self, modes: usize) -> usize {
         if *self == Self::AtRest { 0 } else { 2 * modes }
@@ -74,22 +76,22 @@ impl Beginning {
 
 /// The objective at a point; infinite if it was broken off.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Value {
+pub(super) struct DynamicsValue {
     pub objective: f64,
     pub mean_square: f64,
 }
 
-impl Value {
+impl DynamicsValue {
     pub fn nrmse_percent(&self) -> f64 {
         100.0 * self.mean_square.sqrt()
     }
 }
 
-impl<'a> Task<'a> {
+impl<'a> DynamicsTask<'a> {
     pub fn new(
-        layout: &'a Layout,
+        layout: &'a DynamicsLayout,
         template: &'a Dynamics,
-        records: &'a [Begun],
+        records: &'a [DrivenRecord],
         stop: StopCheck<'a>,
     ) -> Self {
         let rows = records.iter().map(|record| record.drive.rows()).sum::<f64>().max(1.0);
@@ -97,11 +99,11 @@ impl<'a> Task<'a> {
     }
 
     /// The same task with other penalties.
-    pub fn with_penalties<'b>(self, penalties: &'b [f64]) -> Task<'b>
+    pub fn with_penalties<'b>(self, penalties: &'b [f64]) -> DynamicsTask<'b>
     where
         'a: 'b,
     {
-        Task { penalties, ..self }
+        DynamicsTask { penalties, ..self }
     }
 
     pub fn of_one_mode(self, is_of_one_mode: bool) -> Self {
@@ -125,16 +127,20 @@ impl<'a> Task<'a> {
     }
 
     /// A run over each record, and where its own parameters are.
-    fn runs<'r>(&'r self, dynamics: &'r Dynamics, parameters: &'r [f64]) -> Vec<(Run<'r>, Range<usize>)> {
+    fn runs<'r>(
+        &'r self,
+        dynamics: &'r Dynamics,
+        parameters: &'r [f64],
+    ) -> Vec<(DynamicsRun<'r>, Range<usize>)> {
         let mut end = self.layout.count();
-        let run = |record: &'r Begun| {
+        let run = |record: &'r DrivenRecord| {
             let own = end..end + record.beginning.count(self.layout.modes.len());
             end = own.end;
-            let run = Run {
+            let run = DynamicsRun {
                 dynamics,
                 drives: std::slice::from_ref(&record.drive),
                 beginnings: &parameters[own.clone()],
-                is_in_motion: record.beginning == Beginning::InMotion,
+                is_in_motion: record.beginning == InitialMotion::InMotion,
                 stop: self.stop,
             };
             (run, own)
@@ -178,27 +184,27 @@ impl<'a> Task<'a> {
     }
 }
 
-impl Problem for Task<'_> {
-    type Value = Value;
+impl LeastSquaresProblem for DynamicsTask<'_> {
+    type Value = DynamicsValue;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules::SMOOTH;
+    const RULES: DescentSettings = DescentSettings::SMOOTH;
 
-    fn value(&self, parameters: &[f64]) -> Value {
+    fn value(&self, parameters: &[f64]) -> DynamicsValue {
         let mean_square = self.mean_square(parameters).filter(|square| *square < LARGEST_VALUE);
         let mean_square = mean_square.unwrap_or(f64::INFINITY);
         let decay: f64 = parameters.iter().zip(self.penalties).map(|(p, penalty)| penalty * p * p).sum();
-        Value { objective: 0.5 * mean_square + 0.5 * decay, mean_square }
+        DynamicsValue { objective: 0.5 * mean_square + 0.5 * decay, mean_square } // (15.15)
     }
 
-    fn objective(value: &Value) -> f64 {
+    fn objective(value: &DynamicsValue) -> f64 {
         value.objective
     }
 
-    fn slope(&self, parameters: &[f64], _: &Value) -> Option<Slope<Symmetric>> {
+    fn slope(&self, parameters: &[f64], _: &DynamicsValue) -> Option<Slope<Symmetric>> {
         let dynamics = self.layout.dynamics(parameters, self.template);
         let in_motion = self.layout.with_beginning();
         let (of_model, count) = (self.layout.count(), self.count());
-        let of_record = |(run, own): &(Run<'_>, Range<usize>)| {
+        let of_record = |(run, own): &(DynamicsRun<'_>, Range<usize>)| {
             let layout = if own.is_empty() { self.layout } else { &in_motion };
             run.gram(layout).map(|gram| (gram, own.clone()))
         };

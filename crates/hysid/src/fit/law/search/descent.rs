@@ -3,13 +3,15 @@
 use std::cmp::Ordering;
 
 use crate::linear_algebra::Symmetric;
-use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, step_within};
-use crate::optimise::multi_start::Start;
+use crate::optimise::levenberg_marquardt::{
+    DescentSettings, LeastSquaresProblem, LevenbergMarquardt, Slope, step_within,
+};
+use crate::optimise::multi_start::SearchStart;
 use crate::optimise::parallel;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
-use super::Objective;
+use super::LawObjective;
 use super::projection::Projection;
 
 /// Step of a finite difference in `u`.
@@ -37,14 +39,14 @@ impl Descent {
     }
 
     /// One iteration, which lowers the residual unless there is no way on.
-    pub fn advance(&mut self, objective: &Objective<'_>) {
+    pub fn advance(&mut self, objective: &LawObjective<'_>) {
         if self.ended.is_none() {
             self.ended = self.search.advance(objective);
         }
     }
 }
 
-impl Start for Descent {
+impl SearchStart for Descent {
     fn order(&self, other: &Self) -> Ordering {
         self.value().square_residual.total_cmp(&other.value().square_residual)
     }
@@ -58,10 +60,10 @@ impl Start for Descent {
     }
 }
 
-impl Problem for Objective<'_> {
+impl LeastSquaresProblem for LawObjective<'_> {
     type Value = Projection;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules::KINKED;
+    const RULES: DescentSettings = DescentSettings::KINKED;
 
     fn value(&self, u: &[f64]) -> Projection {
         self.value(u)
@@ -90,7 +92,7 @@ impl Problem for Objective<'_> {
 
     fn step(&self, slope: &Slope<Symmetric>, u: &[f64], damping: &[f64]) -> Option<Vec<f64>> {
         let leaves = |i: usize, by: f64| u[i] <= 0.0 && by < 0.0 || u[i] >= 1.0 && by > 0.0;
-        step_within(&slope.curvature, &slope.gradient, damping, leaves, StopCheck::never())
+        step_within(&slope.curvature, &slope.gradient, damping, leaves, StopCheck::never()) // (8.3)
     }
 
     fn limit(&self, u: &mut [f64]) {

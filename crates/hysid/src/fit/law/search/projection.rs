@@ -14,12 +14,12 @@ pub(crate) const UNFINISHED: f64 = f64::INFINITY;
 const RIDGE: f64 = 1e-10;
 
 #[derive(Debug, Clone)]
-pub(crate) struct Columns<'a> {
+pub(crate) struct FeatureColumns<'a> {
     columns: Vec<Vec<f64>>,
     pace: Pace<'a>,
 }
 
-impl<'a> Columns<'a> {
+impl<'a> FeatureColumns<'a> {
     pub fn new(count: usize, rows: usize, stop: StopCheck<'a>) -> Self {
         Self { columns: vec![Vec::with_capacity(rows); count], pace: Pace::new(stop) }
     }
@@ -90,7 +90,7 @@ impl<'a> Columns<'a> {
         });
         let right: Vec<f64> = (0..n).map(|i| scale[i] * dot(&self.columns[i], target)).collect();
         let normal = Quadratic { matrix: gram, right };
-        let found = normal.non_negative_minimum(non_negative, &[], StopCheck::never());
+        let found = normal.non_negative_minimum(non_negative, &[], StopCheck::never()); // (8.1)
         let mut weights = found.unwrap_or_else(|| vec![0.0; n]);
         for (weight, scale) in weights.iter_mut().zip(&scale) {
             *weight *= scale;
@@ -130,8 +130,8 @@ impl Projection {
 mod tests {
     use super::*;
 
-    fn columns(rows: &[[f64; 3]]) -> Columns<'static> {
-        let mut columns = Columns::new(3, rows.len(), StopCheck::never());
+    fn columns(rows: &[[f64; 3]]) -> FeatureColumns<'static> {
+        let mut columns = FeatureColumns::new(3, rows.len(), StopCheck::never());
         rows.iter().for_each(|row| columns.push(row));
         columns
     }

@@ -1,6 +1,6 @@
 //! Selection of the rows of long records for a search.
 
-use crate::data::polyline::{Column, polyline, steps_between};
+use crate::data::polyline::{PolylineColumn, polyline, steps_between};
 use crate::data::record::Thinning;
 use crate::law::Sample;
 use crate::law::series::Series;
@@ -20,7 +20,7 @@ const STEPS_OF_INPUT: [f64; 2] = [1e-3, 1e-2];
 const STEPS_OF_RATE: [f64; 2] = [1e-2, 5e-2];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Memory {
+pub(crate) enum MemoryKind {
     /// Only the turning points of the input: rows between them may be left out.
     TurningPoints,
     /// The path of the input and its rate: rows on a straight part of it may be left out.
@@ -28,14 +28,14 @@ pub(crate) enum Memory {
 }
 
 /// The records with at most 5000 scored rows and without rows that the memory does not need, so that the cost of a search
-/// is bounded. [`Memory::TurningPoints`] keeps every turning point, so the memory is unchanged; [`Memory::Path`] keeps
+/// is bounded. [`MemoryKind::TurningPoints`] keeps every turning point, so the memory is unchanged; [`MemoryKind::Path`] keeps
 /// the path within a tolerance.
-pub(crate) fn thinned(series: Vec<Series>, memory: Memory) -> Vec<Series> {
+pub(crate) fn thinned(series: Vec<Series>, memory: MemoryKind) -> Vec<Series> {
     thinned_to(series, memory, MOST_COMPARED)
 }
 
 /// As [`thinned`], with at most `most` rows that are compared.
-pub(crate) fn thinned_to(series: Vec<Series>, memory: Memory, most: usize) -> Vec<Series> {
+pub(crate) fn thinned_to(series: Vec<Series>, memory: MemoryKind, most: usize) -> Vec<Series> {
     let whole = condensed(&series, memory, most);
     let rows = rows(&whole);
     if rows <= MOST_RUN {
@@ -56,14 +56,14 @@ fn scored(series: &[Series]) -> usize {
 }
 
 /// At most `most` scored rows, and of the others those that the memory depends on.
-fn condensed(series: &[Series], memory: Memory, most: usize) -> Vec<Series> {
+fn condensed(series: &[Series], memory: MemoryKind, most: usize) -> Vec<Series> {
     let mut outputs: Vec<Vec<f64>> = series.iter().map(|series| series.output.clone()).collect();
     Thinning::new(scored(series), most).blank(outputs.iter_mut().flatten());
     let is_long = rows(series) > LONG;
     let kept = |samples: &[Sample], output: &[f64]| match memory {
-        Memory::TurningPoints => turning_rows(samples, output),
-        Memory::Path if is_long => rows_of_path(samples, output),
-        Memory::Path => (0..samples.len()).collect(),
+        MemoryKind::TurningPoints => turning_rows(samples, output),
+        MemoryKind::Path if is_long => rows_of_path(samples, output),
+        MemoryKind::Path => (0..samples.len()).collect(),
     };
     let condensed = |(Series { samples, .. }, output): (&Series, &Vec<f64>)| {
         through(samples, output, &kept(samples, output))
@@ -91,7 +91,7 @@ fn rows_of_path(samples: &[Sample], output: &[f64]) -> Vec<usize> {
     let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let column = |values, [tolerance, longest]: [f64; 2]| {
         let largest = largest(values);
-        Column { values, tolerance: tolerance * largest, longest: longest * largest }
+        PolylineColumn { values, tolerance: tolerance * largest, longest: longest * largest }
     };
     let has_time = samples.iter().any(|sample| sample.step > 0.0);
     let step = |row: usize| if has_time { samples[row].step } else { 1.0 };
@@ -140,19 +140,19 @@ mod tests {
 
     #[test]
     fn short_records_stay_as_they_are() {
-        assert_eq!(thinned(vec![zigzag(4000)], Memory::Path), [zigzag(4000)]);
+        assert_eq!(thinned(vec![zigzag(4000)], MemoryKind::Path), [zigzag(4000)]);
     }
 
     #[test]
     fn long_records_keep_their_turning_points_and_their_time() {
-        let found = &thinned(vec![zigzag(100_000)], Memory::TurningPoints)[0];
+        let found = &thinned(vec![zigzag(100_000)], MemoryKind::TurningPoints)[0];
         assert_eq!(found.output.iter().filter(|y| !y.is_nan()).count(), MOST_COMPARED);
         assert!(found.samples.len() <= MOST_COMPARED + 2001);
         let turns = found.samples.iter().filter(|sample| sample.x == 50.0 || sample.x == 0.0).count();
         assert_eq!(turns, 2000);
         let elapsed: f64 = found.samples.iter().map(|sample| sample.step).sum();
         assert_eq!(elapsed, 100_000.0);
-        assert_eq!(thinned(vec![zigzag(1_000_000)], Memory::Path)[0].samples.len(), MOST_RUN);
+        assert_eq!(thinned(vec![zigzag(1_000_000)], MemoryKind::Path)[0].samples.len(), MOST_RUN);
     }
 
     /// Long paths keep time and short steps, and their beginning alone has as many compared rows.
@@ -163,7 +163,7 @@ mod tests {
             let sample = |row| Sample { x: signal(row), rate: 0.002 / step * cos(0.002 * row as f64), step };
             Series { samples: (0..rows).map(sample).collect(), output: (0..rows).map(signal).collect() }
         };
-        let found = &thinned(vec![series(100_000, 0.5)], Memory::Path)[0];
+        let found = &thinned(vec![series(100_000, 0.5)], MemoryKind::Path)[0];
         assert!(found.samples.len() < 30_000, "{}", found.samples.len());
         assert_eq!(found.output.iter().filter(|y| !y.is_nan()).count(), MOST_COMPARED);
         assert!(found.samples.windows(2).all(|pair| (pair[1].x - pair[0].x).abs() <= 0.0101));
@@ -173,7 +173,7 @@ mod tests {
             samples: (0..600_000).map(|row| Sample { x: (row % 2) as f64, rate: 0.0, step: 1.0 }).collect(),
             output: (0..600_000).map(|row| row as f64).collect(),
         };
-        let found = &thinned(vec![rough], Memory::Path)[0];
+        let found = &thinned(vec![rough], MemoryKind::Path)[0];
         assert_eq!(found.samples.len(), MOST_RUN);
         assert_eq!(found.output.iter().filter(|y| !y.is_nan()).count(), MOST_COMPARED);
     }

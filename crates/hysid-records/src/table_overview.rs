@@ -15,7 +15,7 @@ const MOST_COLUMNS: usize = 40;
 
 /// A table as it is read.
 #[derive(Debug, Serialize)]
-pub struct Looked {
+pub struct TableOverview {
     file: String,
     stored: String,
     delimiter: String,
@@ -32,11 +32,11 @@ pub struct Looked {
     left_out: Option<String>,
     #[serde(skip)]
     read_as: String,
-    pub columns: Vec<Column>,
+    pub columns: Vec<ColumnSummary>,
 }
 
 #[derive(Debug, Clone, Serialize)]
-pub struct Column {
+pub struct ColumnSummary {
     pub name: String,
     /// `time`, `input`, `output`, `rate`, `record`, `unused`; none if the roles are unclear.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -56,7 +56,7 @@ pub struct Column {
     pub note: Option<String>,
 }
 
-impl Looked {
+impl TableOverview {
     /// Of a table whose columns have these roles, if they are known.
     pub fn of(table: &Table, roles: Option<&Roles>) -> Self {
         let layout = &table.layout;
@@ -76,7 +76,7 @@ impl Looked {
             last_line: table.lines.last().copied().unwrap_or_default(),
             left_out: table.left_out.described(),
             read_as: table.described(),
-            columns: (0..table.header.len()).map(|place| Column::of(table, place, roles)).collect(),
+            columns: (0..table.header.len()).map(|place| ColumnSummary::of(table, place, roles)).collect(),
         }
     }
 
@@ -88,7 +88,7 @@ impl Looked {
         text += &self.left_out.iter().map(|lines| labelled("left out", lines)).collect::<String>();
         let mut rows =
             vec![["column", "role", "unit", "smallest", "largest", "missing", ""].map(String::from).to_vec()];
-        rows.extend(self.columns.iter().take(MOST_COLUMNS).map(Column::cells));
+        rows.extend(self.columns.iter().take(MOST_COLUMNS).map(ColumnSummary::cells));
         text += "\n";
         for line in aligned(&rows) {
             text += line.trim_end();
@@ -101,7 +101,7 @@ impl Looked {
     }
 }
 
-impl Column {
+impl ColumnSummary {
     fn of(table: &Table, place: usize, roles: Option<&Roles>) -> Self {
         let name = table.header[place].clone();
         let mut cells = CellReader::new(table.numbers());

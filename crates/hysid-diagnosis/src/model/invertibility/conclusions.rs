@@ -1,15 +1,15 @@
-//! What the scans of a model say of its inverse.
+//! Conclusions from the scans of a model about its inverse.
 
-use super::examination::{Examination, Examined};
+use super::examination::{Examination, ExaminedScan};
 use super::words::Words;
-use super::{AtTimeStep, Direction, EFFECT, Invertibility, Place, PlaceKind, Scans};
+use super::{AtTimeStep, EFFECT, Invertibility, NonMonotonePlace, OutputDirection, PlaceKind, Scans};
 use crate::model::probe::Probe;
 use crate::{Evidence, Finding, Piece, Property, Verdict};
 
 /// Time steps that differ by this share are the same.
 const SAME_STEP: f64 = 1e-9;
 
-/// What outputs with a large constant part round to, as a share of the output.
+/// Rounding of outputs with a large constant part, as a share of the output.
 const LARGE_OUTPUT: f64 = 64.0 * f64::EPSILON;
 
 /// A slope below this share of the mean one is flat.
@@ -22,18 +22,18 @@ const EXPERIMENT: &str = "fit the model to a record whose output follows the inp
 const WITHOUT_INERTIA: &str = "fit a model without inertia to a record well below the resonance";
 
 /// The scans, with what is common to all conclusions.
-pub(super) struct Judgement<'e> {
+pub(super) struct ScanConclusions<'e> {
     examined: &'e Examination,
     /// The scans that decide: not those with very short time steps.
-    deciding: Vec<&'e Examined>,
-    direction: Direction,
+    deciding: Vec<&'e ExaminedScan>,
+    direction: OutputDirection,
     tolerance: f64,
 }
 
-impl<'e> Judgement<'e> {
+impl<'e> ScanConclusions<'e> {
     pub fn of(examined: &'e Examination) -> Self {
         let shortest = examined.fastest_step * (1.0 - SAME_STEP);
-        let deciding: Vec<&Examined> = examined
+        let deciding: Vec<&ExaminedScan> = examined
             .scans
             .iter()
             .filter(|examined| examined.time_step.is_none_or(|step| step >= shortest))
@@ -46,12 +46,12 @@ impl<'e> Judgement<'e> {
         Self {
             examined,
             deciding,
-            direction: if change < 0.0 { Direction::Falling } else { Direction::Rising },
+            direction: if change < 0.0 { OutputDirection::Falling } else { OutputDirection::Rising },
             tolerance: (EFFECT * examined.range).max(LARGE_OUTPUT * largest),
         }
     }
 
-    fn whole(&self) -> impl Iterator<Item = &'e Examined> + '_ {
+    fn whole(&self) -> impl Iterator<Item = &'e ExaminedScan> + '_ {
         self.deciding.iter().copied().filter(|examined| examined.is_whole)
     }
 
@@ -116,7 +116,7 @@ impl<'e> Judgement<'e> {
 
     /// False for a model whose output no next input changes.
     fn moves(&self) -> bool {
-        let extent = |examined: &&Examined| {
+        let extent = |examined: &&ExaminedScan| {
             let (low, high) = examined.scan.outputs();
             high - low
         };
@@ -124,7 +124,7 @@ impl<'e> Judgement<'e> {
     }
 
     /// The largest way back or jump, and where it is.
-    fn worst(&self) -> (f64, Option<(&'e Examined, Place)>) {
+    fn worst(&self) -> (f64, Option<(&'e ExaminedScan, NonMonotonePlace)>) {
         let places = self.deciding.iter().flat_map(|examined| {
             let reversal = examined.scan.reversal(self.direction.sign());
             let jumps = examined.scan.jumps.iter();
@@ -139,7 +139,7 @@ impl<'e> Judgement<'e> {
         let worst = places.reduce(|a, b| if size(b.3) > size(a.3) { b } else { a });
         let Some((examined, kind, inputs, outputs)) = worst else { return (0.0, None) };
         let past = &self.examined.pasts[examined.past];
-        let place = Place {
+        let place = NonMonotonePlace {
             kind,
             size: size(outputs) / self.examined.range,
             path: past.path.into(),
@@ -187,7 +187,7 @@ impl<'e> Judgement<'e> {
         (widest.1 - widest.0 > self.tolerance).then_some(widest)
     }
 
-    /// What each time step does, the shortest first, those that do not decide with them.
+    /// Results of each time step, the shortest first, those that do not decide with them.
     fn time_steps(&self) -> Vec<AtTimeStep> {
         let timed = self.examined.scans.iter();
         let mut all: Vec<AtTimeStep> = timed
@@ -220,7 +220,7 @@ impl<'e> Judgement<'e> {
     }
 
     fn several(&self) -> Vec<Vec<(f64, f64)>> {
-        let whole: Vec<&Examined> = self.whole().collect();
+        let whole: Vec<&ExaminedScan> = self.whole().collect();
         let every = whole.len().div_ceil(DRAWN).max(1);
         whole.iter().step_by(every).map(|examined| examined.scan.points.clone()).collect()
     }

@@ -1,7 +1,7 @@
 //! How the records begin: in the virgin state, after a warm-up, after one period of themselves, or in states that are
 //! found for them.
 //!
-//! Each way is judged by the validation error of candidates that take a moment to fit. The virgin state is kept
+//! Each way is compared by the validation error of candidates that take a moment to fit. The virgin state is kept
 //! unless a warm-up is better by 10 %, or other states by 20 %: these have more ways to fit by chance. Records whose
 //! beginning and end meet are tried as periods, before states are looked for.
 
@@ -12,9 +12,9 @@ use crate::data::record::{Dataset, Record};
 use crate::error::Result;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::score::Score;
-use crate::fit::auto::trial::{Bench, HeldOut, Trial};
+use crate::fit::auto::trial::{FoldBench, HeldOut, Trial};
 use crate::fit::auto::warm_up::better;
-use crate::fit::auto::work::Work;
+use crate::fit::auto::work::AutoWork;
 use crate::fit::initial_state::{self, QUICK_INTERVALS, found_on, known};
 use crate::fit::law::hysteretic_dynamics::first_second_difference;
 use crate::law::facts::Origin;
@@ -39,7 +39,7 @@ const AFTER_A_JUMP: f64 = 0.1;
 /// A second difference of the input in the first rows above this share of its range is a jump. Designed.
 const JUMP: f64 = 0.01;
 
-pub(super) struct Beginning {
+pub(super) struct PreparedData {
     pub data: Dataset,
     pub folds: Vec<Fold>,
     pub warm_up: WarmUp,
@@ -57,14 +57,14 @@ pub(super) fn as_chosen<'d>(data: &'d Dataset, options: &AutoOptions) -> Result<
     }
 }
 
-impl Beginning {
+impl PreparedData {
     /// How the records of these data begin.
     pub fn of(
         quick: &Candidate,
         data: &Dataset,
         folds: Vec<Fold>,
         options: &AutoOptions,
-        work: &Work,
+        work: &AutoWork,
     ) -> Self {
         let has_lead_in = |record: &Record| record.lead_in().is_some();
         let is_open = options.initial_state.is_none() && !data.records().iter().any(has_lead_in);
@@ -76,7 +76,7 @@ impl Beginning {
         let other = match (options.initial_state, options.warm_up) {
             (Some(InitialState::Unknown), _) => ways.found(),
             (None, None) if is_open => {
-                let is_worth = |states: &OtherStates| states.is_worth(warm_up);
+                let is_worth = |states: &AlternativeStates| states.is_worth(warm_up);
                 ways.periods().filter(is_worth).or_else(|| ways.found().filter(is_worth))
             }
             _ => None,
@@ -131,14 +131,14 @@ fn jumps(record: &Record, range: f64) -> bool {
     first_second_difference(&record.inputs()[0]) > JUMP * range
 }
 
-struct OtherStates {
+struct AlternativeStates {
     data: Dataset,
     folds: Vec<Fold>,
     /// Errors on the folds; `None` where they are those of the virgin state, and without folds.
     errors: Option<FoundStates>,
 }
 
-impl OtherStates {
+impl AlternativeStates {
     /// True if it is enough better than the virgin state, and no worse than a warm-up that is better too.
     fn is_worth(&self, warm_up: WarmUp) -> bool {
         let Some(FoundStates { found_percent, virgin_percent }) = self.errors else { return false };
@@ -153,13 +153,13 @@ struct Ways<'a, 'o, 'w> {
     data: &'a Dataset,
     folds: &'a [Fold],
     options: &'a AutoOptions,
-    work: &'a Work<'o, 'w>,
+    work: &'a AutoWork<'o, 'w>,
 }
 
 impl Ways<'_, '_, '_> {
     /// States found for all records and for the training part of each fold; `None` once stopped, or if no candidate
     /// fits.
-    fn found(&self) -> Option<OtherStates> {
+    fn found(&self) -> Option<AlternativeStates> {
         let is_to_stop = || self.work.is_to_stop();
         let stop = StopCheck::new(&is_to_stop);
         let (rate, seed) = (self.options.rate, self.options.seed);
@@ -169,7 +169,7 @@ impl Ways<'_, '_, '_> {
     }
 
     /// All records after one period of themselves; `None` if the ends of a record do not meet.
-    fn periods(&self) -> Option<OtherStates> {
+    fn periods(&self) -> Option<AlternativeStates> {
         if !self.data.records().iter().all(is_closed) {
             return None;
         }
@@ -185,7 +185,7 @@ impl Ways<'_, '_, '_> {
     }
 
     /// Other states, with their errors on the folds beside those of the virgin state.
-    fn judged(&self, data: Dataset, folds: Vec<Fold>) -> OtherStates {
+    fn judged(&self, data: Dataset, folds: Vec<Fold>) -> AlternativeStates {
         let has_past = |record: &Record| !record.lead_in_rows().is_empty();
         let is_changed = folds.iter().any(|fold| fold.train.records().iter().any(has_past));
         let errors = || {
@@ -195,7 +195,7 @@ impl Ways<'_, '_, '_> {
         };
         // Folds with the same lead-ins as before have the same errors.
         let errors = is_changed.then(errors).flatten();
-        OtherStates { data, folds, errors }
+        AlternativeStates { data, folds, errors }
     }
 
     /// The validation error of the better of two quick candidates.
@@ -205,7 +205,7 @@ impl Ways<'_, '_, '_> {
         let judges = std::iter::once(self.quick.clone()).chain(self.relays());
         let mut trials: Vec<Trial> = judges.map(Trial::of).collect();
         let places: Vec<usize> = (0..trials.len()).collect();
-        Bench { data, folds: &held_out, work: self.work }.try_start(&mut trials, &places, 0);
+        FoldBench { data, folds: &held_out, work: self.work }.try_start(&mut trials, &places, 0);
         let tried = trials.iter().filter(|trial| !trial.starts.is_empty());
         let errors = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).mean_percent());
         errors.min_by(f64::total_cmp)

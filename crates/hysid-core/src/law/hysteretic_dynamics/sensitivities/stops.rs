@@ -2,12 +2,12 @@
 
 use pulp::Simd;
 
-use super::Ends;
-use crate::law::hysteretic_dynamics::Shape;
+use super::ElementEnds;
+use crate::law::hysteretic_dynamics::ElementShape;
 use crate::law::tanh_layer::{add_multiple, add_two};
 
 /// Derivatives of stops: rows with one number for each parameter.
-pub(super) struct OfStops {
+pub(super) struct StopSensitivities {
     width: usize,
     deteriorates: bool,
     /// `∂ε` and `∂Λ` where a step begins. Slips count only for stops that deteriorate.
@@ -21,8 +21,8 @@ pub(super) struct OfStops {
     pub outputs: Vec<[f64; 2]>,
 }
 
-impl OfStops {
-    pub fn new(shape: Shape, width: usize) -> Self {
+impl StopSensitivities {
+    pub fn new(shape: ElementShape, width: usize) -> Self {
         let rows = || vec![0.0; shape.stops * width];
         let by_end = || vec![[0.0; 2]; shape.stops];
         Self {
@@ -46,8 +46,8 @@ impl OfStops {
 
     /// A step without `∂δ` and `∂ν` at its end; `point` has them at its beginning, `outputs` takes `∂z`.
     #[inline(always)]
-    pub fn take<S: Simd>(&mut self, ends: Ends<'_>, point: &[f64], outputs: &mut [f64]) {
-        let Ends { element, layout, from, step, .. } = ends;
+    pub fn take<S: Simd>(&mut self, ends: ElementEnds<'_>, point: &[f64], outputs: &mut [f64]) {
+        let ElementEnds { element, layout, from, step, .. } = ends;
         let width = self.width;
         let (displacement, velocity) = point[..2 * width].split_at(width);
         for i in 0..element.thresholds.len() {

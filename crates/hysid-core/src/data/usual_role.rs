@@ -2,7 +2,7 @@
 
 /// The usual role of a physical quantity in hysteresis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum UsualRole {
     /// An input: displacement, strain, magnetic field, electric voltage.
     Drives(Domain),
     /// An output: force, stress, flux density, polarization.
@@ -24,7 +24,7 @@ pub enum Domain {
     Electricity,
 }
 
-impl Part {
+impl UsualRole {
     /// The branch of physics of a part that has one.
     pub(crate) fn domain(self) -> Option<Domain> {
         match self {

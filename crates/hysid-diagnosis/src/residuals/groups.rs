@@ -13,7 +13,7 @@ use hysid_core::stop_check::StopCheck;
 use serde::Serialize;
 
 use super::ResidualTest;
-use super::rows::{AFTER_A_TURN, Row, Rows};
+use super::rows::{AFTER_A_TURN, ResidualRow, ResidualRows};
 use crate::distribution::f_tail;
 use crate::serial::{SerialSum, correlation_lag};
 
@@ -30,25 +30,25 @@ const SEVERAL_SPEEDS: f64 = 1.5;
 
 /// Size and bias of the residual in groups of rows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Place {
+pub struct GroupedResiduals {
     /// The test.
     pub test: ResidualTest,
     /// The groups, in their order; empty if not testable.
-    pub groups: Vec<Group>,
+    pub groups: Vec<ResidualGroup>,
     /// Probability of so different root mean squares if the residual is alike everywhere.
     pub size_p_value: Option<f64>,
     /// Probability of so different means.
     pub bias_p_value: Option<f64>,
     /// Why it is not testable.
     pub not_testable: Option<String>,
-    /// What the groups may mean beside their name.
+    /// Other causes that the groups may point to, beside their name.
     pub caution: Option<String>,
 }
 
 /// Rows of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Group {
-    /// What the rows have in common.
+pub struct ResidualGroup {
+    /// Common property of the rows.
     pub name: String,
     /// Number of rows.
     pub rows: usize,
@@ -62,8 +62,8 @@ pub struct Group {
 }
 
 /// All places, in the order of [`ResidualTest`].
-pub(super) fn places(rows: &Rows) -> Vec<Place> {
-    let divided = |test, names: &[&str], group: &dyn Fn(&Row) -> Option<usize>| {
+pub(super) fn places(rows: &ResidualRows) -> Vec<GroupedResiduals> {
+    let divided = |test, names: &[&str], group: &dyn Fn(&ResidualRow) -> Option<usize>| {
         compared(test, names.iter().map(|name| ((*name).to_string(), None)).collect(), rows, group)
     };
     let after = format!("first {:.0} % of the way after a turning point", 100.0 * AFTER_A_TURN);
@@ -116,9 +116,9 @@ fn classes(
     test: ResidualTest,
     names: [&str; 3],
     what: &str,
-    rows: &Rows,
-    quantity: fn(&Row) -> f64,
-) -> Place {
+    rows: &ResidualRows,
+    quantity: fn(&ResidualRow) -> f64,
+) -> GroupedResiduals {
     let mut values: Vec<f64> = rows.records.iter().flatten().map(quantity).collect();
     values.sort_by(f64::total_cmp);
     let at = |share: f64| values[((share * values.len() as f64) as usize).min(values.len() - 1)];
@@ -129,15 +129,15 @@ fn classes(
     let largest = values[values.len() - 1];
     // Where many rows have the largest value, they are a class of their own.
     let is_above = |value: f64, limit: f64| if limit == largest { value >= limit } else { value > limit };
-    let class = |row: &Row| limits.iter().filter(|limit| is_above(quantity(row), **limit)).count();
+    let class = |row: &ResidualRow| limits.iter().filter(|limit| is_above(quantity(row), **limit)).count();
     let ends = [values[0], limits[0], limits[1], largest];
     let named = names.iter().zip(ends.windows(2));
     let groups = named.map(|(name, ends)| ((*name).to_string(), Some((ends[0], ends[1])))).collect();
     compared(test, groups, rows, &|row| Some(class(row)))
 }
 
-fn untestable(test: ResidualTest, why: String) -> Place {
-    Place {
+fn untestable(test: ResidualTest, why: String) -> GroupedResiduals {
+    GroupedResiduals {
         test,
         groups: Vec::new(),
         size_p_value: None,
@@ -154,9 +154,9 @@ type Named = (String, Option<(f64, f64)>);
 fn compared(
     test: ResidualTest,
     names: Vec<Named>,
-    rows: &Rows,
-    group: &dyn Fn(&Row) -> Option<usize>,
-) -> Place {
+    rows: &ResidualRows,
+    group: &dyn Fn(&ResidualRow) -> Option<usize>,
+) -> GroupedResiduals {
     let count = names.len();
     let groups: Vec<Vec<Option<usize>>> =
         rows.records.iter().map(|rows| rows.iter().map(group).collect()).collect();
@@ -165,10 +165,10 @@ fn compared(
         residual.iter().map(|record| record.iter().map(|e| e * e).collect()).collect();
     let bias = Means::of(&residual, &groups, count);
     let size = Means::of(&square, &groups, count);
-    let found: Vec<Group> = names
+    let found: Vec<ResidualGroup> = names
         .into_iter()
         .enumerate()
-        .map(|(at, (name, range))| Group {
+        .map(|(at, (name, range))| ResidualGroup {
             name,
             range,
             rows: size.rows[at],
@@ -191,7 +191,7 @@ fn compared(
             "the residual is correlated over so many rows that too few independent ones are left".into(),
         );
     };
-    Place {
+    GroupedResiduals {
         test,
         groups: found,
         size_p_value: Some(size_p_value),
