@@ -60,7 +60,7 @@ pub fn run() -> Result<()> {
     if violations.is_empty() { Ok(()) } else { bail!("step `dependencies` failed: {}", violations.len()) }
 }
 
-/// What is wrong with a package; those of the workspace have no source.
+/// Fault of a package; those of the workspace have no source.
 fn violation(package: &Value) -> Option<String> {
     let name = package["name"].as_str().unwrap_or("?");
     let source = package["source"].as_str()?;

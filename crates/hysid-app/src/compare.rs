@@ -232,7 +232,7 @@ fn cells(fitted: &ComparedFit) -> [String; 5] {
 /// Marks a fit that was stopped.
 const STOPPED: &str = "*";
 
-/// What the mark means; empty if no fit was stopped.
+/// Meaning of the mark; empty if no fit was stopped.
 fn stopped_note(rows: &[CompareRow]) -> String {
     let is_stopped = |row: &CompareRow| row.fit.as_ref().is_ok_and(ComparedFit::is_stopped);
     if !rows.iter().any(is_stopped) {
@@ -251,7 +251,7 @@ pub enum PrintedFit<'a> {
         model: &'static str,
         /// The model and its variant, such as "bouc-wen (degradation)".
         label: String,
-        /// What was chosen, or what a network is made of; `null` for a law.
+        /// Chosen model, or structure of a network; `null` for a law.
         structure: Option<String>,
         parameters: usize,
         train: &'a Errors,
@@ -267,7 +267,7 @@ pub enum PrintedFit<'a> {
     },
 }
 
-/// What a model is made of, in words; `None` for a law, whose name says it.
+/// Structure of a model, in words; `None` for a law, whose name says it.
 fn structure(model: &Model) -> Option<String> {
     let provenance = model.provenance();
     match (&provenance.selection, model.network()) {

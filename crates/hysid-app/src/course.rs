@@ -33,7 +33,7 @@ impl Course {
         (!has_none).then_some(self.best)
     }
 
-    /// What is being done, in words.
+    /// Current step of the work, in words.
     pub fn part(&self, progress: &Progress) -> String {
         // One fit of many: its starts, epochs and errors say nothing of the whole.
         if progress.is_part {

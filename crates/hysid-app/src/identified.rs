@@ -14,10 +14,10 @@ use hysid_files::GENERATOR;
 
 use crate::{Report, ReportSet, loops, page};
 
-/// What is told before a fit.
+/// Reading of the data, and warnings, before a fit.
 #[derive(Debug, Clone, Default)]
 pub struct Beforehand {
-    /// What was understood of data and request, label and text.
+    /// Reading of data and request, label and text.
     pub understood: Vec<(String, String)>,
     pub warnings: Vec<String>,
 }
@@ -31,7 +31,7 @@ pub struct Identified {
     pub held_out: Option<HeldOutRows>,
     /// Time of the fit; `None` for a model that was fitted before.
     pub seconds: Option<f64>,
-    /// What was told before.
+    /// Reading and warnings from before the fit.
     pub beforehand: Beforehand,
 }
 

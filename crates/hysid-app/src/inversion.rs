@@ -22,7 +22,7 @@ pub enum Preview {
     Time(f64),
 }
 
-/// What bounds the search of the inputs.
+/// Bounds of the search of the inputs.
 #[derive(Debug, Clone, Copy)]
 pub struct Bounds {
     /// Lowest and highest input; `None` for the trained range.

@@ -24,7 +24,7 @@ use crate::messages::{insist, note_labelled, warning};
 use crate::progress::Follower;
 use crate::{errors_table, files, interrupt};
 
-/// What is to be done with the data, and how.
+/// Fit to run: request, start, and where to store its state.
 pub struct Work<'a> {
     pub request: &'a FitSpec,
     /// A fit begun before, with these options.

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 
 use crate::messages::insist;
 
-/// What is added to a signal's number to give the exit status, as shells do.
+/// Added to a signal's number to give the exit status, as shells do.
 const SIGNALLED: u8 = 128;
 
 /// Number of Ctrl-C's signal.

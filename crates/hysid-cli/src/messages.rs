@@ -1,4 +1,4 @@
-//! What the program says: results on stdout, all else on stderr. A stream that was closed is never a
+//! Output of the program: results on stdout, all else on stderr. A stream that was closed is never a
 //! panic.
 
 use std::borrow::Cow;

@@ -29,7 +29,7 @@ pub struct MeasuredMotion {
     pub records: Vec<MotionRecord>,
     /// How the numbers of the table are written.
     pub sign: DecimalSign,
-    /// What was changed on the way, in words.
+    /// Changes of the data on reading, in words.
     pub warnings: Vec<String>,
     file: String,
     lines: Vec<u64>,

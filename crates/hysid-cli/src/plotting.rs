@@ -1,4 +1,4 @@
-//! What `hysid plot` draws: one figure of measured data and a model on them, for a paper or a talk.
+//! Figures of `hysid plot`: measured data and a model on them, for a paper or a talk.
 
 mod curves;
 mod cycles;

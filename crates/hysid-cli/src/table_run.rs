@@ -23,7 +23,7 @@ const BLOCK: usize = MOST_ROWS_OF_ZERO;
 /// Blocks that rows with one time stamp may fill.
 const MOST_EQUAL: usize = 16;
 
-/// What is wanted of the rows beside the outputs.
+/// Columns to keep of the rows, beside the outputs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted {
     pub measured: bool,
@@ -135,7 +135,7 @@ struct TableRun<'r, 'm> {
     clock: Clock,
     /// Rows so far whose time stamp was that of the row before.
     spread: usize,
-    /// What is subtracted from the first input and the output of the present record, once it is known.
+    /// Offsets to subtract from the first input and the output of the present record, once known.
     offsets: Option<(f64, f64)>,
     records: usize,
     /// Name of the present one: of the rows that are simulated, while the row that was read last may begin the next one.

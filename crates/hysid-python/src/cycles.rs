@@ -13,7 +13,7 @@ use crate::data::Dataset;
 use crate::failure::refused;
 use crate::interruption::interruptible;
 
-/// What Python reads.
+/// Cycles and reversal curves, as Python reads them.
 #[derive(Serialize)]
 struct Told<'a> {
     table: &'a CycleTable,

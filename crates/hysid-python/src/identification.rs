@@ -22,7 +22,7 @@ use crate::failure::refused;
 use crate::interruption::waited_for;
 use crate::model::Model;
 
-/// What is to be identified, and how.
+/// Model to fit and its options.
 #[pyclass(frozen, module = "hysid._hysid")]
 pub struct FitSpec {
     chosen: NamedOptions,
@@ -102,7 +102,7 @@ fn report(progress: &Progress<'_>) -> Report {
     (progress.done, error, progress.start, progress.epoch, phase, model, progress.is_part)
 }
 
-/// What the fit's thread and the caller's tell each other.
+/// Messages between the fit's thread and the caller's.
 struct Exchange {
     stop: AtomicBool,
     latest: Mutex<Option<Report>>,

@@ -28,7 +28,7 @@ pub struct Inverse {
     inverse: model::Inverse<'static>,
 }
 
-/// What bounds an inverse.
+/// Bounds of an inverse.
 pub struct Bounds {
     /// Lowest and highest input.
     pub limits: Option<(f64, f64)>,

@@ -29,7 +29,7 @@ pub struct Fits {
     last: Mutex<Option<Running>>,
 }
 
-/// What a fit does when it has news.
+/// Called when a fit has news.
 pub type Tell = Arc<dyn Fn() + Send + Sync>;
 
 struct Running {
@@ -37,7 +37,7 @@ struct Running {
     thread: Option<JoinHandle<()>>,
 }
 
-/// What is known of a fit, and whether it is to stop.
+/// State of a fit, its preview, and whether it is to stop.
 pub struct Course {
     state: Mutex<FitState>,
     preview: Mutex<Option<Preview>>,
@@ -49,7 +49,7 @@ pub struct Work {
     pub id: u64,
     pub request: FitSpec,
     pub data: Arc<Data>,
-    /// What is told of both before the fit.
+    /// Reading and warnings from before the fit.
     pub beforehand: Beforehand,
     /// Number of the file with the first records, over which the best model so far is drawn.
     pub file: u64,
@@ -101,7 +101,7 @@ impl Fits {
         self.last().as_ref().map(|last| last.course.state().clone())
     }
 
-    /// What the best model so far simulates; `None` before there is one.
+    /// Simulation of the best model so far; `None` before there is one.
     pub fn preview(&self) -> Option<Preview> {
         let last = self.last();
         let preview = last.as_ref()?.course.preview.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -166,7 +166,7 @@ impl Course {
     }
 }
 
-/// What `work` gives; a panic in it is an error.
+/// Result of `work`; a panic in it is an error.
 pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     let words = "an internal error ended this fit: this is a fault of Hysid, please report it with what the terminal says";
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(anyhow!(words)))

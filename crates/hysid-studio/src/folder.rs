@@ -186,7 +186,7 @@ impl Folder {
         destination.write(content).map(|_| ()).map_err(|failure| anyhow!("{failure}"))
     }
 
-    /// What was chosen and made, if anything.
+    /// Text of the project file, if there is one.
     pub fn read_project(&self) -> Result<Option<String>> {
         let path = self.root.join(PROJECT);
         if fs::symlink_metadata(&path).is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
@@ -205,7 +205,7 @@ impl Folder {
     }
 }
 
-/// What is said of a file that cannot be read.
+/// Error for a file that cannot be read.
 pub fn cannot_read(path: &Path, error: &std::io::Error) -> anyhow::Error {
     anyhow!(hysid_files::unreadable(&path.display().to_string(), error))
 }

@@ -46,7 +46,7 @@ pub struct Server {
     port: u16,
 }
 
-/// What every answer is made of.
+/// State that all requests share.
 #[derive(Clone)]
 struct Shared {
     studio: Arc<Studio>,

@@ -1,4 +1,4 @@
-//! What is taken away of a model: exports, and the lines that make the very same model without the studio.
+//! Exports of a model, and the lines that make the very same model without the studio.
 
 use std::io::{Cursor, Write};
 use std::path::Path;

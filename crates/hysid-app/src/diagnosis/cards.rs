@@ -10,7 +10,7 @@ use crate::quantities::Quantities;
 /// Points of a curve in a picture.
 const POINTS: usize = 800;
 
-/// What the numbers of a card mean.
+/// Meaning of the numbers of a card.
 pub const EXPLANATION: &str = "The index is a relative difference or size. The threshold separates yes from \
                                no: it is the larger of two values, the difference that matters in practice \
                                and the difference that noise alone can cause in this number of comparisons.";

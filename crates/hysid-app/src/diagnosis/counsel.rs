@@ -1,4 +1,4 @@
-//! What the data doctor complains of, and which model is advised.
+//! Data issues, and the advised model.
 
 use hysid::diagnosis::{Advice, DataIssue, Severity, Verdict};
 use hysid_document::plain::indented;
@@ -38,7 +38,7 @@ pub fn advice_text(advice: &Advice, fit: &str) -> String {
     format!("advice\n{said}{needs}{next}")
 }
 
-/// What the model must be able to do, in a line.
+/// Requirements on the model, in a line.
 fn needs(advice: &Advice) -> String {
     let needs = [
         ("rate dependence", advice.needs_rate),

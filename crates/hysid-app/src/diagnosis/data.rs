@@ -1,4 +1,4 @@
-//! What is told of measured data.
+//! Diagnosis of measured data.
 
 use anyhow::Result;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions};

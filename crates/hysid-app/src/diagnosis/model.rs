@@ -1,4 +1,4 @@
-//! What is told of a fitted model.
+//! Diagnosis of a fitted model.
 
 use std::path::Path;
 
@@ -120,7 +120,7 @@ impl<'a> DiagnosedModel<'a> {
         Page { title: format!("Diagnosis: {}", self.file), parts }
     }
 
-    /// What the equations promise of each property.
+    /// Structural properties that the equations guarantee.
     fn promises(&self) -> Table {
         let rows = self.diagnosis.promises.iter().map(|promise| {
             let contradicted = if promise.agrees == Some(false) { " !" } else { "" };

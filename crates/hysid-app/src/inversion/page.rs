@@ -61,7 +61,7 @@ pub fn page(
     Page { title: format!("Inverse of {}", model.name().name()), parts }
 }
 
-/// What ties the charts of a record together.
+/// Track that the charts of a record share.
 fn track(record: &str, times: Option<Vec<f64>>) -> Track {
     Track { record: record.into(), times, cycles: Vec::new() }
 }

@@ -17,7 +17,7 @@ use crate::files::{self, check_outputs};
 use crate::messages::{note, note_labelled, results, warning};
 use crate::progress::while_working;
 
-/// What is told of a diagnosis, and the page if there is to be one.
+/// Text of a diagnosis, and its page if there is to be one.
 struct Told {
     text: String,
     page: Option<Page>,

@@ -168,7 +168,7 @@ fn printed(identified: &Identified, out: &Path, trained: &Dataset) -> Result<imp
     };
     let tested = |(data, tests): (String, Residuals)| {
         object! {
-            /// What the data are: `training` or `held-out`.
+            /// Kind of the data: `training` or `held-out`.
             data: data,
             #[serde(flatten)]
             tests: tests,
@@ -180,7 +180,7 @@ fn printed(identified: &Identified, out: &Path, trained: &Dataset) -> Result<imp
         parameters: model.parameters(),
         /// Those that answer together; `null` for a single model.
         members: model.ensemble().map(|ensemble| ensemble.members().iter().map(member).collect::<Vec<_>>()),
-        /// What was tried and how it did; `null` where there was no choice.
+        /// Candidates and their errors; `null` where there was no choice.
         selection: provenance.selection.as_ref(),
         train: &provenance.train,
         /// Without the rows of a warm-up; left out for a model without one.
@@ -199,7 +199,7 @@ fn printed(identified: &Identified, out: &Path, trained: &Dataset) -> Result<imp
         /// Tests of the residual by the data, training first; left out for too few rows.
         #[serde(skip_serializing_if = "hysid_document::is_nothing")]
         residuals: identified.residuals(trained)?.into_iter().map(tested).collect::<Vec<_>>(),
-        /// What to know before relying on the model.
+        /// Limitations of the model.
         notes: model.notes(),
         seconds: identified.seconds,
         evaluations: identified.evaluations,

@@ -103,7 +103,7 @@ fn list(json: bool) -> Result<()> {
     told(json, described, || specimens.clone().map(description).collect::<Vec<_>>().join("\n"))
 }
 
-/// What `--list` prints of a specimen.
+/// Description of a specimen for `--list`.
 fn description(specimen: &Specimen) -> String {
     let columns = specimen.columns();
     let columns: Vec<String> =

@@ -74,7 +74,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// What separates the cells of the table that is written.
+/// Delimiter of the table that is written.
 fn delimiter_of(table: &Table) -> u8 {
     table.delimiter().in_a_copy(table.numbers().decimal)
 }
@@ -139,7 +139,7 @@ fn rows(table: &Table, wanted: &Wanted, inverted: &Inverted) -> Result<Vec<u8>> 
     Ok(writer.into_inner()?)
 }
 
-/// What was asked for and taken, label and text.
+/// Request and its reading, label and text.
 fn understood(
     arguments: &Invert,
     model: &Model,
@@ -191,7 +191,7 @@ fn understood(
 /// Deviation of the driven model, in percent of the standard deviation of the wanted output, above which it is said.
 const LARGE: f64 = 5.0;
 
-/// What the user must know of the drive.
+/// Warnings on the drive.
 fn warnings(inverted: &Inverted) -> Vec<String> {
     let rows = inverted.rows();
     let mut all = Vec::new();

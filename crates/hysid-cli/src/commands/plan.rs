@@ -52,7 +52,7 @@ fn of_kind(arguments: &arguments::Plan, kind: &str) -> Result<Outcome> {
     tell(arguments, &outputs, &planned)
 }
 
-/// What to measure next.
+/// Plans the next measurement from data.
 fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
     let tables = read_tables(&arguments.like, &arguments.columns.reading)?;
     let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;

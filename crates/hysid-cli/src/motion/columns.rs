@@ -22,7 +22,7 @@ pub const COLUMNS: [MotionColumn; 6] = [
     MotionColumn::AppliedForce,
 ];
 
-/// What is needed of the cells of a column.
+/// Requirement on the cells of a column.
 pub fn kind(column: MotionColumn) -> CellNeed {
     let required = |if_no_number| CellNeed::Required {
         if_blank: "time, displacement and velocity need a number in every row; choose rows with --rows",
@@ -60,7 +60,7 @@ pub struct MotionColumns {
     pub applied_force: Option<String>,
     /// Columns that are copied.
     pub keep: Vec<String>,
-    /// What was found by name and unit, with the option that decides otherwise.
+    /// Columns that were chosen by name and unit, each with the option that overrides the choice.
     pub guessed: Vec<&'static str>,
     /// Columns that may be an acceleration of the mass, if none is used.
     pub unused_accelerations: Vec<String>,

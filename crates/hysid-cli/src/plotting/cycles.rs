@@ -1,4 +1,4 @@
-//! What is read from cycles, of measured data beside a model.
+//! Figures of cycles: measured data beside a model.
 
 use std::borrow::Cow;
 

@@ -76,7 +76,7 @@ pub fn made(conditions: &str) -> Text {
         .with(Piece::Plain(conditions.into()))
 }
 
-/// What a terminal shows of a chapter: headings, tables and targets, then the verdict.
+/// Chapter in short, for a terminal: headings, tables and targets, then the verdict.
 pub fn summary(chapter: &Chapter) -> Vec<Part> {
     let shown = chapter.parts.iter().filter(|part| matches!(part, Part::Table(_) | Part::Heading(_)));
     let targets = targets_list(std::slice::from_ref(chapter));

@@ -182,7 +182,7 @@ fn a_look_shows_columns_also_where_their_roles_are_unclear() {
     assert!(ran.stdout.contains("disp_mm    input    mm"), "{}", ran.stdout);
 }
 
-/// What can be said about a file is said to every command.
+/// Every command takes the options of reading.
 #[test]
 fn options_of_reading_choose_lines_rows_and_offsets() {
     let bench = Workbench::new();

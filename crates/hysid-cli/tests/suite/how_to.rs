@@ -95,7 +95,7 @@ fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
 }
 
-/// What the examples print that a page names.
+/// Output of the examples that a page names.
 fn printed_by_examples(page: &str) -> String {
     let names = page.split("`examples/").skip(1).filter_map(|rest| rest.split_once('.'));
     let texts = names.map(|(name, _)| docs().join("../examples").join(name).with_extension("txt"));

@@ -30,7 +30,7 @@ const AXIS: f64 = 3.23;
 /// Room that the legend leaves free on both sides together, in pixels.
 const LEGEND_EDGE: f64 = 40.0;
 
-/// What is around the curves.
+/// Surroundings of the curves: axes, labels and legend.
 pub(super) struct Frame {
     pub markup: String,
     /// Left, top, width and height of the place of the curves, in units of the drawing.

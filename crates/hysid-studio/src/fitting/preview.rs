@@ -17,7 +17,7 @@ const MOST_ROWS: usize = 20_000;
 /// Time between two writings of the best model so far.
 const BETWEEN_FILES: Duration = Duration::from_secs(3);
 
-/// What the best model so far simulates.
+/// Simulation of the best model so far.
 #[derive(Clone)]
 pub struct Preview {
     /// Number of the file whose rows were simulated.

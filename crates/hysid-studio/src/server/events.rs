@@ -20,7 +20,7 @@ const BETWEEN: Duration = Duration::from_millis(150);
 /// Time between two keep-alive messages, by which a browser notices that a connection is gone.
 const ALIVE: Duration = Duration::from_secs(15);
 
-/// What a page knows already.
+/// State that a page has received.
 struct Known {
     shared: Shared,
     news: watch::Receiver<News>,

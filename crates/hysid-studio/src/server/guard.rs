@@ -21,7 +21,7 @@ use super::keys::Keys;
 
 const KEY: HeaderName = HeaderName::from_static("x-hysid-key");
 
-/// What a page may do: use what this server gives, and nothing else.
+/// Content policy of a page: it uses only what this server gives.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
                       connect-src 'self'; font-src 'self'; form-action 'none'; base-uri 'none'; \
                       frame-ancestors 'none'";

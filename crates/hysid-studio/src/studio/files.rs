@@ -98,7 +98,7 @@ impl Studio {
         self.take_content(&name, &content, usage).map(drop)
     }
 
-    /// What the next file is for: the first are for training; once there is a model, a file is unseen.
+    /// Use of the next file: the first are for training; once there is a model, a file is unseen.
     pub fn usage_of_next(&self) -> Use {
         if self.project().models.is_empty() { Use::Training } else { Use::Unseen }
     }
@@ -216,7 +216,7 @@ impl Studio {
         view.training(&project, &self.folder)
     }
 
-    /// What may be wrong with the training data: what a fit warns of, and what the diagnosis finds.
+    /// Issues of the training data: warnings of a fit, and findings of the diagnosis.
     pub fn findings(&self) -> Result<Value> {
         let data = self.training_data()?;
         let warnings = summarised(&Summary::of(&data.set).warnings(&data.set));

@@ -17,7 +17,7 @@ use crate::folder::Inner;
 use crate::project::{Begun, ChosenColumns, FitRequest, ProjectModel, Use};
 use crate::words::said;
 
-/// What a fit has found, until it is stored.
+/// Result of a fit, until it is stored.
 pub struct Found {
     begun: Begun,
     identified: Identified,
@@ -101,7 +101,7 @@ impl Studio {
         self.fits.state()
     }
 
-    /// What the best model so far simulates.
+    /// Simulation of the best model so far.
     pub fn preview(&self) -> Option<Preview> {
         self.fits.preview()
     }

@@ -33,7 +33,7 @@ struct ReadModel {
     model: std::result::Result<Arc<Model>, String>,
 }
 
-/// What tells that a file is another than the one that was read.
+/// Size and time stamp of a file, which show that it has changed since it was read.
 #[derive(PartialEq)]
 struct State {
     bytes: u64,
@@ -146,7 +146,7 @@ impl Studio {
         })
     }
 
-    /// What is known of a model, as HTML.
+    /// Facts of a model, as HTML.
     pub fn facts(&self, id: u64) -> Result<String> {
         let (model, path) = (self.model(id)?, self.model_file(id)?);
         let file = PathBuf::from(path.file_name().unwrap_or_default());

@@ -1,4 +1,4 @@
-//! What an observer of a fit can see: the best model so far, and the candidates of `auto`.
+//! Observers of a fit: the best model so far, and the candidates of `auto`.
 
 use crate::scaffold::*;
 use std::collections::BTreeMap;
@@ -109,7 +109,7 @@ fn a_law_without_a_search_has_no_model_on_its_way() {
     assert!(models.is_empty());
 }
 
-/// What was told of a candidate last.
+/// Last report on a candidate.
 #[derive(Debug, PartialEq)]
 struct Told {
     standing: Standing,

@@ -124,7 +124,7 @@ fn the_rate_tells_two_speeds_apart() {
     assert!(with < 5.0 && without > 20.0, "{with} %, {without} %");
 }
 
-/// What the observer is told.
+/// Progress report of the observer.
 struct Told {
     phase: Phase,
     start: usize,
