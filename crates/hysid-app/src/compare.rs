@@ -152,7 +152,7 @@ pub fn compare(request: &CompareRequest<'_>, observer: &dyn CompareObserver) -> 
             loop {
                 let next = queue.lock().expect("no thread panics with the lock").pop_front();
                 let Some((place, spec)) = next else { return Ok(()) };
-                let one = Fit { request, spec, place, threads: workers, observer };
+                let one = CompareTask { request, spec, place, threads: workers, observer };
                 let row = CompareRow { spec: spec.clone(), fit: pool.install(|| one.fit()) };
                 let mut ended = ended.lock().expect("no thread panics with the lock");
                 observer.ended(place, &row, ended.len() + 1);
@@ -171,7 +171,7 @@ pub fn compare(request: &CompareRequest<'_>, observer: &dyn CompareObserver) -> 
 }
 
 /// One of the fits of a comparison.
-struct Fit<'a> {
+struct CompareTask<'a> {
     request: &'a CompareRequest<'a>,
     spec: &'a FitSpec,
     place: usize,
@@ -179,7 +179,7 @@ struct Fit<'a> {
     observer: &'a dyn CompareObserver,
 }
 
-impl Fit<'_> {
+impl CompareTask<'_> {
     fn fit(&self) -> Result<ComparedFit, String> {
         let Self { request: CompareRequest { train, test, .. }, spec, place, observer, .. } = *self;
         if observer.is_to_stop() {

@@ -5,13 +5,13 @@ use hysid::model::history::Phase;
 use hysid::options::network::Method;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Course {
+pub struct ProgressText {
     starts: usize,
     /// Training error so far, in percent of the standard deviation; infinite before there is one.
     best: f64,
 }
 
-impl Course {
+impl ProgressText {
     /// Of a fit with so many starts.
     pub fn new(starts: usize) -> Self {
         Self { starts, best: f64::INFINITY }

@@ -8,12 +8,12 @@ use crate::table_run::Simulated;
 /// Gathers the rows of runs, record by record. Each run must be wanted with its drive.
 #[derive(Default)]
 pub struct Gatherer {
-    records: Vec<Rows>,
+    records: Vec<RecordRows>,
     has_ended: bool,
 }
 
 #[derive(Default)]
-struct Rows {
+struct RecordRows {
     name: String,
     time: Vec<f64>,
     inputs: Vec<Vec<f64>>,
@@ -33,7 +33,7 @@ pub struct Gathered {
 impl Gatherer {
     pub fn take(&mut self, rows: &Simulated<'_>) {
         if self.records.is_empty() || self.has_ended {
-            self.records.push(Rows { name: rows.record.to_string(), ..Rows::default() });
+            self.records.push(RecordRows { name: rows.record.to_string(), ..RecordRows::default() });
         }
         self.has_ended = rows.ends_record;
         let Some(record) = self.records.last_mut() else { return };
@@ -54,7 +54,7 @@ impl Gatherer {
     pub fn gathered(self, names: ColumnNames) -> hysid::Result<Gathered> {
         let (mut records, mut all) = (Vec::new(), Vec::new());
         for rows in self.records.into_iter().filter(|rows| !rows.measured.is_empty()) {
-            let Rows { name, time, inputs, rate, measured, predicted } = rows;
+            let RecordRows { name, time, inputs, rate, measured, predicted } = rows;
             let mut record = Record::new(name, inputs, measured)?;
             if !time.is_empty() {
                 record = record.with_time(time)?;

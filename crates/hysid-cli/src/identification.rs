@@ -25,7 +25,7 @@ use crate::progress::Follower;
 use crate::{errors_table, files, interrupt};
 
 /// Fit to run: request, start, and where to store its state.
-pub struct Work<'a> {
+pub struct FitTask<'a> {
     pub request: &'a FitSpec,
     /// A fit begun before, with these options.
     pub begun: Option<Checkpoint>,
@@ -37,7 +37,7 @@ pub struct Work<'a> {
     pub time_limit: Option<f64>,
 }
 
-impl<'a> Work<'a> {
+impl<'a> FitTask<'a> {
     /// A fit from its beginning, without limits.
     pub fn new(request: &'a FitSpec) -> Self {
         Self { request, begun: None, checkpoint: None, threads: None, time_limit: None }
@@ -66,7 +66,7 @@ pub fn thread_pool(threads: Option<u16>) -> Result<ThreadPool> {
 }
 
 /// Identifies a model, following the training on stderr.
-pub fn identify(data: &Data, work: Work) -> Result<Identified> {
+pub fn identify(data: &Data, work: FitTask) -> Result<Identified> {
     let request = work.request;
     let beforehand = say_beforehand(data, request, "stopping to save the best model so far")?;
     let pool = thread_pool(work.threads)?;

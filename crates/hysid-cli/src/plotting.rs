@@ -16,7 +16,7 @@ pub use drawing::{Format, Style, drawing};
 
 use crate::arguments::PlotKind;
 
-pub struct Subject {
+pub struct PlotData {
     /// The data; the output is NaN where it was not measured.
     pub data: Dataset,
     /// Output of a model, and its band if one is wanted, for each record.
@@ -24,7 +24,7 @@ pub struct Subject {
     pub band: Option<f64>,
 }
 
-impl Subject {
+impl PlotData {
     fn is_measured(&self) -> bool {
         self.data.scored() > 0
     }
@@ -74,7 +74,7 @@ impl Subject {
 }
 
 /// The charts of a kind of figure, in a width in pixels.
-pub fn charts(subject: &Subject, kind: PlotKind, options: &CycleOptions, width: f64) -> Result<Vec<Chart>> {
+pub fn charts(subject: &PlotData, kind: PlotKind, options: &CycleOptions, width: f64) -> Result<Vec<Chart>> {
     match kind {
         PlotKind::Loops => Ok(vec![curves::loops(subject, width)]),
         PlotKind::Histories => Ok(histories::histories(subject, width)),

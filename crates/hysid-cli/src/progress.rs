@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use hysid::fit::progress::Progress;
 use hysid::significant::Significant;
-use hysid_app::Course;
+use hysid_app::ProgressText;
 use hysid_document::plain::WIDTH;
 use hysid_document::progress::{Line, Remaining, in_words, share_done};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -24,7 +24,7 @@ pub struct Follower {
     started: Instant,
     /// Time for each fold.
     limit: Option<Duration>,
-    course: Course,
+    course: ProgressText,
     starts: usize,
     /// The fold that is fitted to, counted from 0, and how many there are; a fit to everything is the only one.
     fold: (usize, usize),
@@ -52,7 +52,7 @@ impl Follower {
         Self {
             started: now,
             limit,
-            course: Course::new(starts),
+            course: ProgressText::new(starts),
             starts,
             fold: (0, 1),
             fold_started: now,
@@ -68,7 +68,7 @@ impl Follower {
     pub fn begin_fold(&mut self, place: usize, of: usize) {
         self.fold = (place, of);
         self.fold_started = Instant::now();
-        self.course = Course::new(self.starts);
+        self.course = ProgressText::new(self.starts);
     }
 
     /// Hears of an iteration; breaks after Ctrl-C or at the time limit.

@@ -199,7 +199,7 @@ pub fn compare(
     let work = move |exchange: &Exchange| {
         let done = Mutex::new(vec![0.0; specs.len()]);
         let request = CompareRequest { train: &train, test: test.as_deref(), specs, time_limit, threads };
-        Ok(hysid_app::compare::compare(&request, &Comparison { exchange, done }))
+        Ok(hysid_app::compare::compare(&request, &CompareProgress { exchange, done }))
     };
     let (outcome, interrupted) = attended(py, None, None, progress, work)?;
     let outcome = outcome.map_err(|error| PyRuntimeError::new_err(format!("{error:#}")))?;
@@ -218,12 +218,12 @@ pub fn compare(
 }
 
 /// Follows a comparison: the share of each fit that is done.
-struct Comparison<'a> {
+struct CompareProgress<'a> {
     exchange: &'a Exchange,
     done: Mutex<Vec<f64>>,
 }
 
-impl Comparison<'_> {
+impl CompareProgress<'_> {
     fn keep(&self, place: usize, share: f64) {
         let Ok(mut done) = self.done.lock() else { return };
         done[place] = share;
@@ -235,7 +235,7 @@ impl Comparison<'_> {
     }
 }
 
-impl CompareObserver for Comparison<'_> {
+impl CompareObserver for CompareProgress<'_> {
     fn is_to_stop(&self) -> bool {
         self.exchange.is_to_stop()
     }

@@ -23,7 +23,7 @@ use crate::arguments::{Fit, RateOption};
 use crate::checkpoint::{self, Keeper};
 use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
-use crate::identification::{self, Work, identify, report_path};
+use crate::identification::{self, FitTask, identify, report_path};
 use crate::interrupt;
 use crate::messages::{Usage, note, told, warning};
 
@@ -50,7 +50,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let keeper = checkpoint.map(Keeper::new).transpose()?;
     let resumable = keeper.as_ref().map(|keeper| keeper.path().to_path_buf());
     warn_of_ignored(chosen);
-    let work = Work {
+    let work = FitTask {
         request: &request,
         begun,
         checkpoint: keeper,

@@ -70,7 +70,7 @@ impl MotionColumns {
     /// The columns that options name, and those that are found.
     pub fn find(table: &Table, options: &MotionOptions) -> Result<Self> {
         table.require_columns()?;
-        let named = Named::of(table, options)?;
+        let named = NamedColumns::of(table, options)?;
         let mut guessed = Vec::new();
         let time = match named.of_option("--time") {
             Some(time) => time,
@@ -153,9 +153,9 @@ impl MotionColumns {
 }
 
 /// The columns that options name, with their options.
-struct Named(Vec<(&'static str, String)>);
+struct NamedColumns(Vec<(&'static str, String)>);
 
-impl Named {
+impl NamedColumns {
     fn of(table: &Table, options: &MotionOptions) -> Result<Self> {
         let applied_force = options.applied_force.as_ref().filter(|name| *name != NONE);
         let all = [
@@ -200,7 +200,7 @@ fn full_name(table: &Table, name: &str, option: &str) -> Result<String> {
     })
 }
 
-fn time_of(table: &Table, named: &Named) -> Result<String> {
+fn time_of(table: &Table, named: &NamedColumns) -> Result<String> {
     let free = || table.header.iter().filter(|name| !named.has(name));
     let found =
         free().find(|name| unit::is_time(name)).or_else(|| free().find(|name| unit::may_be_time(name)));

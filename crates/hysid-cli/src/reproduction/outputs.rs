@@ -9,13 +9,13 @@ use super::rendering::CSV_HEADER;
 
 /// The folder that files go to.
 #[derive(Debug, Clone, Copy)]
-pub struct Outputs<'a> {
+pub struct OutputFolder<'a> {
     pub folder: &'a Path,
     /// Files that Hysid did not write are replaced too.
     pub force: bool,
 }
 
-impl Outputs<'_> {
+impl OutputFolder<'_> {
     pub fn page(&self, name: &str) -> Destination {
         self.destination(&format!("{name}.html"), Kind::Page)
     }

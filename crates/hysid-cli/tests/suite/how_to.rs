@@ -41,14 +41,14 @@ fn is_alike(shown: &str, printed: &str) -> bool {
 
 /// The figures in the text and the tables of a page, each with its line: numbers with a decimal point or in percent, of at
 /// least two digits.
-fn figures(page: &str) -> Vec<(Figure, &str)> {
+fn figures(page: &str) -> Vec<(PageNumber, &str)> {
     let mut is_code = false;
     let is_text = |line: &&str| {
         let is_fence = line.starts_with("```");
         is_code ^= is_fence;
         !is_code && !is_fence
     };
-    let of_line = |line| words(line).into_iter().filter_map(Figure::of).map(move |figure| (figure, line));
+    let of_line = |line| words(line).into_iter().filter_map(PageNumber::of).map(move |figure| (figure, line));
     page.lines().filter(is_text).flat_map(of_line).collect()
 }
 
@@ -67,13 +67,13 @@ fn words(line: &str) -> Vec<String> {
 }
 
 /// A number as a page shows it.
-struct Figure {
+struct PageNumber {
     value: f64,
     /// Half of its last digit.
     rounding: f64,
 }
 
-impl Figure {
+impl PageNumber {
     fn of(word: String) -> Option<Self> {
         let bare = word.trim_end_matches('%');
         let value: f64 = bare.parse().ok()?;
@@ -133,7 +133,7 @@ fn follow(path: &str) {
     printed += &tables_of_cycles(&bench);
     let known: Vec<f64> =
         printed.lines().flat_map(words).filter_map(|word| word.trim_end_matches('%').parse().ok()).collect();
-    let is_known = |figure: &Figure| known.iter().any(|known| figure.is_near(*known));
+    let is_known = |figure: &PageNumber| known.iter().any(|known| figure.is_near(*known));
     let unknown: Vec<String> = figures(&page)
         .into_iter()
         .filter(|(figure, _)| path.contains('/') && !is_known(figure))
@@ -212,7 +212,7 @@ fn figures_are_found_in_the_text_and_the_tables_alone() {
     let page = "Off by 3.40 % ([1.5](2.5)), `6.5`, 10 %, 20 rows.\n| a | -12.5 |\n```text\n7.5\n```\n";
     let found: Vec<f64> = figures(page).iter().map(|(figure, _)| figure.value).collect();
     assert_eq!(found, [3.4, 1.5, 12.5]);
-    let figure = |word: &str| Figure::of(word.into()).unwrap();
+    let figure = |word: &str| PageNumber::of(word.into()).unwrap();
     assert!(figure("3.4").is_near(3.449) && figure("3.40").is_near(3.404) && !figure("3.40").is_near(3.41));
 }
 

@@ -48,7 +48,7 @@ pub(super) fn frame(chart: &Chart, appearance: &Appearance) -> Frame {
     {
         let size = (fine(chart.size.0) as u32, fine(chart.size.1) as u32);
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        place = Layout { chart, appearance }.draw(&root).expect("a drawing into a string succeeds");
+        place = ChartLayout { chart, appearance }.draw(&root).expect("a drawing into a string succeeds");
         root.present().expect("a drawing into a string succeeds");
     }
     // The library escapes what XML needs, and lets through characters that XML has no place for.
@@ -78,12 +78,12 @@ pub(super) fn tick_letters(chart: &Chart, appearance: &Appearance) -> usize {
     vertical_axis(chart, appearance, header).longest_text()
 }
 
-struct Layout<'a> {
+struct ChartLayout<'a> {
     chart: &'a Chart,
     appearance: &'a Appearance,
 }
 
-impl Layout<'_> {
+impl ChartLayout<'_> {
     fn draw(&self, root: &Area) -> Result<[i32; 4], DrawingAreaErrorKind<std::io::Error>> {
         let (chart, appearance) = (self.chart, self.appearance);
         let legend = legend_lines(chart, appearance);

@@ -10,7 +10,7 @@ use hysid::model::Model;
 use hysid_document::progress::{Remaining, in_words, share_done};
 
 use super::latest::Latest;
-use super::{Candidate, Course, state};
+use super::{Candidate, FitCourse, state};
 
 /// Time between two changes that a page is told of.
 const BETWEEN: Duration = Duration::from_millis(250);
@@ -29,8 +29,8 @@ pub struct SoFar {
 
 /// The observer of a fit.
 pub struct Watch<'c> {
-    course: &'c Arc<Course>,
-    words: hysid_app::Course,
+    course: &'c Arc<FitCourse>,
+    words: hysid_app::ProgressText,
     began: Instant,
     limit: Option<Duration>,
     told: Instant,
@@ -46,7 +46,7 @@ pub struct Watch<'c> {
 impl<'c> Watch<'c> {
     /// Passes the best model so far on to `models`.
     pub fn new(
-        course: &'c Arc<Course>,
+        course: &'c Arc<FitCourse>,
         models: &'c Latest<SoFar>,
         starts: usize,
         time_limit: Option<f64>,
@@ -54,7 +54,7 @@ impl<'c> Watch<'c> {
         let now = Instant::now();
         Self {
             course,
-            words: hysid_app::Course::new(starts),
+            words: hysid_app::ProgressText::new(starts),
             began: now,
             limit: time_limit.map(Duration::from_secs_f64),
             told: now,

@@ -21,7 +21,7 @@ const BETWEEN: Duration = Duration::from_millis(150);
 const ALIVE: Duration = Duration::from_secs(15);
 
 /// State that a page has received.
-struct Known {
+struct PageState {
     shared: Shared,
     news: watch::Receiver<News>,
     project: Option<u64>,
@@ -32,11 +32,11 @@ struct Known {
 pub async fn events(State(shared): State<Shared>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
     let news = shared.studio.news();
     let fit = news.borrow().fit.wrapping_sub(1);
-    let known = Known { fit, news, shared, project: None };
+    let known = PageState { fit, news, shared, project: None };
     Sse::new(unfold(known, next)).keep_alive(KeepAlive::new().interval(ALIVE))
 }
 
-async fn next(mut known: Known) -> Option<(Result<Event, Infallible>, Known)> {
+async fn next(mut known: PageState) -> Option<(Result<Event, Infallible>, PageState)> {
     loop {
         let present = *known.news.borrow_and_update();
         if known.project != Some(present.project) {

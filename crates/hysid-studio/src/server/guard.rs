@@ -38,9 +38,9 @@ const HEADERS: [(HeaderName, &str); 6] = [
 
 /// The address and the keys of this studio.
 #[derive(Clone)]
-pub struct Guard(Arc<Known>);
+pub struct Guard(Arc<GuardState>);
 
-struct Known {
+struct GuardState {
     host: String,
     origin: String,
     cookie: String,
@@ -53,7 +53,7 @@ impl Guard {
         // `localhost` may be the address of another server, at `::1`.
         let host = format!("127.0.0.1:{port}");
         // Cookies do not tell ports apart: two studios need two names.
-        Self(Arc::new(Known {
+        Self(Arc::new(GuardState {
             origin: format!("http://{host}"),
             host,
             cookie: format!("hysid-studio-{port}"),

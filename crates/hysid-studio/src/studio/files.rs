@@ -19,7 +19,7 @@ use hysid_tables::Table;
 use serde_json::{Value, json};
 
 use super::Studio;
-use crate::folder::{Inner, UPLOAD, cannot_read};
+use crate::folder::{ProjectFolder, UPLOAD, cannot_read};
 use crate::project::{ChosenColumns, Project, ProjectFile, Use};
 use crate::view::{View, read};
 use crate::words::said;
@@ -47,7 +47,7 @@ impl Studio {
     /// is in none.
     pub fn take_file(&self, given: &str, place: &Path, usage: Use) -> Result<u64> {
         let reading = self.project().understanding.reading.clone();
-        let name = self.folder.free_name(Inner::Data, given)?;
+        let name = self.folder.free_name(ProjectFolder::Data, given)?;
         let content = fs::read(place).map_err(|error| cannot_read(Path::new(&name), &error))?;
         let bytes = content.len() as u64;
         let checksum = hysid_files::checksum(&content[..])?;
@@ -55,7 +55,7 @@ impl Studio {
         let mut stored = None;
         let entered = self.change(|project| {
             check_room(project)?;
-            let name = self.folder.free_name(Inner::Data, given)?;
+            let name = self.folder.free_name(ProjectFolder::Data, given)?;
             let path = self.folder.data(&name);
             fs::rename(place, &path)
                 .map_err(|error| anyhow!("{name}: cannot be stored: {}", hysid_files::reason(&error)))?;

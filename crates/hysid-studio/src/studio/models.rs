@@ -15,7 +15,7 @@ use hysid_records::{ColumnChoice, Data};
 use serde_json::Value;
 
 use super::Studio;
-use crate::judgement::Run;
+use crate::judgement::FileRun;
 use crate::project::ProjectModel;
 use crate::take_away;
 use crate::view::read;
@@ -29,18 +29,18 @@ pub(super) struct Models(Mutex<HashMap<u64, ReadModel>>);
 
 /// A model, or why its file holds none.
 struct ReadModel {
-    of: State,
+    of: FileStamp,
     model: std::result::Result<Arc<Model>, String>,
 }
 
 /// Size and time stamp of a file, which show that it has changed since it was read.
 #[derive(PartialEq)]
-struct State {
+struct FileStamp {
     bytes: u64,
     changed: Option<SystemTime>,
 }
 
-impl State {
+impl FileStamp {
     fn of(path: &Path) -> Option<Self> {
         let found = fs::symlink_metadata(path).ok()?;
         Some(Self { bytes: found.len(), changed: found.modified().ok() })
@@ -54,7 +54,7 @@ impl Models {
 
     /// The model of a file, which is read once, also if it holds none.
     pub fn of(&self, id: u64, path: &Path, text: impl FnOnce() -> Result<String>) -> Result<Arc<Model>> {
-        let state = State::of(path);
+        let state = FileStamp::of(path);
         if let Some(known) = self.kept().get(&id).filter(|known| Some(&known.of) == state.as_ref()) {
             return known.model.clone().map_err(anyhow::Error::msg);
         }
@@ -129,7 +129,7 @@ impl Studio {
     }
 
     /// The free run of a model over a file.
-    pub fn run(&self, model: u64, file: u64) -> Result<Arc<Run>> {
+    pub fn run(&self, model: u64, file: u64) -> Result<Arc<FileRun>> {
         let fitted = self.model(model)?;
         self.runs.of(&fitted, file, || {
             let (stored, file, reading) = {
@@ -142,7 +142,7 @@ impl Studio {
             let record = stored.begun.columns.record.filter(|name| table.column(name).is_some());
             let columns = ColumnChoice { record, ..ColumnChoice::default() };
             let data = Data::of_model(vec![table], &fitted, &columns, reading.zero)?;
-            Run::of(&fitted, data.set)
+            FileRun::of(&fitted, data.set)
         })
     }
 
