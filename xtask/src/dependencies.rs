@@ -71,7 +71,7 @@ fn violation(package: &Value) -> Option<String> {
     (!is_allowed(licence)).then(|| format!("{name}: its licence is `{licence}`"))
 }
 
-/// The names of all packages that one needs to be built, in the answer of `cargo metadata`.
+/// The names of all packages that one needs to be built, in the output of `cargo metadata`.
 fn needed_by(package: &str, metadata: &Value) -> BTreeSet<String> {
     let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();

@@ -17,7 +17,7 @@ impl ProgressText {
         Self { starts, best: f64::INFINITY }
     }
 
-    /// Takes what an observer of the fit is told.
+    /// Takes a report of the fit's progress.
     pub fn take(&mut self, progress: &Progress) {
         self.best = match progress.method {
             // The error of its best start, which need not be the lowest that was ever told.

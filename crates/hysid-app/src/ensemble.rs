@@ -34,7 +34,7 @@ fn counts(candidate: &CandidateResult) -> bool {
     candidate.share.inside > 0.0 || candidate.share.outside > 0.0
 }
 
-/// Those that answer together, what each predicts and costs.
+/// Members of the ensemble: weight, contribution, run time.
 fn nodes(
     report: &Report,
     selection: &Selection,

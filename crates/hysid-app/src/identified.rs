@@ -1,4 +1,4 @@
-//! A fit with what is told before and after it.
+//! A fit with its reading of the data, its warnings and its report.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub struct Beforehand {
     pub warnings: Vec<String>,
 }
 
-/// A model and what was told and spent on the way to it.
+/// A fitted model, with the reading of its data and the cost of its fit.
 #[derive(Debug)]
 pub struct Identified {
     pub model: Model,

@@ -114,7 +114,7 @@ impl<'a> ReportSet<'a> {
     }
 }
 
-/// The text of a page, with the mark and the checksum by which Hysid knows its own.
+/// The text of a page, with the mark and the checksum by which Hysid recognizes its own.
 pub fn page_text(page: &Page) -> String {
     with_page_sum(&html::page(page, &format!("{PAGE_MARK}{}\">", env!("CARGO_PKG_VERSION"))))
 }

@@ -5,7 +5,7 @@ use hysid::model::Prediction;
 
 use crate::table_run::Simulated;
 
-/// Gathers the rows of runs, record by record. Each run must be wanted with its drive.
+/// Gathers the rows of runs, record by record. Each run must keep its drive.
 #[derive(Default)]
 pub struct Gatherer {
     records: Vec<RecordRows>,
@@ -26,7 +26,7 @@ struct RecordRows {
 pub struct Gathered {
     /// The data; the output is NaN where it was not measured or not read.
     pub data: Dataset,
-    /// Output of the model, and its band if one was wanted, for each record.
+    /// Output of the model, and its band if there is one, for each record.
     pub predicted: Vec<Prediction>,
 }
 

@@ -19,7 +19,7 @@ use crate::arguments::PlotKind;
 pub struct PlotData {
     /// The data; the output is NaN where it was not measured.
     pub data: Dataset,
-    /// Output of a model, and its band if one is wanted, for each record.
+    /// Output of a model, and its band if there is one, for each record.
     pub predicted: Option<Vec<Prediction>>,
     pub band: Option<f64>,
 }

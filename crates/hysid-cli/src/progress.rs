@@ -30,7 +30,7 @@ pub struct Follower {
     fold: (usize, usize),
     fold_started: Instant,
     keeper: Option<Keeper>,
-    /// A checkpoint could not be written, and that was said.
+    /// True once a checkpoint could not be written and the warning was printed.
     failed: bool,
     bar: Option<ProgressBar>,
     remaining: Remaining,
@@ -116,7 +116,7 @@ impl Follower {
         }
     }
 
-    /// Takes the bar away; tells the seconds spent.
+    /// Removes the bar; returns the seconds spent.
     pub fn finish(self) -> f64 {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -145,7 +145,7 @@ impl Follower {
     }
 }
 
-/// Tells on stderr that work goes on for which no share can be told, every few seconds.
+/// Prints on stderr, every few seconds, that work without a known share goes on.
 pub fn while_working<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let began = Instant::now();
     let (done, is_done) = mpsc::channel::<()>();

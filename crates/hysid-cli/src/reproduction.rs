@@ -5,5 +5,5 @@ mod rendering;
 mod run;
 
 pub use hysid_paper::Experiment;
-pub use outputs::OutputFolder;
+pub use outputs::Outputs;
 pub use run::run;

@@ -37,9 +37,9 @@ pub struct KeptColumns {
 
 /// Rows that are simulated, in the order of the table.
 pub struct Simulated<'r> {
-    /// Their outputs, and their band if one is wanted.
+    /// Their outputs, and their band if it is kept.
     pub prediction: &'r Prediction,
-    /// Their measured outputs, NaN where they are blank; empty if these are not wanted.
+    /// Their measured outputs, NaN where they are blank; empty if these are not kept.
     pub measured: &'r [f64],
     /// Name of their record; that of the file if records have no names.
     pub record: &'r str,
@@ -52,7 +52,7 @@ pub struct Simulated<'r> {
 }
 
 impl<'r> Simulated<'r> {
-    /// Their time, inputs and rate, if these are wanted.
+    /// Their time, inputs and rate, if these are kept.
     pub fn drive(&self) -> &'r Drive {
         &self.waiting.drive
     }

@@ -119,7 +119,7 @@ impl Folder<'_> {
         Some(listed)
     }
 
-    /// Refuses to replace what is there under this name unless Hysid wrote it; with force, tells if it is to be kept.
+    /// Refuses to replace what is there under this name unless Hysid wrote it; with force, returns whether to keep it.
     fn check_old(
         &self,
         root: &Path,

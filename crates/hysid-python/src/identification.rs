@@ -1,4 +1,4 @@
-//! From data to a model: in a thread of its own, so that the caller's can answer to Ctrl-C and tell the
+//! From data to a model: in a thread of its own, so that the caller's can handle Ctrl-C and report the
 //! progress.
 
 use std::ops::ControlFlow;
@@ -255,8 +255,8 @@ fn check_memory(data: &hysid::data::record::Dataset, request: &options::FitSpec)
     need.check(hysid_files::available_memory())
 }
 
-/// Does the work in a thread of its own, while the caller's looks for Ctrl-C and tells the progress. Gives
-/// what came of it, and whether Ctrl-C ended it.
+/// Does the work in a thread of its own, while the caller's checks for Ctrl-C and reports the progress. Returns
+/// the result, and whether Ctrl-C ended it.
 fn attended<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,
@@ -301,7 +301,7 @@ fn attended<T: Send + 'static>(
     Ok((done, interrupted))
 }
 
-/// Tells the progress since the last time, and asks the fit to stop if that is the answer.
+/// Reports the progress since the last time; stops the fit if the callback returns so.
 fn tell(exchange: &Exchange, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
     let Some((progress, report)) = progress.zip(exchange.take_latest()) else { return Ok(()) };
     if progress.call1(report)?.is_truthy()? {

@@ -108,7 +108,7 @@ impl Fits {
         preview.clone()
     }
 
-    /// Asks the fit to end with its best model so far.
+    /// Stops the fit with its best model so far.
     pub fn stop(&self) {
         if let Some(last) = &*self.last() {
             last.course.is_to_stop.store(true, Ordering::Relaxed);
@@ -155,7 +155,7 @@ impl FitCourse {
         self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Changes what is known, and tells that there are news.
+    /// Changes the state, and calls `tell`.
     fn change(&self, change: impl FnOnce(&mut FitState)) {
         change(&mut self.state());
         (self.tell)();

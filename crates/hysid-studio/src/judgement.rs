@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 const MOST_KEPT: usize = 8;
 
 /// The free run of a model over a file.
-pub struct FileRun {
+pub struct Run {
     /// The data of the file, in the units of the model.
     pub data: Dataset,
     /// True if the model was fitted to the file.
@@ -26,7 +26,7 @@ pub struct FileRun {
     errors: Errors,
 }
 
-impl FileRun {
+impl Run {
     /// Runs a model. Data that it was fitted to begin as they did then.
     pub fn of(model: &Model, data: Dataset) -> Result<Self> {
         let is_training = data.records().iter().any(|record| model.was_trained_on(&record.fingerprint()));
@@ -115,7 +115,7 @@ pub fn members(model: &Model, data: &Dataset) -> Result<Vec<(String, Vec<f64>)>>
 }
 
 /// A run, with its model and the number of its file.
-type Kept = (Arc<Model>, u64, Arc<FileRun>);
+type Kept = (Arc<Model>, u64, Arc<Run>);
 
 /// The last runs, by model and number of the file.
 #[derive(Default)]
@@ -125,12 +125,7 @@ pub struct Runs {
 
 impl Runs {
     /// The run of a model over a file; it is made if it is not kept.
-    pub fn of(
-        &self,
-        model: &Arc<Model>,
-        file: u64,
-        make: impl FnOnce() -> Result<FileRun>,
-    ) -> Result<Arc<FileRun>> {
+    pub fn of(&self, model: &Arc<Model>, file: u64, make: impl FnOnce() -> Result<Run>) -> Result<Arc<Run>> {
         let kept = || self.kept.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         let is_asked = |(of, number, _): &&Kept| Arc::ptr_eq(of, model) && *number == file;
         let known = kept().iter().find(is_asked).map(|(.., run)| Arc::clone(run));

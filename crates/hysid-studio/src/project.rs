@@ -177,7 +177,7 @@ impl Project {
         project.checked().map_err(|error| wrong(format!("is damaged: {error}")))
     }
 
-    /// The same with a next number that is free. Numbers and names tell which files are written and removed, so each is
+    /// The same with a next number that is free. Numbers and names select the files to write and remove, so each is
     /// there once, and names lead nowhere else.
     fn checked(mut self) -> Result<Self> {
         let of_models = self.models.iter().map(|model| model.begun.id);

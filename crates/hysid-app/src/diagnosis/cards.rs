@@ -25,7 +25,7 @@ pub fn verdicts<'f>(findings: impl IntoIterator<Item = &'f Finding>) -> Part {
     Part::Verdicts(findings.into_iter().map(verdict).collect())
 }
 
-/// A card for each property; `place` tells where it is seen, if that means anything to the reader.
+/// A card for each property; `place` names the place of the evidence, empty if there is none to name.
 pub fn cards(findings: &[Finding], quantities: &Quantities, place: impl Fn(&Finding) -> String) -> Vec<Card> {
     findings
         .iter()

@@ -9,7 +9,7 @@ use super::cards::sentence;
 /// How far words stand in under their heading.
 const INDENT: usize = 4;
 
-/// The complaints under a heading; none is told too.
+/// The issues under a heading, which also reports that there are none.
 pub fn doctor_text(complaints: &[DataIssue]) -> String {
     let told: String = complaints.iter().map(|complaint| indented(&labelled(complaint), INDENT)).collect();
     match complaints.len() {

@@ -16,7 +16,7 @@ use super::cards::{EXPLANATION, cards, sentence, verdicts};
 use super::{findings, invertibility, paragraph};
 use crate::quantities::{Quantities, text_label};
 
-/// A diagnosis of a model, and what is told with it.
+/// A diagnosis of a model, and the text around it.
 pub struct DiagnosedModel<'a> {
     file: String,
     model: &'a Model,

@@ -78,7 +78,7 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
             after_warm_up: after_warm_up,
             #[serde(skip_serializing_if = "hysid_document::is_nothing")]
             band: band,
-            /// Tests of the residual, if they are wanted.
+            /// Tests of the residual, if requested.
             #[serde(skip_serializing_if = "hysid_document::is_nothing")]
             residuals: residuals,
         })?,

@@ -178,7 +178,7 @@ fn printed(identified: &Identified, out: &Path, trained: &Dataset) -> Result<imp
         model: out.display().to_string(),
         architecture: architecture(model),
         parameters: model.parameters(),
-        /// Those that answer together; `null` for a single model.
+        /// Members of the ensemble; `null` for a single model.
         members: model.ensemble().map(|ensemble| ensemble.members().iter().map(member).collect::<Vec<_>>()),
         /// Candidates and their errors; `null` where there was no choice.
         selection: provenance.selection.as_ref(),

@@ -74,7 +74,7 @@ impl Set {
         Ok(Self { what, data, text, destination })
     }
 
-    /// Writes the data; says so of a file.
+    /// Writes the data; prints the name of a file.
     fn write(&self) -> Result<()> {
         let Some(destination) = &self.destination else { return raw_results(&self.text) };
         files::write(destination, self.text.as_bytes())?;

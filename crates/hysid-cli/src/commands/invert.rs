@@ -188,7 +188,7 @@ fn understood(
     lines.into_iter().map(|(label, text)| (label.to_string(), text)).collect()
 }
 
-/// Deviation of the driven model, in percent of the standard deviation of the wanted output, above which it is said.
+/// Deviation of the driven model, in percent of the standard deviation of the wanted output, above which to warn.
 const LARGE: f64 = 5.0;
 
 /// Warnings on the drive.

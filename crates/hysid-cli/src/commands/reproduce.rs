@@ -5,13 +5,13 @@ use hysid_paper::Settings;
 
 use crate::Outcome;
 use crate::arguments::Reproduce;
-use crate::reproduction::{self, OutputFolder};
+use crate::reproduction::{self, Outputs};
 use crate::{files, interrupt};
 
 pub fn run(arguments: &Reproduce) -> Result<Outcome> {
     files::make_folder(&arguments.out)?;
     interrupt::listen("stopping; what is finished is kept")?;
     let settings = Settings { seed: arguments.seed, quick: arguments.quick };
-    let outputs = OutputFolder { folder: &arguments.out, force: arguments.overwriting.force };
+    let outputs = Outputs { folder: &arguments.out, force: arguments.overwriting.force };
     reproduction::run(&arguments.experiments, settings, outputs)
 }

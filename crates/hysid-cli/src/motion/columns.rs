@@ -46,7 +46,7 @@ const NONE: &str = "none";
 
 #[derive(Debug, Clone)]
 pub struct MotionColumns {
-    /// Tells the records apart.
+    /// Column with the name of each row's record.
     pub record: Option<String>,
     pub time: String,
     /// Displacement relative to the base.
@@ -136,7 +136,7 @@ impl MotionColumns {
         }
     }
 
-    /// As roles, by which records are told apart.
+    /// Roles of columns that divide the table into records.
     pub fn roles(&self) -> Roles {
         Roles {
             record: self.record.clone(),
@@ -222,7 +222,7 @@ fn only(table: &Table, mut found: Vec<String>, what: &str, option: &str) -> Resu
     }
 }
 
-/// The applied force, where no option tells. A force that is left out would be missing in the result.
+/// Applied force without an option. A force that is left out would be missing in the result.
 fn applied_force(table: &Table, mut found: Vec<String>, has_inertia: bool) -> Result<Option<String>> {
     let (file, columns) = (&table.file, listed(&table.header));
     match (found.len(), has_inertia) {

@@ -23,7 +23,7 @@ pub struct MotionUnits {
     pub force_unit: Option<String>,
     /// Columns without a known unit, each with the SI unit that it is taken to be in.
     pub without: Vec<(String, &'static str)>,
-    /// Nothing was converted because an option says so.
+    /// True if `--same-units` turns conversions off.
     pub is_same: bool,
 }
 

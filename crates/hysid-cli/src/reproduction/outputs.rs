@@ -1,4 +1,4 @@
-//! The files of `hysid reproduce`: their names, and how Hysid knows its own again.
+//! The files of `hysid reproduce`: their names, and how Hysid recognizes its own.
 
 use std::path::Path;
 
@@ -9,13 +9,13 @@ use super::rendering::CSV_HEADER;
 
 /// The folder that files go to.
 #[derive(Debug, Clone, Copy)]
-pub struct OutputFolder<'a> {
+pub struct Outputs<'a> {
     pub folder: &'a Path,
     /// Files that Hysid did not write are replaced too.
     pub force: bool,
 }
 
-impl OutputFolder<'_> {
+impl Outputs<'_> {
     pub fn page(&self, name: &str) -> Destination {
         self.destination(&format!("{name}.html"), Kind::Page)
     }

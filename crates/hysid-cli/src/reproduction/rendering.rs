@@ -7,7 +7,7 @@ use hysid_paper::{Chapter, ChapterTarget, targets};
 /// Header line of [`csv`].
 pub const CSV_HEADER: &str = "experiment,table,row,column,value\n";
 
-/// A page of one chapter. `made` says when and by what.
+/// A page of one chapter. `made` holds date and program.
 pub fn page(made: Text, chapter: &Chapter) -> Page {
     let mut parts = vec![lead(chapter), Part::Note(made)];
     parts.extend(targets_sections(std::slice::from_ref(chapter)));

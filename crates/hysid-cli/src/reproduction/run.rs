@@ -10,7 +10,7 @@ use hysid_document::{Page, Text, markdown, plain};
 use hysid_files::{Destination, GENERATOR};
 use hysid_paper::{Chapter, Content, Experiment, Observer, Settings};
 
-use super::{OutputFolder, rendering};
+use super::{Outputs, rendering};
 use crate::messages::{note, results};
 use crate::{Outcome, files, interrupt};
 
@@ -27,7 +27,7 @@ struct Finished {
 const TOGETHER: &str = "reproduction";
 
 /// Runs all experiments and writes a page of all of them.
-pub fn run(experiments: &[Experiment], settings: Settings, outputs: OutputFolder) -> Result<Outcome> {
+pub fn run(experiments: &[Experiment], settings: Settings, outputs: Outputs) -> Result<Outcome> {
     let everything = experiments.is_empty();
     let experiments: Vec<Experiment> =
         if everything { Experiment::all().collect() } else { experiments.to_vec() };
@@ -126,12 +126,7 @@ fn made(finished: &[Finished], settings: Settings, further: &str) -> Text {
 }
 
 /// Page, Markdown, CSV and further files of an experiment.
-fn write_one(
-    experiment: Experiment,
-    one: &Finished,
-    settings: Settings,
-    outputs: OutputFolder,
-) -> Result<()> {
+fn write_one(experiment: Experiment, one: &Finished, settings: Settings, outputs: Outputs) -> Result<()> {
     let chapter = &one.chapter;
     let made = made(std::slice::from_ref(one), settings, "");
     let page = rendering::page(made, chapter);
@@ -148,7 +143,7 @@ fn write_one(
 }
 
 /// The same of all experiments.
-fn write_together(finished: &[Finished], settings: Settings, outputs: OutputFolder) -> Result<()> {
+fn write_together(finished: &[Finished], settings: Settings, outputs: Outputs) -> Result<()> {
     let chapters: Vec<Chapter> = finished.iter().map(|one| one.chapter.clone()).collect();
     let (finished_ones, all) = (chapters.len(), Experiment::all().count());
     let further = match finished_ones < all {

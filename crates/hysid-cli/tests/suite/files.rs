@@ -256,7 +256,7 @@ fn a_table_that_is_streamed_is_read_as_one_that_is_not() {
     assert_eq!(errors("plain.csv", "--rows :20").0, 20);
 }
 
-/// A number may stand for a missing value; only a person knows.
+/// A number may stand for a missing value; only a person can decide.
 #[test]
 fn a_number_that_stands_for_a_missing_value_is_told_with_the_option_that_names_it() {
     let bench = Workbench::new();

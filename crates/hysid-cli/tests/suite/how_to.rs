@@ -27,7 +27,7 @@ fn commands(page: &str) -> Vec<&str> {
     commands
 }
 
-/// The lines of the `text` blocks of a page, without those that say that something is left out.
+/// The lines of the `text` blocks of a page, without those that mark an omission.
 fn shown(page: &str) -> Vec<&str> {
     let blocks = page.split("\n```text\n").skip(1).filter_map(|rest| rest.split_once("\n```"));
     let lines = blocks.flat_map(|(block, _)| block.lines());
@@ -109,7 +109,7 @@ fn tables_of_cycles(bench: &Workbench) -> String {
     tables.map(|path| fs::read_to_string(path).unwrap().replace(',', " ")).collect()
 }
 
-/// Runs the commands of a page, with the files that it tells its reader to copy.
+/// Runs the commands of a page, with the files that its reader is to copy.
 fn follow(path: &str) {
     let bench = Workbench::new();
     bench.put("testing-machine.csv", include_str!("../files/testing-machine.csv"));

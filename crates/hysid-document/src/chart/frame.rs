@@ -1,4 +1,4 @@
-//! Axes, title and legend of a drawing. The one place that knows the drawing library.
+//! Axes, title and legend of a drawing. The one place that uses the drawing library.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;

@@ -10,7 +10,7 @@ use anyhow::{Result, bail};
 
 use super::{Folder, ProjectFolder};
 
-/// Begins the names of empty files that tell which data were being read. The number of the file follows.
+/// Begins the names of empty files that mark which data were being read. The number of the file follows.
 const READING: &str = ".reading-";
 
 /// Files that are held back, until one is read again or removed.

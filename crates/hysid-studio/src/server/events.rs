@@ -28,7 +28,7 @@ struct PageState {
     fit: u64,
 }
 
-/// Tells of changes until the page or the studio is closed. The first event is the state of the project.
+/// Sends changes until the page or the studio is closed. The first event is the state of the project.
 pub async fn events(State(shared): State<Shared>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
     let news = shared.studio.news();
     let fit = news.borrow().fit.wrapping_sub(1);

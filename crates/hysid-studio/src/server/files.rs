@@ -170,7 +170,7 @@ impl AskedColumns {
     }
 }
 
-/// Says which columns are what; answers with a note if one of them stays what it was.
+/// Sets the roles of columns; returns a note if one of them stays what it was.
 pub async fn columns(
     State(shared): State<Shared>,
     Json(asked): Json<Option<AskedColumns>>,

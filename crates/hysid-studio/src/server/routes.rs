@@ -15,7 +15,7 @@ use crate::choices;
 /// Largest body of a request that is no file: a path of some inputs.
 const MOST_BODY_BYTES: usize = 8 << 20;
 
-/// All addresses, for the page that the guard knows.
+/// All addresses, for the page that the guard admits.
 pub fn router(shared: Shared, guard: Guard) -> Router {
     let of_files = Router::new()
         .route("/files", post(files::upload).layer(DefaultBodyLimit::disable()))

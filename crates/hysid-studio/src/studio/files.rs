@@ -1,4 +1,4 @@
-//! Files of a project, and what they say.
+//! Files of a project, and their content.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -165,7 +165,7 @@ impl Studio {
     /// # Errors
     /// Columns that the training files do not have, or one with two roles. Nothing is then changed.
     ///
-    /// The answer is a note on a column that has a role by its name although none was chosen for it.
+    /// Returns a note on a column that has a role by its name although none was chosen for it.
     pub fn choose_columns(&self, columns: Option<ChosenColumns>) -> Result<Option<String>> {
         let before = self.project().clone();
         let first = before.files_for(Use::Training).chain(&before.files).next();

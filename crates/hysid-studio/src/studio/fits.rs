@@ -109,7 +109,7 @@ impl Studio {
     /// Ends everything: the fit stops with its best model so far, which is saved.
     ///
     /// # Errors
-    /// A model that cannot be stored; the error says where a copy is.
+    /// A model that cannot be stored; the error names the place of a copy.
     pub fn end(&self) -> Result<()> {
         self.folder.end_readings();
         self.fits.end();
@@ -220,7 +220,7 @@ impl Studio {
         drop(forgotten);
     }
 
-    /// Keeps the best model so far of a fit that ends without a model, and says so.
+    /// Keeps the best model so far of a fit that ends without a model, and reports it.
     fn keep_the_best(&self, problem: anyhow::Error) -> anyhow::Error {
         let Some(begun) = self.project().unfinished.clone() else { return problem };
         match self.model_in(&self.folder.best_so_far()) {
@@ -253,7 +253,7 @@ impl Studio {
         })
     }
 
-    /// Keeps the model of a fit that an earlier studio did not bring to its end, and says so.
+    /// Keeps the model of a fit that an earlier studio did not bring to its end, and reports it.
     ///
     /// # Errors
     /// It cannot be stored; it stays where it is.

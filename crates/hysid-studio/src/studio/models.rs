@@ -15,7 +15,7 @@ use hysid_records::{ColumnChoice, Data};
 use serde_json::Value;
 
 use super::Studio;
-use crate::judgement::FileRun;
+use crate::judgement::Run;
 use crate::project::ProjectModel;
 use crate::take_away;
 use crate::view::read;
@@ -129,7 +129,7 @@ impl Studio {
     }
 
     /// The free run of a model over a file.
-    pub fn run(&self, model: u64, file: u64) -> Result<Arc<FileRun>> {
+    pub fn run(&self, model: u64, file: u64) -> Result<Arc<Run>> {
         let fitted = self.model(model)?;
         self.runs.of(&fitted, file, || {
             let (stored, file, reading) = {
@@ -142,7 +142,7 @@ impl Studio {
             let record = stored.begun.columns.record.filter(|name| table.column(name).is_some());
             let columns = ColumnChoice { record, ..ColumnChoice::default() };
             let data = Data::of_model(vec![table], &fitted, &columns, reading.zero)?;
-            FileRun::of(&fitted, data.set)
+            Run::of(&fitted, data.set)
         })
     }
 

@@ -172,7 +172,7 @@ pub fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
     (names, columns)
 }
 
-/// Rows of a table: on each line the exit status, the arguments of the program, `=>`, and what it says.
+/// Rows of a table: on each line the exit status, the arguments of the program, `=>`, and its output.
 pub fn cases(table: &str) -> impl Iterator<Item = (i32, &str, &str)> {
     table.lines().filter(|line| !line.trim().is_empty()).map(|line| {
         let (asked, said) = line.trim().split_once(" => ").unwrap();
