@@ -60,7 +60,7 @@ pub fn run() -> Result<()> {
     if violations.is_empty() { Ok(()) } else { bail!("step `dependencies` failed: {}", violations.len()) }
 }
 
-/// What is wrong with a package; those of the workspace have no source.
+/// Fault of a package; those of the workspace have no source.
 fn violation(package: &Value) -> Option<String> {
     let name = package["name"].as_str().unwrap_or("?");
     let source = package["source"].as_str()?;
@@ -71,7 +71,7 @@ fn violation(package: &Value) -> Option<String> {
     (!is_allowed(licence)).then(|| format!("{name}: its licence is `{licence}`"))
 }
 
-/// The names of all packages that one needs to be built, in the answer of `cargo metadata`.
+/// The names of all packages that one needs to be built, in the output of `cargo metadata`.
 fn needed_by(package: &str, metadata: &Value) -> BTreeSet<String> {
     let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();

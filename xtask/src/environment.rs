@@ -22,7 +22,7 @@ impl Environment {
         Self::filled("tools", &workspace_root().join("xtask/requirements.txt"))
     }
 
-    /// What the tests of the Python package need.
+    /// Environment with the requirements of the Python package's tests.
     pub fn of_package() -> Result<Self> {
         Self::filled("python", &workspace_root().join("crates/hysid-python/requirements.txt"))
     }

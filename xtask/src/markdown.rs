@@ -7,7 +7,7 @@ use std::ops::Range;
 pub struct Link<'a> {
     /// The line, which counts from 1.
     pub line: usize,
-    /// What stands between the brackets, without a title.
+    /// Text between the brackets, without a title.
     pub target: &'a str,
     /// Where it stands in the text.
     pub range: Range<usize>,

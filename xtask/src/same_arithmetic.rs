@@ -251,7 +251,7 @@ impl Machine {
     }
 }
 
-/// What the walk needs to know of an exported model: the range of its input, and the arguments of a step.
+/// Definitions for the walk through an exported model: the range of its input, and the arguments of a step.
 fn definitions(header: &str) -> Result<[String; 3]> {
     let range = header.lines().find_map(|line| line.split_once("trained from ")?.1.split_once(" to "));
     let (lowest, highest) = range.context("the header names no range of the input")?;

@@ -26,7 +26,7 @@ const PAGES: &str = "pages";
 /// Kinds of an output that a page shows, the best first.
 const OUTPUTS: &str = "--NbConvertBase.display_data_priority=['image/png', 'text/plain']";
 
-/// What nbconvert writes in the place of an image's description.
+/// Text that nbconvert writes in the place of an image's description.
 const UNDESCRIBED: &str = "![png](";
 
 pub fn run() -> Result<()> {

@@ -1,4 +1,4 @@
-//! `cargo xtask tidy`: the house rules that no compiler knows. Each rule is a function of a file's path and text in
+//! `cargo xtask tidy`: the house rules that no compiler checks. Each rule is a function of a file's path and text in
 //! [`rules`]; this file reads the files and applies the rules to them.
 
 mod circles;

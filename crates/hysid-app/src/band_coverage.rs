@@ -11,7 +11,7 @@ pub struct BandCoverage {
     /// Data sets of ten in which the band is to contain that share; left out for five, on average.
     #[serde(skip_serializing_if = "is_average")]
     pub of_ten: usize,
-    /// What was found, in percent of the rows with an output.
+    /// Measured coverage, in percent of the rows with an output.
     pub coverage_percent: f64,
     /// Rows with an output.
     pub samples: usize,

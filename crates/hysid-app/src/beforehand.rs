@@ -1,4 +1,4 @@
-//! What tables that a model is to be fitted to tell before the fit.
+//! Checks of training tables before the fit.
 
 use anyhow::Result;
 use hysid::data::summary::Summary;
@@ -30,7 +30,7 @@ impl Beforehand {
     }
 }
 
-/// What to be aware of in data that a model is to be fitted to.
+/// Warnings on training data.
 pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
     // Data that cannot be looked at cannot be fitted to either: the fit says why.
     let doubtful = before_a_fit(&data.set).unwrap_or_default();

@@ -152,7 +152,7 @@ pub fn compare(request: &CompareRequest<'_>, observer: &dyn CompareObserver) -> 
             loop {
                 let next = queue.lock().expect("no thread panics with the lock").pop_front();
                 let Some((place, spec)) = next else { return Ok(()) };
-                let one = Fit { request, spec, place, threads: workers, observer };
+                let one = CompareTask { request, spec, place, threads: workers, observer };
                 let row = CompareRow { spec: spec.clone(), fit: pool.install(|| one.fit()) };
                 let mut ended = ended.lock().expect("no thread panics with the lock");
                 observer.ended(place, &row, ended.len() + 1);
@@ -171,7 +171,7 @@ pub fn compare(request: &CompareRequest<'_>, observer: &dyn CompareObserver) -> 
 }
 
 /// One of the fits of a comparison.
-struct Fit<'a> {
+struct CompareTask<'a> {
     request: &'a CompareRequest<'a>,
     spec: &'a FitSpec,
     place: usize,
@@ -179,7 +179,7 @@ struct Fit<'a> {
     observer: &'a dyn CompareObserver,
 }
 
-impl Fit<'_> {
+impl CompareTask<'_> {
     fn fit(&self) -> Result<ComparedFit, String> {
         let Self { request: CompareRequest { train, test, .. }, spec, place, observer, .. } = *self;
         if observer.is_to_stop() {
@@ -232,7 +232,7 @@ fn cells(fitted: &ComparedFit) -> [String; 5] {
 /// Marks a fit that was stopped.
 const STOPPED: &str = "*";
 
-/// What the mark means; empty if no fit was stopped.
+/// Meaning of the mark; empty if no fit was stopped.
 fn stopped_note(rows: &[CompareRow]) -> String {
     let is_stopped = |row: &CompareRow| row.fit.as_ref().is_ok_and(ComparedFit::is_stopped);
     if !rows.iter().any(is_stopped) {
@@ -251,7 +251,7 @@ pub enum PrintedFit<'a> {
         model: &'static str,
         /// The model and its variant, such as "bouc-wen (degradation)".
         label: String,
-        /// What was chosen, or what a network is made of; `null` for a law.
+        /// Chosen model, or structure of a network; `null` for a law.
         structure: Option<String>,
         parameters: usize,
         train: &'a Errors,
@@ -267,7 +267,7 @@ pub enum PrintedFit<'a> {
     },
 }
 
-/// What a model is made of, in words; `None` for a law, whose name says it.
+/// Structure of a model, in words; `None` for a law, whose name says it.
 fn structure(model: &Model) -> Option<String> {
     let provenance = model.provenance();
     match (&provenance.selection, model.network()) {

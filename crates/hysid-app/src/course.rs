@@ -5,19 +5,19 @@ use hysid::model::history::Phase;
 use hysid::options::network::Method;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Course {
+pub struct ProgressText {
     starts: usize,
     /// Training error so far, in percent of the standard deviation; infinite before there is one.
     best: f64,
 }
 
-impl Course {
+impl ProgressText {
     /// Of a fit with so many starts.
     pub fn new(starts: usize) -> Self {
         Self { starts, best: f64::INFINITY }
     }
 
-    /// Takes what an observer of the fit is told.
+    /// Takes a report of the fit's progress.
     pub fn take(&mut self, progress: &Progress) {
         self.best = match progress.method {
             // The error of its best start, which need not be the lowest that was ever told.
@@ -33,7 +33,7 @@ impl Course {
         (!has_none).then_some(self.best)
     }
 
-    /// What is being done, in words.
+    /// Current step of the work, in words.
     pub fn part(&self, progress: &Progress) -> String {
         // One fit of many: its starts, epochs and errors say nothing of the whole.
         if progress.is_part {

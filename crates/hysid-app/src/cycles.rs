@@ -1,4 +1,4 @@
-//! What `hysid cycles` tells: tables as CSV, text for a terminal, one JSON object, and a page with pictures.
+//! Results of `hysid cycles`: tables as CSV, text for a terminal, one JSON object, and a page with pictures.
 
 mod curves;
 pub mod over_amplitude;
@@ -39,7 +39,7 @@ pub struct Cycles<'a> {
     pub curves: Option<ReversalCurves>,
     /// Names and units.
     pub quantities: Quantities,
-    /// What was understood, label and text.
+    /// Reading of the data, label and text.
     pub understood: Vec<(String, String)>,
 }
 
@@ -121,7 +121,7 @@ impl<'a> Cycles<'a> {
         })?)
     }
 
-    /// What the cycles are, in a sentence without full stop.
+    /// Summary of the cycles, in a sentence without full stop.
     pub fn headline(&self) -> String {
         let complete = self.table.complete().count();
         let rest = self.table.cycles.len() - complete;
@@ -146,7 +146,7 @@ pub struct Files {
     pub curves: Option<PathBuf>,
 }
 
-/// What a model was driven with, label and text.
+/// Drive of a model, label and text.
 fn understood(file: &str, model: &Model, driven: &ModelCycles) -> Vec<(String, String)> {
     let (low, high) = driven.probing.input;
     let input = &model.names().inputs[0];

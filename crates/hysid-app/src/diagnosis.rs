@@ -1,4 +1,4 @@
-//! What `hysid diagnose` tells: text for a terminal, one JSON object, and a page with pictures.
+//! Results of `hysid diagnose`: text for a terminal, one JSON object, and a page with pictures.
 
 mod cards;
 mod counsel;

@@ -1,4 +1,4 @@
-//! What was chosen by validation, what each part of it predicts and costs.
+//! Result of the choice by validation: what each part predicts and costs.
 
 use std::time::Duration;
 
@@ -34,7 +34,7 @@ fn counts(candidate: &CandidateResult) -> bool {
     candidate.share.inside > 0.0 || candidate.share.outside > 0.0
 }
 
-/// Those that answer together, what each predicts and costs.
+/// Members of the ensemble: weight, contribution, run time.
 fn nodes(
     report: &Report,
     selection: &Selection,
@@ -88,7 +88,7 @@ fn nodes(
     vec![Part::Table(table), Part::note(words)]
 }
 
-/// What a single model was chosen among, or distilled from.
+/// Candidates of a single model, or the ensemble that it was distilled from.
 fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> Vec<Part> {
     candidates.sort_by(|a, b| b.share.inside.total_cmp(&a.share.inside));
     let row = |one: &&CandidateResult| {
@@ -181,7 +181,7 @@ fn shares(candidate: &CandidateResult) -> String {
     pair(share(candidate.share.inside), share(candidate.share.outside))
 }
 
-/// What holds inside the trained range and beyond it; once where both are the same.
+/// Values inside the trained range and beyond it; one value where both are the same.
 fn pair(inside: String, outside: String) -> String {
     if inside == outside { inside } else { format!("{inside} / {outside}") }
 }

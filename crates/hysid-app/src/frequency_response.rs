@@ -46,7 +46,7 @@ pub fn section(report: &Report) -> Option<Part> {
     Some(Part::section("Frequency response", parts))
 }
 
-struct Line<'a> {
+struct FrequencyLine<'a> {
     name: String,
     colour: Colour,
     width: f64,
@@ -56,7 +56,7 @@ struct Line<'a> {
 
 struct Section<'a> {
     responses: &'a ModelResponses,
-    lines: Vec<Line<'a>>,
+    lines: Vec<FrequencyLine<'a>>,
     input: &'a str,
     output: &'a str,
     /// Unit of frequencies.
@@ -71,21 +71,21 @@ impl<'a> Section<'a> {
             Some(time) => format!("cycles per {time}"),
             None => "cycles per unit of time".into(),
         };
-        let measured = Line {
+        let measured = FrequencyLine {
             name: "measured".into(),
             colour: Colour::Measured,
             width: MEASURED_WIDTH,
             input_deviation: responses.model.first().map(|at| at.input_deviation),
             response: &responses.measured,
         };
-        let oscillator = responses.oscillator.as_ref().map(|(_, response)| Line {
+        let oscillator = responses.oscillator.as_ref().map(|(_, response)| FrequencyLine {
             name: "best linear oscillator".into(),
             colour: Colour::Series(1),
             width: WIDTH,
             input_deviation: None,
             response,
         });
-        let model = responses.model.iter().zip(AMPLITUDES).map(|(at, colour)| Line {
+        let model = responses.model.iter().zip(AMPLITUDES).map(|(at, colour)| FrequencyLine {
             name: model_name(at, &names.inputs[0]),
             colour,
             width: WIDTH,
@@ -122,7 +122,7 @@ impl<'a> Section<'a> {
     }
 
     /// The points of a line, and gaps where the input has no power.
-    fn curve(&self, line: &Line, values: &[f64]) -> Curve {
+    fn curve(&self, line: &FrequencyLine, values: &[f64]) -> Curve {
         let frequency = |point: &ResponsePoint| point.frequency;
         let points = line.response.points.iter().map(frequency).zip(values.iter().copied());
         let points = with_gaps(&points.collect::<Vec<Point>>());
@@ -249,7 +249,7 @@ fn divided(segments: &Segments) -> String {
     }
 }
 
-fn magnitudes(line: &Line) -> Vec<f64> {
+fn magnitudes(line: &FrequencyLine) -> Vec<f64> {
     line.response.points.iter().map(ResponsePoint::magnitude).collect()
 }
 

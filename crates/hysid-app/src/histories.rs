@@ -101,7 +101,7 @@ pub fn error_label(output: &str) -> String {
     }
 }
 
-/// What the charts of a record have in common.
+/// Time axis, record and track that charts share.
 pub struct Panel<'a> {
     /// Times of the rows, or their numbers.
     pub time: &'a [f64],
@@ -109,7 +109,7 @@ pub struct Panel<'a> {
     pub record: &'a str,
     pub points: usize,
     pub band: f64,
-    /// What ties the charts of the record together.
+    /// Track that the charts of the record share.
     pub track: Track,
 }
 
@@ -155,7 +155,7 @@ impl Panel<'_> {
 /// would press the lines together.
 const MOST_BEYOND: f64 = 1.0;
 
-/// What the vertical axis must show of lines and the band behind them.
+/// Ordinates that the vertical axis must cover, of lines and the band behind them.
 fn reach(lines: &[Curve], band: Option<&Curve>) -> Vec<f64> {
     let range = |curves: &[Curve]| {
         let ordinates = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);

@@ -1,4 +1,4 @@
-//! A fit with what is told before and after it.
+//! A fit with its reading of the data, its warnings and its report.
 
 use std::path::Path;
 
@@ -14,15 +14,15 @@ use hysid_files::GENERATOR;
 
 use crate::{Report, ReportSet, loops, page};
 
-/// What is told before a fit.
+/// Reading of the data, and warnings, before a fit.
 #[derive(Debug, Clone, Default)]
 pub struct Beforehand {
-    /// What was understood of data and request, label and text.
+    /// Reading of data and request, label and text.
     pub understood: Vec<(String, String)>,
     pub warnings: Vec<String>,
 }
 
-/// A model and what was told and spent on the way to it.
+/// A fitted model, with the reading of its data and the cost of its fit.
 #[derive(Debug)]
 pub struct Identified {
     pub model: Model,
@@ -31,7 +31,7 @@ pub struct Identified {
     pub held_out: Option<HeldOutRows>,
     /// Time of the fit; `None` for a model that was fitted before.
     pub seconds: Option<f64>,
-    /// What was told before.
+    /// Reading and warnings from before the fit.
     pub beforehand: Beforehand,
 }
 

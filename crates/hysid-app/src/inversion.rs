@@ -11,7 +11,7 @@ use hysid::error::InverseError;
 use hysid::model::{BandLevel, Inverse, Inversion, Model, Reach};
 
 pub use page::page;
-pub use reference::{Wanted, WantedRecord};
+pub use reference::{ReferenceOutputs, WantedRecord};
 
 /// How far an inverse looks ahead.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,9 +22,9 @@ pub enum Preview {
     Time(f64),
 }
 
-/// What bounds the search of the inputs.
+/// Bounds of the search of the inputs.
 #[derive(Debug, Clone, Copy)]
-pub struct Bounds {
+pub struct InputBounds {
     /// Lowest and highest input; `None` for the trained range.
     pub limits: Option<(f64, f64)>,
     /// Largest change of the input in a unit of time.
@@ -35,7 +35,7 @@ pub struct Bounds {
     pub band: Option<BandLevel>,
 }
 
-impl Bounds {
+impl InputBounds {
     /// True if the rows of a reference for this model need a time.
     pub fn need_time(&self, model: &Model) -> Result<bool> {
         let inverse = inverse(model, self)?;
@@ -57,7 +57,7 @@ pub struct Inverted {
 
 impl Inverted {
     /// Inverts a model along all records, each from the initial state.
-    pub fn of(model: &Model, wanted: &Wanted, bounds: &Bounds) -> Result<Self> {
+    pub fn of(model: &Model, wanted: &ReferenceOutputs, bounds: &InputBounds) -> Result<Self> {
         let (mut records, mut previews, mut sums) = (Vec::new(), Vec::new(), ErrorSums::default());
         for record in &wanted.records {
             let explained = |error: hysid::Error| explained(error, wanted, record);
@@ -122,7 +122,7 @@ pub fn meaning(reach: Reach) -> &'static str {
 }
 
 /// An inverse at the initial state of the model.
-fn inverse<'m>(model: &'m Model, bounds: &Bounds) -> Result<Inverse<'m>> {
+fn inverse<'m>(model: &'m Model, bounds: &InputBounds) -> Result<Inverse<'m>> {
     let mut inverse = model.inverse();
     if let Some((low, high)) = bounds.limits {
         inverse = inverse.limits(low, high)?;
@@ -137,7 +137,7 @@ fn inverse<'m>(model: &'m Model, bounds: &Bounds) -> Result<Inverse<'m>> {
 }
 
 /// An error of a row with its line.
-fn explained(error: hysid::Error, wanted: &Wanted, record: &WantedRecord) -> anyhow::Error {
+fn explained(error: hysid::Error, wanted: &ReferenceOutputs, record: &WantedRecord) -> anyhow::Error {
     match error {
         hysid::Error::Inverse(InverseError::Row { row, problem }) => {
             anyhow!("{}, line {}: {problem}", wanted.file, wanted.lines[record.rows.start + row])

@@ -51,7 +51,7 @@ use hysid_files::{PAGE_MARK, with_page_sum};
 pub use band_coverage::BandCoverage;
 #[cfg(feature = "tables")]
 pub use beforehand::data_warnings;
-pub use course::Course;
+pub use course::ProgressText;
 pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, scored_rows, small_loops};
 pub use identified::{Beforehand, Identified};
 pub use timing::ns_per_sample;
@@ -72,7 +72,7 @@ pub struct Report<'a> {
     /// Frequency responses on the training data, of a model with inertia; or why the data have none.
     pub frequency_response: Option<std::result::Result<ModelResponses, NoResponse>>,
     pub warnings: &'a [String],
-    /// What was understood of the data: a question and its answer.
+    /// Reading of the data: labels and texts.
     pub understood: &'a [(String, String)],
     /// Name of the model file, if there is one.
     pub model_file: Option<String>,
@@ -82,7 +82,7 @@ pub struct Report<'a> {
 
 /// Data, and what the model makes of them.
 pub struct ReportSet<'a> {
-    /// What the data are: "training", "unseen".
+    /// Name of the data: "training", "unseen".
     pub name: String,
     pub data: &'a Dataset,
     /// Free run over each record.
@@ -90,12 +90,12 @@ pub struct ReportSet<'a> {
     /// The same with the band of probability [`BAND`], if the model has one.
     pub predicted: Option<Vec<Prediction>>,
     pub errors: Errors,
-    /// What ties the curves of its records together.
+    /// Tracks that the curves of its records share.
     pub tracks: Tracks,
 }
 
 impl<'a> ReportSet<'a> {
-    /// What a model makes of some data, in a free run.
+    /// Simulates a model over some data, in a free run.
     pub fn of(model: &Model, name: &str, data: &'a Dataset) -> Result<Self> {
         let predict = |record: &Record| model.predict(&record.excitation(), BAND);
         let predicted = model.band().map(|_| data.records().iter().map(predict).collect());
@@ -114,7 +114,7 @@ impl<'a> ReportSet<'a> {
     }
 }
 
-/// The text of a page, with the mark and the checksum by which Hysid knows its own.
+/// The text of a page, with the mark and the checksum by which Hysid recognizes its own.
 pub fn page_text(page: &Page) -> String {
     with_page_sum(&html::page(page, &format!("{PAGE_MARK}{}\">", env!("CARGO_PKG_VERSION"))))
 }

@@ -13,7 +13,7 @@ use serde::Serialize;
 pub struct Listed {
     /// Its name, as `--model` takes it.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// Kind of model, in a few words.
     pub what: &'static str,
     /// `network`, `law` or `ensemble`.
     pub kind: &'static str,
@@ -90,7 +90,7 @@ fn own_options(model: ModelName) -> Vec<&'static str> {
     own.map(|option| option.name).collect()
 }
 
-/// What a model is, in a few words; docs/models.md says more.
+/// Describes a model in a few words; docs/models.md says more.
 fn what(model: ModelName) -> &'static str {
     match model {
         ModelName::Auto(_) => {

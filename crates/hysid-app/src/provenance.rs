@@ -1,4 +1,4 @@
-//! What was understood of the data, warnings, and how the model came about.
+//! Reading of the data, warnings, and the provenance of the model.
 
 use hysid::data::rate::RateMethod;
 use hysid::model::Model;
@@ -23,7 +23,7 @@ pub fn warnings(report: &Report) -> Part {
     Part::section("Warnings", [warnings])
 }
 
-/// What to know before relying on the model, if there is anything.
+/// Limitations of the model, if there are any.
 pub fn notes(report: &Report) -> Option<Part> {
     let notes = report.model.notes();
     (!notes.is_empty()).then(|| Part::section("Notes", [Part::warnings(&notes)]))

@@ -1,4 +1,4 @@
-//! What the model leaves unexplained: tests of the residual, for training and other data apart.
+//! Tests of the residual, for training and other data apart.
 
 use hysid::diagnosis::residuals::{GroupedResiduals, ResidualFinding, ResidualTest, Residuals};
 use hysid_document::{Axis, Chart, Colour, Curve, Item, Part, Table, count, number, unit};

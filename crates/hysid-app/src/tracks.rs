@@ -19,7 +19,7 @@ pub fn times_or_rows(time: Option<&[f64]>, rows: usize) -> Vec<f64> {
     time.map_or_else(|| (1..=rows).map(|row| row as f64).collect(), <[f64]>::to_vec)
 }
 
-/// What ties the curves of the records of a set together.
+/// Tracks that the curves of the records of a set share.
 #[derive(Clone)]
 pub struct Tracks {
     set: String,

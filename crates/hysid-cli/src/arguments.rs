@@ -51,17 +51,17 @@ pub struct Arguments {
     /// so do the lines after Ctrl-C.
     #[arg(short, long, global = true, display_order = 1000)]
     pub quiet: bool,
-    /// What to do.
+    /// Command to run.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What stands for a number in the usage of an option.
+/// Placeholders of numbers in the usage of an option.
 const NUMBERS: &str = "N SHARE ROWS SECONDS FRACTION PROBABILITY PERCENT LOW:HIGH RATE TIME MM POINTS \
                        MASS";
 
 impl Arguments {
-    /// What was typed.
+    /// Parses the command line of the process.
     pub fn typed() -> Result<Self, clap::Error> {
         // What begins with a minus sign is the value of an option that takes a number, so that it is the option that
         // says what is wrong with it. Of other options, only a plain number is: a column may have that name.
@@ -582,7 +582,7 @@ pub struct Diagnose {
 }
 
 impl Diagnose {
-    /// What the library is asked for.
+    /// Options of the library.
     pub fn options(&self) -> DiagnosisOptions {
         DiagnosisOptions { smallest_reversal: self.smallest_reversal, smoothing: self.smoothing }
     }

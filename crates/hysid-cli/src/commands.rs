@@ -42,7 +42,7 @@ fn check_band(model: &Model, path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What the files of a command are that takes data or a model.
+/// Kind of the files of a command that takes data or a model.
 enum Given {
     /// The content of a model file.
     Model(Vec<u8>),

@@ -15,7 +15,7 @@ pub fn read_tables(paths: &[PathBuf], options: &ReadingOptions) -> Result<Vec<Ta
     paths.iter().map(|path| Table::read(path, &reading)).collect()
 }
 
-/// The data in tables whose roles options and names tell.
+/// The data in tables whose roles are found by options and names.
 pub fn data_of(tables: Vec<Table>, options: &ColumnOptions) -> Result<Data> {
     let roles = Roles::detect(&tables[0], &options.choice())?;
     data_with(tables, roles, options.reading.zero)

@@ -14,7 +14,7 @@ pub const AFTER_WARM_UP: &str = "after warm-up";
 /// Letters of a column, at least.
 const COLUMN: usize = 13;
 
-/// What stands in a row of the table.
+/// Text of one measure, a row of the table.
 type Measure = fn(&Errors) -> String;
 
 /// One column for each named set of errors, one row for each measure.

@@ -46,7 +46,7 @@ pub fn write(destination: &Destination, content: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Writes a page, as [`write`] does. Its last section says how it was made, from these files.
+/// Writes a page, as [`write`] does. Its last section lists the command and these files.
 pub fn write_page(destination: &Destination, mut page: Page, inputs: &[impl AsRef<Path>]) -> Result<()> {
     let inputs: Vec<&Path> = inputs.iter().map(AsRef::as_ref).collect();
     page.parts.push(origin::section(&command(), &inputs));
@@ -60,7 +60,7 @@ fn command() -> String {
     std::iter::once("hysid".to_string()).chain(quoted).collect::<Vec<_>>().join(" ")
 }
 
-/// Writes a file that took long to compute. If that fails, it is put elsewhere, and the error says where.
+/// Writes a file that took long to compute. If that fails, it is put elsewhere, and the error names the place.
 pub fn write_or_rescue(destination: &Destination, what: &str, content: &[u8]) -> Result<()> {
     write(destination, content).map_err(|error| match hysid_files::rescue(destination.path(), content) {
         Some(place) => anyhow!("{error}; the {what} is in {}", shown(&place)),

@@ -5,15 +5,15 @@ use hysid::model::Prediction;
 
 use crate::table_run::Simulated;
 
-/// Gathers the rows of runs, record by record. Each run must be wanted with its drive.
+/// Gathers the rows of runs, record by record. Each run must keep its drive.
 #[derive(Default)]
 pub struct Gatherer {
-    records: Vec<Rows>,
+    records: Vec<RecordRows>,
     has_ended: bool,
 }
 
 #[derive(Default)]
-struct Rows {
+struct RecordRows {
     name: String,
     time: Vec<f64>,
     inputs: Vec<Vec<f64>>,
@@ -26,14 +26,14 @@ struct Rows {
 pub struct Gathered {
     /// The data; the output is NaN where it was not measured or not read.
     pub data: Dataset,
-    /// Output of the model, and its band if one was wanted, for each record.
+    /// Output of the model, and its band if there is one, for each record.
     pub predicted: Vec<Prediction>,
 }
 
 impl Gatherer {
     pub fn take(&mut self, rows: &Simulated<'_>) {
         if self.records.is_empty() || self.has_ended {
-            self.records.push(Rows { name: rows.record.to_string(), ..Rows::default() });
+            self.records.push(RecordRows { name: rows.record.to_string(), ..RecordRows::default() });
         }
         self.has_ended = rows.ends_record;
         let Some(record) = self.records.last_mut() else { return };
@@ -54,7 +54,7 @@ impl Gatherer {
     pub fn gathered(self, names: ColumnNames) -> hysid::Result<Gathered> {
         let (mut records, mut all) = (Vec::new(), Vec::new());
         for rows in self.records.into_iter().filter(|rows| !rows.measured.is_empty()) {
-            let Rows { name, time, inputs, rate, measured, predicted } = rows;
+            let RecordRows { name, time, inputs, rate, measured, predicted } = rows;
             let mut record = Record::new(name, inputs, measured)?;
             if !time.is_empty() {
                 record = record.with_time(time)?;

@@ -29,12 +29,12 @@ fn of_command(typed: impl IntoIterator<Item = String>) -> String {
     }
 }
 
-/// What helps if a value was typed after `--force` of `hysid restoring-force`, which takes none: it may be a column.
+/// Hint for a value after `--force` of `hysid restoring-force`, which takes none: it may be a column.
 pub fn hint_of_force() -> Option<String> {
     value_of_force(typed()).map(|column| applied_force(&column))
 }
 
-/// What was typed after `--force` of `hysid restoring-force`.
+/// Value after `--force` of `hysid restoring-force`.
 fn value_of_force(typed: impl IntoIterator<Item = String>) -> Option<String> {
     let mut typed = typed.into_iter().skip_while(|argument| argument.starts_with('-'));
     typed.next().filter(|command| command == "restoring-force")?;
@@ -50,9 +50,9 @@ fn applied_force(column: &str) -> String {
     format!("--force replaces files; a column with the applied force is named by {option}")
 }
 
-/// What follows an error of a command that names neither an option nor a command that helps: where its options are
-/// described, if the command line is wrong; which command shows how a table is read, if a line of it is wrong; otherwise
-/// nothing.
+/// Hint after an error that names neither an option nor a command that helps: where the options are described, for a
+/// wrong command line; the command that shows how a table is read, for a wrong line of a table; otherwise
+/// empty.
 pub fn pointer(error: &anyhow::Error) -> String {
     let text = format!("{error:#}");
     if text.contains("hysid ") || text.contains("--") {

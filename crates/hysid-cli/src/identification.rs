@@ -1,4 +1,4 @@
-//! The work of `fit` and `demo`: say what was understood, train, and write model and report. What comes before
+//! The work of `fit` and `demo`: print the reading of the data, train, and write model and report. All before
 //! the training is that of `validate` too.
 
 use std::path::{Path, PathBuf};
@@ -24,28 +24,28 @@ use crate::messages::{insist, note_labelled, warning};
 use crate::progress::Follower;
 use crate::{errors_table, files, interrupt};
 
-/// What is to be done with the data, and how.
-pub struct Work<'a> {
+/// Fit to run: request, start, and where to store its state.
+pub struct FitTask<'a> {
     pub request: &'a FitSpec,
     /// A fit begun before, with these options.
     pub begun: Option<Checkpoint>,
     /// Where to store the state of the fit.
     pub checkpoint: Option<Keeper>,
-    /// Threads; one for each processor if not said.
+    /// Threads; by default one for each processor.
     pub threads: Option<u16>,
     /// Seconds after which to stop.
     pub time_limit: Option<f64>,
 }
 
-impl<'a> Work<'a> {
+impl<'a> FitTask<'a> {
     /// A fit from its beginning, without limits.
     pub fn new(request: &'a FitSpec) -> Self {
         Self { request, begun: None, checkpoint: None, threads: None, time_limit: None }
     }
 }
 
-/// Says what was understood of data and request, and what to be aware of. From now on Ctrl-C asks to stop, and gets
-/// this answer.
+/// Prints the reading of data and request, and warnings. From now on Ctrl-C stops the fit at its next step, and prints
+/// this text.
 pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -> Result<Beforehand> {
     let beforehand = Beforehand::of(data, request)?;
     // Looking at long data takes its time, and Ctrl-C ends it at once: there is nothing to lose yet.
@@ -60,13 +60,13 @@ pub fn check_memory(data: &Dataset, request: &FitSpec, threads: usize) -> hysid:
     memory_need(data, request, threads)?.check(hysid_files::available_memory())
 }
 
-/// So many threads; one for each processor if not said.
+/// Pool of so many threads; by default one for each processor.
 pub fn thread_pool(threads: Option<u16>) -> Result<ThreadPool> {
     hysid::thread_pool(threads.map(usize::from)).context("cannot start the threads")
 }
 
 /// Identifies a model, following the training on stderr.
-pub fn identify(data: &Data, work: Work) -> Result<Identified> {
+pub fn identify(data: &Data, work: FitTask) -> Result<Identified> {
     let request = work.request;
     let beforehand = say_beforehand(data, request, "stopping to save the best model so far")?;
     let pool = thread_pool(work.threads)?;
@@ -83,8 +83,8 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     Ok(Identified { model, evaluations, held_out, seconds: Some(seconds), beforehand })
 }
 
-/// Writes the model. It took long to find: if it cannot be written there, it is put elsewhere, and the error says
-/// where.
+/// Writes the model. It took long to find: if it cannot be written there, it is put elsewhere, and the error names
+/// the place.
 pub fn save(identified: &Identified, model: &Destination) -> Result<()> {
     files::write_or_rescue(model, "model", identified.model.to_json().as_bytes())
 }

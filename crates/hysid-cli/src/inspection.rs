@@ -1,4 +1,4 @@
-//! What a model file holds, for `hysid models MODEL.json`.
+//! Content of a model file, for `hysid models MODEL.json`.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub struct Inspected<'m> {
     model: &'m Model,
 }
 
-/// What the file says of itself, beside the model.
+/// Format version and program of the file.
 #[derive(Deserialize)]
 struct Header {
     version: u64,
@@ -77,7 +77,7 @@ impl<'m> Inspected<'m> {
         text + &rendered(&parts)
     }
 
-    /// What it is, how large, who wrote it.
+    /// Kind, size and origin of the model, label and text.
     fn facts(&self) -> Vec<(String, String)> {
         let model = self.model;
         let mut facts = Vec::new();

@@ -1,4 +1,4 @@
-//! Ctrl-C and the signals that ask a process to end: the first asks to stop and save, the second stops at once.
+//! Ctrl-C and the signals that end a process: the first stops and saves, the second stops at once.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::Duration;
@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 
 use crate::messages::insist;
 
-/// What is added to a signal's number to give the exit status, as shells do.
+/// Added to a signal's number to give the exit status, as shells do.
 const SIGNALLED: u8 = 128;
 
 /// Number of Ctrl-C's signal.
@@ -36,7 +36,7 @@ pub fn survive_limits_of_files() {
     }
 }
 
-/// From now on Ctrl-C, SIGTERM and SIGHUP ask instead of killing, and get this answer.
+/// From now on Ctrl-C, SIGTERM and SIGHUP stop the work instead of killing the process, and print this text.
 pub fn listen(answer: &'static str) -> Result<()> {
     handle(answer, false).context("cannot handle Ctrl-C")
 }
@@ -78,7 +78,7 @@ fn handle(answer: &'static str, briefly: bool) -> std::io::Result<()> {
     Ok(())
 }
 
-/// True under `nohup`, as far as the system tells: then a closed terminal is to be ignored.
+/// True under `nohup`, as far as the system shows it: then a closed terminal is to be ignored.
 #[cfg(unix)]
 fn is_hangup_ignored() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -48,7 +48,7 @@ fn quieten_readers() {
     }));
 }
 
-/// Does what the command line says, and gives the exit status.
+/// Runs the command line; returns the exit status.
 pub fn run() -> ExitCode {
     quieten_readers();
     interrupt::survive_limits_of_files();

@@ -1,4 +1,4 @@
-//! What the program says: results on stdout, all else on stderr. A stream that was closed is never a
+//! Output of the program: results on stdout, all else on stderr. A stream that was closed is never a
 //! panic.
 
 use std::borrow::Cow;
@@ -67,12 +67,12 @@ pub fn be_quiet() {
     QUIET.store(true, Ordering::Relaxed);
 }
 
-/// True if only warnings and errors are wanted.
+/// True under `--quiet`: only warnings and errors are printed.
 pub fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// Says one line on stderr, unless only warnings and errors are wanted: what was understood, progress, where files are.
+/// Prints one line on stderr, unless quiet: the reading of the data, progress, where files are.
 pub fn note(text: fmt::Arguments) {
     if !is_quiet() {
         insist(text);

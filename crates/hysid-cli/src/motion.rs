@@ -19,17 +19,17 @@ pub use columns::MotionColumns;
 use columns::{COLUMNS, kind};
 pub use table::Written;
 pub use text::{Printed, summary, understood, warnings};
-pub use units::Units;
+pub use units::MotionUnits;
 
 use crate::arguments::{self, Mass};
 
 pub struct MeasuredMotion {
     pub names: MotionColumns,
-    pub units: Units,
+    pub units: MotionUnits,
     pub records: Vec<MotionRecord>,
     /// How the numbers of the table are written.
     pub sign: DecimalSign,
-    /// What was changed on the way, in words.
+    /// Changes of the data on reading, in words.
     pub warnings: Vec<String>,
     file: String,
     lines: Vec<u64>,
@@ -54,7 +54,7 @@ impl MeasuredMotion {
     /// Reads the columns of a motion.
     pub fn of(table: &Table, arguments: &arguments::RestoringForce) -> Result<Self> {
         let names = MotionColumns::find(table, &arguments.columns)?;
-        let units = Units::of(&table.file, &names, &arguments.mass, arguments.columns.same_units)?;
+        let units = MotionUnits::of(&table.file, &names, &arguments.mass, arguments.columns.same_units)?;
         let mut cells = CellReader::new(table.numbers());
         let mut read = |column: MotionColumn| -> Result<Option<Vec<f64>>> {
             names.name_of(column).map(|name| column_of(table, name, kind(column), &mut cells)).transpose()

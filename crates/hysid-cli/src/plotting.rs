@@ -1,4 +1,4 @@
-//! What `hysid plot` draws: one figure of measured data and a model on them, for a paper or a talk.
+//! Figures of `hysid plot`: measured data and a model on them, for a paper or a talk.
 
 mod curves;
 mod cycles;
@@ -16,15 +16,15 @@ pub use drawing::{Format, Style, drawing};
 
 use crate::arguments::PlotKind;
 
-pub struct Subject {
+pub struct PlotData {
     /// The data; the output is NaN where it was not measured.
     pub data: Dataset,
-    /// Output of a model, and its band if one is wanted, for each record.
+    /// Output of a model, and its band if there is one, for each record.
     pub predicted: Option<Vec<Prediction>>,
     pub band: Option<f64>,
 }
 
-impl Subject {
+impl PlotData {
     fn is_measured(&self) -> bool {
         self.data.scored() > 0
     }
@@ -74,7 +74,7 @@ impl Subject {
 }
 
 /// The charts of a kind of figure, in a width in pixels.
-pub fn charts(subject: &Subject, kind: PlotKind, options: &CycleOptions, width: f64) -> Result<Vec<Chart>> {
+pub fn charts(subject: &PlotData, kind: PlotKind, options: &CycleOptions, width: f64) -> Result<Vec<Chart>> {
     match kind {
         PlotKind::Loops => Ok(vec![curves::loops(subject, width)]),
         PlotKind::Histories => Ok(histories::histories(subject, width)),

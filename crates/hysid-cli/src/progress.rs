@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use hysid::fit::progress::Progress;
 use hysid::significant::Significant;
-use hysid_app::Course;
+use hysid_app::ProgressText;
 use hysid_document::plain::WIDTH;
 use hysid_document::progress::{Line, Remaining, in_words, share_done};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -24,13 +24,13 @@ pub struct Follower {
     started: Instant,
     /// Time for each fold.
     limit: Option<Duration>,
-    course: Course,
+    course: ProgressText,
     starts: usize,
     /// The fold that is fitted to, counted from 0, and how many there are; a fit to everything is the only one.
     fold: (usize, usize),
     fold_started: Instant,
     keeper: Option<Keeper>,
-    /// A checkpoint could not be written, and that was said.
+    /// True once a checkpoint could not be written and the warning was printed.
     failed: bool,
     bar: Option<ProgressBar>,
     remaining: Remaining,
@@ -52,7 +52,7 @@ impl Follower {
         Self {
             started: now,
             limit,
-            course: Course::new(starts),
+            course: ProgressText::new(starts),
             starts,
             fold: (0, 1),
             fold_started: now,
@@ -68,7 +68,7 @@ impl Follower {
     pub fn begin_fold(&mut self, place: usize, of: usize) {
         self.fold = (place, of);
         self.fold_started = Instant::now();
-        self.course = Course::new(self.starts);
+        self.course = ProgressText::new(self.starts);
     }
 
     /// Hears of an iteration; breaks after Ctrl-C or at the time limit.
@@ -116,7 +116,7 @@ impl Follower {
         }
     }
 
-    /// Takes the bar away; tells the seconds spent.
+    /// Removes the bar; returns the seconds spent.
     pub fn finish(self) -> f64 {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -145,7 +145,7 @@ impl Follower {
     }
 }
 
-/// Tells on stderr that work goes on for which no share can be told, every few seconds.
+/// Prints on stderr, every few seconds, that work without a known share goes on.
 pub fn while_working<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let began = Instant::now();
     let (done, is_done) = mpsc::channel::<()>();

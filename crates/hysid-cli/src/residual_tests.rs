@@ -1,4 +1,4 @@
-//! Tests of the residual of a run over a table, and what they say on a terminal.
+//! Tests of the residual of a run over a table, and their text for a terminal.
 
 use hysid::data::record::ColumnNames;
 use hysid::data::warning::Warning;
@@ -12,7 +12,7 @@ use crate::gathered::{Gathered, Gatherer};
 /// How far statements stand in under their verdict.
 const INDENT: usize = 4;
 
-/// The tests of a run that was gathered; `warnings` tell whether the model was trained on the data.
+/// The tests of a run that was gathered; `warnings` show whether the model was trained on the data.
 pub fn tests(
     gatherer: Gatherer,
     model: &Model,

@@ -23,9 +23,9 @@ const BLOCK: usize = MOST_ROWS_OF_ZERO;
 /// Blocks that rows with one time stamp may fill.
 const MOST_EQUAL: usize = 16;
 
-/// What is wanted of the rows beside the outputs.
+/// Columns to keep of the rows, beside the outputs.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Wanted {
+pub struct KeptColumns {
     pub measured: bool,
     /// Time, inputs and rate.
     pub drive: bool,
@@ -37,9 +37,9 @@ pub struct Wanted {
 
 /// Rows that are simulated, in the order of the table.
 pub struct Simulated<'r> {
-    /// Their outputs, and their band if one is wanted.
+    /// Their outputs, and their band if it is kept.
     pub prediction: &'r Prediction,
-    /// Their measured outputs, NaN where they are blank; empty if these are not wanted.
+    /// Their measured outputs, NaN where they are blank; empty if these are not kept.
     pub measured: &'r [f64],
     /// Name of their record; that of the file if records have no names.
     pub record: &'r str,
@@ -52,7 +52,7 @@ pub struct Simulated<'r> {
 }
 
 impl<'r> Simulated<'r> {
-    /// Their time, inputs and rate, if these are wanted.
+    /// Their time, inputs and rate, if these are kept.
     pub fn drive(&self) -> &'r Drive {
         &self.waiting.drive
     }
@@ -74,7 +74,7 @@ pub struct Drive {
 
 impl Drive {
     /// Adds the rows of a block.
-    fn push(&mut self, block: &Block) {
+    fn push(&mut self, block: &RowBlock) {
         self.inputs.resize(block.inputs.len(), Vec::new());
         self.time.extend(&block.time);
         self.rate.extend(&block.rate);
@@ -96,7 +96,7 @@ pub fn run(
     rows: &mut Rows,
     roles: &Roles,
     factors: &UnitFactors,
-    wanted: Wanted,
+    wanted: KeptColumns,
     take: &mut Take<'_>,
 ) -> Result<Option<Vec<Warning>>> {
     let mut run = TableRun::new(model, &rows.head, roles, factors, wanted)?;
@@ -128,14 +128,14 @@ struct TableRun<'r, 'm> {
     file: String,
     roles: &'r Roles,
     factors: &'r UnitFactors,
-    wanted: Wanted,
+    wanted: KeptColumns,
     columns: Columns,
     names: RecordNames,
     numbers: CellReader,
     clock: Clock,
     /// Rows so far whose time stamp was that of the row before.
     spread: usize,
-    /// What is subtracted from the first input and the output of the present record, once it is known.
+    /// Offsets to subtract from the first input and the output of the present record, once known.
     offsets: Option<(f64, f64)>,
     records: usize,
     /// Name of the present one: of the rows that are simulated, while the row that was read last may begin the next one.
@@ -149,7 +149,7 @@ struct TableRun<'r, 'm> {
     is_begun: bool,
     /// Rows of the present record that are simulated.
     simulated: usize,
-    block: Block,
+    block: RowBlock,
     waiting: Waiting,
 }
 
@@ -174,7 +174,7 @@ struct Clock {
 
 /// Rows of the present record that the simulation has not taken yet.
 #[derive(Default)]
-struct Block {
+struct RowBlock {
     rows: usize,
     time: Vec<f64>,
     inputs: Vec<Vec<f64>>,
@@ -199,7 +199,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         head: &Head,
         roles: &'r Roles,
         factors: &'r UnitFactors,
-        wanted: Wanted,
+        wanted: KeptColumns,
     ) -> Result<Self> {
         let simulation = match wanted.band {
             Some(level) => model.simulation_with_band(level)?,
@@ -218,7 +218,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
             roles,
             factors,
             wanted,
-            block: Block::new(columns.inputs.len()),
+            block: RowBlock::new(columns.inputs.len()),
             columns,
             names: RecordNames::default(),
             numbers: CellReader::new(head.numbers()),
@@ -421,7 +421,7 @@ fn read(
     })
 }
 
-impl Block {
+impl RowBlock {
     fn new(inputs: usize) -> Self {
         Self { inputs: vec![Vec::new(); inputs], ..Self::default() }
     }
@@ -441,7 +441,7 @@ impl Block {
 }
 
 impl Waiting {
-    fn push(&mut self, row: &Row<'_>, wanted: Wanted, measured: f64) {
+    fn push(&mut self, row: &Row<'_>, wanted: KeptColumns, measured: f64) {
         self.lines.push(row.line);
         if wanted.measured {
             self.measured.push(measured);

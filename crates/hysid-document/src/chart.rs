@@ -16,7 +16,7 @@ pub use palette::style;
 pub use svg::sheet;
 use thin::Point;
 
-/// What a curve shows, which determines its colour.
+/// Content of a curve, which determines its colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colour {
     Measured,

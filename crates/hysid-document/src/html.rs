@@ -13,7 +13,7 @@ const STYLE: &str = include_str!("html/style.css");
 /// A table of so many columns fits a narrow screen.
 const NARROW_COLUMNS: usize = 3;
 
-/// What makes figures answer to pointer and keys. A page is complete without it.
+/// Script by which figures react to pointer and keys. A page is complete without it.
 const SCRIPT: &str = concat!("\n", include_str!("html/page.js"));
 
 /// Beginning of a page without a mark of the program that wrote it.

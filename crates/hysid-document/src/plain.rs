@@ -7,7 +7,7 @@ use crate::visible::{clipped, visible};
 /// Number of characters in a line.
 pub const WIDTH: usize = 80;
 
-/// What separates two columns of a table.
+/// Gap between two columns of a table.
 const GAP: &str = "  ";
 
 /// A longer word is the name of a column or a record: it is cut.

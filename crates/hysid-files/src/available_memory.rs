@@ -2,7 +2,7 @@
 
 use std::fs;
 
-/// Bytes assumed where the system does not tell.
+/// Bytes assumed where the system reports none.
 const ASSUMED: f64 = 8e9;
 
 /// Bytes that are available: what Linux can give without swapping, at most what a control group leaves; elsewhere

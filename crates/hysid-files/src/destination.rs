@@ -78,7 +78,7 @@ impl Destination {
         Target::of(&self.path).map_err(Failure::refused(&self.path))
     }
 
-    /// Refuses to replace what is at the target, if anything; tells if there is a file.
+    /// Refuses to replace what is at the target, if anything; returns whether there is a file.
     pub(crate) fn check_old(&self, target: &Path) -> Result<bool, Failure> {
         match fs::metadata(target) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),

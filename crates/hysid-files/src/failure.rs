@@ -10,7 +10,7 @@ pub enum Failure {
     /// A file is there already that Hysid did not write.
     NotOurs {
         path: PathBuf,
-        /// What was expected there, such as "model of Hysid".
+        /// Expected kind of file, such as "model of Hysid".
         expected: &'static str,
     },
     /// A file of a folder is not as Hysid wrote it.

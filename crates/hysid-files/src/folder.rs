@@ -19,7 +19,7 @@ pub type Listed = Vec<(String, String)>;
 #[derive(Debug)]
 pub struct Folder<'a> {
     pub path: &'a Path,
-    /// What it is, such as `export of Hysid`.
+    /// Kind of folder, such as `export of Hysid`.
     pub what: &'static str,
     pub manifest: &'static str,
     /// The files that the text of a manifest lists, with their checksums; `None` if Hysid did not write the text.
@@ -119,7 +119,7 @@ impl Folder<'_> {
         Some(listed)
     }
 
-    /// Refuses to replace what is there under this name unless Hysid wrote it; with force, tells if it is to be kept.
+    /// Refuses to replace what is there under this name unless Hysid wrote it; with force, returns whether to keep it.
     fn check_old(
         &self,
         root: &Path,

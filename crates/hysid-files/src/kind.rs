@@ -1,4 +1,4 @@
-//! Kinds of files that Hysid writes, and how it knows its own again.
+//! Kinds of files that Hysid writes, and how it recognizes its own.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -24,7 +24,7 @@ const DRAWINGS: [(&[u8], &str); 3] = [
 /// Names of columns in titles and labels may be long.
 const LONGEST_BEGINNING: u64 = 1 << 16;
 
-/// A kind of file, by which Hysid knows its own.
+/// A kind of file, by which Hysid recognizes its own.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Kind {
     /// A model file. One that is replaced is kept as `NAME.bak`.

@@ -1,4 +1,4 @@
-//! How the program `hysid` and its Python package write files, and what else both ask of the system.
+//! How the program `hysid` and its Python package write files, and other services of the system that both use.
 //!
 //! - **Atomic.** A file is written beside its target, synced and renamed: the target is complete or as it was.
 //! - **Only over its own files.** A file that Hysid did not write is not replaced, unless that is asked for. A model

@@ -59,7 +59,7 @@ pub(crate) fn checksum_of(mut from: impl Read) -> io::Result<u32> {
     }
 }
 
-/// What is said of a file of this name that cannot be read.
+/// Message for a file of this name that cannot be read.
 pub fn unreadable(name: &str, error: &io::Error) -> String {
     format!("{name}: cannot be read: {}", reason(error))
 }

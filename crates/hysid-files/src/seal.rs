@@ -1,4 +1,4 @@
-//! A seal by which Hysid knows a file that nobody changed since it wrote it: the digits of its time of change below a
+//! A seal by which Hysid recognizes a file unchanged since it wrote it: the digits of its time of change below a
 //! millisecond are made of its content. Whoever changes the file sets another time. Where a file system stores no such
 //! digits, and on copies, no file is sealed: it counts as changed.
 

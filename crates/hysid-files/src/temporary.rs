@@ -1,4 +1,4 @@
-//! Temporary files beside a target. Their names tell the target, and a lock tells that their process lives.
+//! Temporary files beside a target. Their names contain the target's, and a lock shows that their process lives.
 
 use std::ffi::OsString;
 use std::fs::{File, TryLockError};
@@ -93,7 +93,7 @@ pub(crate) fn is_linked(_: &File, path: &Path) -> bool {
     path.exists()
 }
 
-/// A temporary folder, removed unless it is renamed. A lock tells that its process lives.
+/// A temporary folder, removed unless it is renamed. A lock shows that its process lives.
 pub(crate) struct TemporaryFolder {
     folder: TempDir,
     /// Elsewhere than on Unix a folder cannot be opened, and leftovers stay.

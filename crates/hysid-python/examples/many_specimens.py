@@ -32,7 +32,7 @@ ARCHITECTURES = {
 
 
 def measured(specimen: int) -> tuple[np.ndarray, np.ndarray]:
-    """What a testing machine would have written of a specimen: a spring beside sliders that wear out, and noise."""
+    """Synthetic test record of a specimen: a spring beside sliders that wear out, and noise."""
     random = np.random.default_rng(specimen)
     angle = np.linspace(0, 16 * np.pi, 1600)
     displacement = (1 + 9 * angle / angle[-1]) * np.sin(angle)

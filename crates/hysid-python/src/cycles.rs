@@ -13,9 +13,9 @@ use crate::data::Dataset;
 use crate::failure::refused;
 use crate::interruption::interruptible;
 
-/// What Python reads.
+/// Cycles and reversal curves, as Python reads them.
 #[derive(Serialize)]
-struct Told<'a> {
+struct CyclesContent<'a> {
     table: &'a CycleTable,
     reversal_curves: Option<&'a ReversalCurves>,
 }
@@ -68,5 +68,5 @@ fn options(division: Option<&str>, field: Option<&str>) -> PyResult<CycleOptions
 }
 
 fn told(table: &CycleTable, reversal_curves: Option<&ReversalCurves>) -> PyResult<String> {
-    serde_json::to_string(&Told { table, reversal_curves }).map_err(refused)
+    serde_json::to_string(&CyclesContent { table, reversal_curves }).map_err(refused)
 }

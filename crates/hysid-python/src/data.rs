@@ -58,7 +58,7 @@ impl Dataset {
         self.set.records().iter().map(parts).collect()
     }
 
-    /// What to know before training on these data.
+    /// Warnings on these data before training.
     fn warnings(&self) -> Vec<String> {
         let summary = Summary::of(&self.set);
         // Data that cannot be looked at cannot be fitted to either: the fit says why.
@@ -90,8 +90,8 @@ pub fn values(column: &Column<'_>) -> PyResult<Vec<f64>> {
     Ok(column.as_slice()?.to_vec())
 }
 
-/// What the numbers of a column are multiplied by to be in the unit of the column that a model was trained on, as far as
-/// their names tell; `None` for as they are.
+/// Factor that converts the numbers of a column to the unit of the column that a model was trained on, by
+/// their names; `None` for as they are.
 #[pyfunction]
 pub fn unit_factor(found: &str, trained: &str) -> PyResult<Option<f64>> {
     match Conversion::between(found, trained) {

@@ -6,7 +6,7 @@ use hysid_files::Failure;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyFileExistsError, PyOSError, PyValueError};
 
-/// What the caller handed in cannot be used: a `ValueError` with the library's text.
+/// Error for an invalid argument of the caller: a `ValueError` with the library's text.
 pub fn refused<E: Display>(error: E) -> PyErr {
     PyValueError::new_err(error.to_string())
 }

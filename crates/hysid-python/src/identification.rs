@@ -1,4 +1,4 @@
-//! From data to a model: in a thread of its own, so that the caller's can answer to Ctrl-C and tell the
+//! From data to a model: in a thread of its own, so that the caller's can handle Ctrl-C and report the
 //! progress.
 
 use std::ops::ControlFlow;
@@ -22,7 +22,7 @@ use crate::failure::refused;
 use crate::interruption::waited_for;
 use crate::model::Model;
 
-/// What is to be identified, and how.
+/// Model to fit and its options.
 #[pyclass(frozen, module = "hysid._hysid")]
 pub struct FitSpec {
     chosen: NamedOptions,
@@ -102,7 +102,7 @@ fn report(progress: &Progress<'_>) -> Report {
     (progress.done, error, progress.start, progress.epoch, phase, model, progress.is_part)
 }
 
-/// What the fit's thread and the caller's tell each other.
+/// Messages between the fit's thread and the caller's.
 struct Exchange {
     stop: AtomicBool,
     latest: Mutex<Option<Report>>,
@@ -199,7 +199,7 @@ pub fn compare(
     let work = move |exchange: &Exchange| {
         let done = Mutex::new(vec![0.0; specs.len()]);
         let request = CompareRequest { train: &train, test: test.as_deref(), specs, time_limit, threads };
-        Ok(hysid_app::compare::compare(&request, &Comparison { exchange, done }))
+        Ok(hysid_app::compare::compare(&request, &CompareProgress { exchange, done }))
     };
     let (outcome, interrupted) = attended(py, None, None, progress, work)?;
     let outcome = outcome.map_err(|error| PyRuntimeError::new_err(format!("{error:#}")))?;
@@ -218,12 +218,12 @@ pub fn compare(
 }
 
 /// Follows a comparison: the share of each fit that is done.
-struct Comparison<'a> {
+struct CompareProgress<'a> {
     exchange: &'a Exchange,
     done: Mutex<Vec<f64>>,
 }
 
-impl Comparison<'_> {
+impl CompareProgress<'_> {
     fn keep(&self, place: usize, share: f64) {
         let Ok(mut done) = self.done.lock() else { return };
         done[place] = share;
@@ -235,7 +235,7 @@ impl Comparison<'_> {
     }
 }
 
-impl CompareObserver for Comparison<'_> {
+impl CompareObserver for CompareProgress<'_> {
     fn is_to_stop(&self) -> bool {
         self.exchange.is_to_stop()
     }
@@ -255,8 +255,8 @@ fn check_memory(data: &hysid::data::record::Dataset, request: &options::FitSpec)
     need.check(hysid_files::available_memory())
 }
 
-/// Does the work in a thread of its own, while the caller's looks for Ctrl-C and tells the progress. Gives
-/// what came of it, and whether Ctrl-C ended it.
+/// Does the work in a thread of its own, while the caller's checks for Ctrl-C and reports the progress. Returns
+/// the result, and whether Ctrl-C ended it.
 fn attended<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,
@@ -301,7 +301,7 @@ fn attended<T: Send + 'static>(
     Ok((done, interrupted))
 }
 
-/// Tells the progress since the last time, and asks the fit to stop if that is the answer.
+/// Reports the progress since the last time; stops the fit if the callback returns so.
 fn tell(exchange: &Exchange, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
     let Some((progress, report)) = progress.zip(exchange.take_latest()) else { return Ok(()) };
     if progress.call1(report)?.is_truthy()? {

@@ -28,7 +28,7 @@ pub struct Inverse {
     inverse: model::Inverse<'static>,
 }
 
-/// What bounds an inverse.
+/// Bounds of an inverse.
 pub struct Bounds {
     /// Lowest and highest input.
     pub limits: Option<(f64, f64)>,
@@ -58,13 +58,13 @@ impl Inverse {
 }
 
 /// A copy of rows: the wanted outputs, the other inputs and the time.
-struct Rows {
+struct ReferenceRows {
     wanted: Vec<f64>,
     others: Vec<Vec<f64>>,
     time: Option<Vec<f64>>,
 }
 
-impl Rows {
+impl ReferenceRows {
     fn of(y: &Column<'_>, time: Option<&Column<'_>>, others: &[Column<'_>]) -> PyResult<Self> {
         let others = others.iter().map(values).collect::<PyResult<_>>()?;
         Ok(Self { wanted: values(y)?, others, time: time.map(values).transpose()? })
@@ -95,7 +95,7 @@ impl Inverse {
         time: Option<Column<'py>>,
         others: Vec<Column<'py>>,
     ) -> PyResult<Columns<'py>> {
-        let (rows, mut inverse) = (Rows::of(&y, time.as_ref(), &others)?, self.inverse.clone());
+        let (rows, mut inverse) = (ReferenceRows::of(&y, time.as_ref(), &others)?, self.inverse.clone());
         let run = move || rows.along(|reference| inverse.run(reference)).map(|found| (found, inverse));
         let (found, inverse) = interruptible(py, run)?;
         self.inverse = inverse;
@@ -118,7 +118,7 @@ impl Inverse {
         time: Option<Column<'_>>,
         others: Vec<Column<'_>>,
     ) -> PyResult<f64> {
-        let (rows, inverse) = (Rows::of(&y, time.as_ref(), &others)?, self.inverse.clone());
+        let (rows, inverse) = (ReferenceRows::of(&y, time.as_ref(), &others)?, self.inverse.clone());
         interruptible(py, move || rows.along(|reference| inverse.best_preview(reference)))
     }
 

@@ -18,7 +18,7 @@ mod specimens;
 
 use pyo3::prelude::*;
 
-/// What `hysid` is made of.
+/// Native module of the package `hysid`.
 #[pymodule]
 mod _hysid {
     #[pymodule_export]

@@ -87,7 +87,7 @@ impl Model {
         destination.write(text.as_bytes()).map(drop).map_err(not_written)
     }
 
-    /// Writes an export of the model into a folder; gives the names of its files, and what the user must know.
+    /// Writes an export of the model into a folder; returns the names of its files, and notes for the user.
     #[allow(clippy::too_many_arguments)]
     fn export(
         &self,
@@ -193,7 +193,7 @@ impl Model {
         self.model.provenance().selection.as_ref().map(Selection::summary)
     }
 
-    /// Errors of free runs over all records, as JSON; without the rows of a warm-up if that is wanted.
+    /// Errors of free runs over all records, as JSON; without the rows of a warm-up if requested.
     fn evaluate(
         &self,
         py: Python<'_>,

@@ -1,4 +1,4 @@
-"""What several tests need."""
+"""Fixtures of several tests."""
 
 import os
 import subprocess
@@ -52,6 +52,6 @@ def hasty():
 
 @pytest.fixture(scope="session")
 def quick_ensemble(spring_and_slider, hasty):
-    """What validation chooses among few and hasty candidates, and answers together."""
+    """Ensemble that validation chooses among few candidates with short training."""
     x, y = spring_and_slider
     return hysid.fit(x, np.where(np.arange(len(y)) % 3 == 0, y, np.nan), **hasty)

@@ -1,4 +1,4 @@
-"""What arrays and pandas objects of all kinds do to the numbers: they are right, or there is a word."""
+"""Arrays and pandas objects of all kinds give the right numbers, or an error or a warning."""
 
 import warnings
 from datetime import datetime, timedelta, timezone
@@ -25,7 +25,7 @@ def plain(spring_and_slider):
 
 
 def warned(work):
-    """What the work warns of."""
+    """Warnings of the work."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         work()

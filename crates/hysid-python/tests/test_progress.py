@@ -21,7 +21,7 @@ FIT = """
 
 
 def run_in_terminal(script, columns):
-    """What a program writes to the terminal behind its stderr."""
+    """Text that a program writes to the terminal behind its stderr."""
     pty = pytest.importorskip("pty")
     import fcntl
     import struct

@@ -1,4 +1,4 @@
-"""What a type checker sees."""
+"""Types, as a type checker sees them."""
 
 import inspect
 import subprocess

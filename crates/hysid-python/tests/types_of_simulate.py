@@ -1,4 +1,4 @@
-"""What `Model.simulate` gives for what it takes, for a type checker: `test_types.py` runs mypy over this file."""
+"""Result types of `Model.simulate` for its argument types: `test_types.py` runs mypy over this file."""
 
 import numpy as np
 import polars

@@ -22,13 +22,13 @@ use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
 use hysid_tables::{Head, Table, is_record};
 
-/// Name by which a choice of the time column says that there is none.
+/// Value of the choice of a time column for a table without one.
 pub const NO_TIME: &str = "none";
 
 /// Roles of columns that the user chose; all others are guessed.
 #[derive(Debug, Clone, Default)]
 pub struct ColumnChoice {
-    /// Tells the records apart.
+    /// Column with the name of each row's record.
     pub record: Option<String>,
     /// Time stamps; [`NO_TIME`] if no column has them.
     pub time: Option<String>,
@@ -39,7 +39,7 @@ pub struct ColumnChoice {
 }
 
 impl ColumnChoice {
-    /// True if the choice says that a table has no time stamps.
+    /// True if the choice is that a table has no time stamps.
     fn has_no_time(&self, table: &Head) -> bool {
         self.time.as_deref() == Some(NO_TIME) && table.column(NO_TIME).is_none()
     }
@@ -97,7 +97,7 @@ impl RateOption {
 /// The columns of each role, by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Roles {
-    /// Tells the records apart.
+    /// Column with the name of each row's record.
     pub record: Option<String>,
     pub time: Option<String>,
     pub inputs: Vec<String>,
@@ -106,7 +106,7 @@ pub struct Roles {
     pub output: String,
     /// Roles that no option decided, in words; `None` if there are none.
     pub guessed: Option<&'static str>,
-    /// Columns that have no role although no option says so, each with the reason.
+    /// Columns that have no role although no option excludes them, each with the reason.
     pub set_aside: Vec<(String, String)>,
     /// A condition of the test with few values, which divide the rows of each table into records.
     pub condition: Option<String>,
@@ -338,7 +338,7 @@ impl Roles {
     }
 }
 
-/// The column that is named like time. Of one that falls as a field or a temperature does, only the user can say it.
+/// The column that is named like time. If it falls as a field or a temperature does, the user must name it.
 fn time_by_name(table: &Table, free: &[&String], records: &[Range<usize>]) -> Result<Option<String>> {
     for name in free.iter().filter(|name| unit::is_time(name)) {
         let running = numbers(table, name).map(|values| ValueStatistics::of(&values, records).running);

@@ -326,7 +326,7 @@ fn ends_by_condition(table: &Table, roles: &Roles) -> Vec<usize> {
     values.map_or_else(Vec::new, |values| changes(&values).split_off(1))
 }
 
-/// Where records end that time tells apart.
+/// Ends of records, where the time does not go on.
 fn ends_by_time(time: &[f64], rows: usize) -> Vec<usize> {
     let mut first = 0;
     let mut ends = Vec::new();

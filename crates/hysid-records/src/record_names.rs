@@ -13,7 +13,7 @@ pub struct RecordNames {
 }
 
 impl RecordNames {
-    /// Takes the name in the next row; true if another record begins. `place` says where it stands.
+    /// Takes the name in the next row; true if another record begins. `place` is its place in the file.
     ///
     /// # Errors
     /// No name, or that of a record that ended before.

@@ -16,7 +16,7 @@ use hysid_tables::TableOrigin;
 /// Room for a label and the blank behind it.
 const LABEL: usize = 9;
 
-/// Repeated tests that are said one by one.
+/// Largest number of repeated tests that are listed one by one.
 const MOST_REPEATS: usize = 5;
 
 const MOST_INPUTS: usize = 20;

@@ -25,7 +25,7 @@ impl UnitFactors {
     /// on. `is_scored` if the output is read.
     ///
     /// # Errors
-    /// Units that differ without a factor between them, unless the user says that they are the same.
+    /// Units that differ without a factor between them, unless the user declares them the same.
     pub fn of(model: &Model, roles: &Roles, file: &str, is_scored: bool, are_the_same: bool) -> Result<Self> {
         let trained = model.names();
         if are_the_same {

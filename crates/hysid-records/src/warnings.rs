@@ -4,7 +4,7 @@ use std::mem::{self, Discriminant};
 
 use hysid_core::data::warning::Warning;
 
-/// Warnings of a kind that are said one by one: a file may have a hundred thousand records.
+/// Largest number of warnings of a kind that are listed one by one: a file may have a hundred thousand records.
 const MOST_OF_A_KIND: usize = 5;
 
 /// Warnings in words, kind by kind: the first few, and how many more there are.

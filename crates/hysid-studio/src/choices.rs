@@ -1,4 +1,4 @@
-//! What can be chosen on the page: models, options, specimens, targets; all from the tables of the library.
+//! Choices on the page: models, options, specimens, targets; all from the tables of the library.
 
 use hysid::options::ModelName;
 use hysid::options::network::Trainer;

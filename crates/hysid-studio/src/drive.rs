@@ -31,7 +31,7 @@ impl Path {
         Ok(Self { time, inputs: columns.collect() })
     }
 
-    /// What a model makes of it: outputs, and the edges of the band if there is one.
+    /// Simulates a model over the drive: outputs, and the edges of the band if there is one.
     pub fn run(&self, model: &Model) -> Result<Prediction> {
         if model.rate() == Some(RateMethod::Given) {
             bail!("this model needs a measured rate; it cannot be simulated here");

@@ -18,7 +18,7 @@ use hysid_app::{Beforehand, Identified};
 use hysid_records::Data;
 
 use latest::Latest;
-pub use preview::Preview;
+pub use preview::FitPreview;
 use state::Candidate;
 pub use state::{FitState, Unsaved};
 use watch::Watch;
@@ -26,30 +26,30 @@ use watch::Watch;
 /// The fits of a studio: the last one, running or ended.
 #[derive(Default)]
 pub struct Fits {
-    last: Mutex<Option<Running>>,
+    last: Mutex<Option<RunningFit>>,
 }
 
-/// What a fit does when it has news.
+/// Called when a fit has news.
 pub type Tell = Arc<dyn Fn() + Send + Sync>;
 
-struct Running {
-    course: Arc<Course>,
+struct RunningFit {
+    course: Arc<FitCourse>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// What is known of a fit, and whether it is to stop.
-pub struct Course {
+/// State of a fit, its preview, and whether it is to stop.
+pub struct FitCourse {
     state: Mutex<FitState>,
-    preview: Mutex<Option<Preview>>,
+    preview: Mutex<Option<FitPreview>>,
     is_to_stop: AtomicBool,
     tell: Tell,
 }
 
-pub struct Work {
+pub struct FitWork {
     pub id: u64,
     pub request: FitSpec,
     pub data: Arc<Data>,
-    /// What is told of both before the fit.
+    /// Reading and warnings from before the fit.
     pub beforehand: Beforehand,
     /// Number of the file with the first records, over which the best model so far is drawn.
     pub file: u64,
@@ -70,7 +70,7 @@ impl Fits {
     ///
     /// # Errors
     /// Another one is running; too little memory.
-    pub fn begin(&self, work: Work, finish: Finish, tell: Tell) -> Result<()> {
+    pub fn begin(&self, work: FitWork, finish: Finish, tell: Tell) -> Result<()> {
         let mut last = self.last();
         if last.as_ref().is_some_and(|last| last.course.state().is_running) {
             bail!("a fit is running: stop it, or wait until it ends");
@@ -79,7 +79,7 @@ impl Fits {
         memory_need(&work.data.set, &work.request, pool.current_num_threads())
             .and_then(|need| need.check(hysid_files::available_memory()))
             .map_err(|error| work.data.explain(error))?;
-        let course = Arc::new(Course {
+        let course = Arc::new(FitCourse {
             state: Mutex::new(FitState::begun(work.id, &work.request)),
             preview: Mutex::new(None),
             is_to_stop: AtomicBool::new(false),
@@ -92,7 +92,7 @@ impl Fits {
             own.change(|state| state.end(ended));
         });
         let thread = Some(thread.context("cannot start the fit")?);
-        *last = Some(Running { course, thread });
+        *last = Some(RunningFit { course, thread });
         Ok(())
     }
 
@@ -101,14 +101,14 @@ impl Fits {
         self.last().as_ref().map(|last| last.course.state().clone())
     }
 
-    /// What the best model so far simulates; `None` before there is one.
-    pub fn preview(&self) -> Option<Preview> {
+    /// Simulation of the best model so far; `None` before there is one.
+    pub fn preview(&self) -> Option<FitPreview> {
         let last = self.last();
         let preview = last.as_ref()?.course.preview.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         preview.clone()
     }
 
-    /// Asks the fit to end with its best model so far.
+    /// Stops the fit with its best model so far.
     pub fn stop(&self) {
         if let Some(last) = &*self.last() {
             last.course.is_to_stop.store(true, Ordering::Relaxed);
@@ -126,13 +126,13 @@ impl Fits {
 
     /// Says how a fit of an earlier studio has ended.
     pub fn taken_up(&self, state: FitState) {
-        let course = Course {
+        let course = FitCourse {
             state: Mutex::new(state),
             preview: Mutex::new(None),
             is_to_stop: AtomicBool::new(true),
             tell: Arc::new(|| ()),
         };
-        *self.last() = Some(Running { course: Arc::new(course), thread: None });
+        *self.last() = Some(RunningFit { course: Arc::new(course), thread: None });
     }
 
     /// Ends the fit, if one is running, and waits until its model is saved.
@@ -145,17 +145,17 @@ impl Fits {
         }
     }
 
-    fn last(&self) -> MutexGuard<'_, Option<Running>> {
+    fn last(&self) -> MutexGuard<'_, Option<RunningFit>> {
         self.last.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }
 
-impl Course {
+impl FitCourse {
     fn state(&self) -> MutexGuard<'_, FitState> {
         self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Changes what is known, and tells that there are news.
+    /// Changes the state, and calls `tell`.
     fn change(&self, change: impl FnOnce(&mut FitState)) {
         change(&mut self.state());
         (self.tell)();
@@ -166,14 +166,14 @@ impl Course {
     }
 }
 
-/// What `work` gives; a panic in it is an error.
+/// Result of `work`; a panic in it is an error.
 pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     let words = "an internal error ended this fit: this is a fault of Hysid, please report it with what the terminal says";
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(anyhow!(words)))
 }
 
-fn run(course: &Arc<Course>, work: Work, pool: &rayon::ThreadPool) -> Result<(Identified, Arc<Data>)> {
-    let Work { request, data, beforehand, file, time_limit, keep, .. } = work;
+fn run(course: &Arc<FitCourse>, work: FitWork, pool: &rayon::ThreadPool) -> Result<(Identified, Arc<Data>)> {
+    let FitWork { request, data, beforehand, file, time_limit, keep, .. } = work;
     let models = Latest::default();
     std::thread::scope(|scope| {
         let (drawn, of_data) = (&models, &*data);
@@ -205,7 +205,7 @@ mod tests {
 
     use super::*;
 
-    fn work() -> Work {
+    fn work() -> FitWork {
         let specimen = hysid::specimens::Specimen::named("ferromagnet").unwrap();
         let text = csv_text(&specimen.train_with_seed(1)).unwrap();
         let path = std::path::Path::new("a.csv");
@@ -214,7 +214,7 @@ mod tests {
         let data = Arc::new(Data::new(vec![table], roles, None).unwrap());
         let request = FitSpec::of("prandtl-ishlinskii".parse::<ModelName>().unwrap(), None, 1);
         let beforehand = Beforehand::of(&data, &request).unwrap();
-        Work { id: 1, request, data, beforehand, file: 1, time_limit: None, keep: Box::new(|_| ()) }
+        FitWork { id: 1, request, data, beforehand, file: 1, time_limit: None, keep: Box::new(|_| ()) }
     }
 
     #[test]
@@ -226,7 +226,7 @@ mod tests {
         let state = fits.state().unwrap();
         assert!(!state.is_running && state.problem.unwrap().contains("an internal error ended this fit"));
         // One in the fit itself is told to who takes its result.
-        let in_fit = Work { keep: Box::new(|_| panic!("while the fit runs")), ..work() };
+        let in_fit = FitWork { keep: Box::new(|_| panic!("while the fit runs")), ..work() };
         fits.begin(in_fit, Box::new(|found| found.map(|_| 7)), silent).unwrap();
         fits.end();
         assert!(!fits.state().unwrap().is_running);

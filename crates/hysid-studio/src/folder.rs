@@ -35,12 +35,12 @@ pub const UPLOAD: &str = ".upload-";
 
 /// A folder in that of a project.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Inner {
+pub enum ProjectFolder {
     Data,
     Models,
 }
 
-impl Inner {
+impl ProjectFolder {
     fn name(self) -> &'static str {
         match self {
             Self::Data => "data",
@@ -86,16 +86,16 @@ impl Folder {
         let shown = asked.display();
         check_ours(asked)?;
         make_private(asked)?;
-        for inner in [Inner::Data, Inner::Models] {
+        for inner in [ProjectFolder::Data, ProjectFolder::Models] {
             make_private(&asked.join(inner.name()))?;
             check_folder(&asked.join(inner.name()))?;
         }
         let root = fs::canonicalize(asked).with_context(|| shown.to_string())?;
         match Lock::acquire(&root.join(PROJECT)) {
             Ok(lock) => {
-                let data = root.join(Inner::Data.name());
+                let data = root.join(ProjectFolder::Data.name());
                 remove_uploads(&data);
-                for folder in [&root, &data, &root.join(Inner::Models.name())] {
+                for folder in [&root, &data, &root.join(ProjectFolder::Models.name())] {
                     hysid_files::remove_leftovers(folder);
                 }
                 Ok(Some(Self { root, readings: Readings::left_in(&data), _lock: lock }))
@@ -114,25 +114,25 @@ impl Folder {
     }
 
     pub fn data(&self, file: &str) -> PathBuf {
-        self.root.join(Inner::Data.name()).join(plain(file))
+        self.root.join(ProjectFolder::Data.name()).join(plain(file))
     }
 
     pub fn models(&self, file: &str) -> PathBuf {
-        self.root.join(Inner::Models.name()).join(plain(file))
+        self.root.join(ProjectFolder::Models.name()).join(plain(file))
     }
 
     /// The path of the best model so far of a fit that is under way.
     pub fn best_so_far(&self) -> PathBuf {
-        self.root.join(Inner::Models.name()).join(BEST_SO_FAR)
+        self.root.join(ProjectFolder::Models.name()).join(BEST_SO_FAR)
     }
 
     /// The path of the model of a fit that has ended, until the project names it.
     pub fn finished(&self, fit: u64) -> PathBuf {
-        self.root.join(Inner::Models.name()).join(format!(".finished-{fit}.json"))
+        self.root.join(ProjectFolder::Models.name()).join(format!(".finished-{fit}.json"))
     }
 
     /// A name, made of the one that it is given, that no file of this folder has.
-    pub fn free_name(&self, inner: Inner, given: &str) -> Result<String> {
+    pub fn free_name(&self, inner: ProjectFolder, given: &str) -> Result<String> {
         let folder = self.root.join(inner.name());
         check_folder(&folder)?;
         let entries = fs::read_dir(&folder).map_err(|error| cannot_read(&folder, &error))?;
@@ -186,7 +186,7 @@ impl Folder {
         destination.write(content).map(|_| ()).map_err(|failure| anyhow!("{failure}"))
     }
 
-    /// What was chosen and made, if anything.
+    /// Text of the project file, if there is one.
     pub fn read_project(&self) -> Result<Option<String>> {
         let path = self.root.join(PROJECT);
         if fs::symlink_metadata(&path).is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
@@ -205,7 +205,7 @@ impl Folder {
     }
 }
 
-/// What is said of a file that cannot be read.
+/// Error for a file that cannot be read.
 pub fn cannot_read(path: &Path, error: &std::io::Error) -> anyhow::Error {
     anyhow!(hysid_files::unreadable(&path.display().to_string(), error))
 }
@@ -350,7 +350,7 @@ mod tests {
         let folder = Folder::open(Some(&path)).unwrap();
         assert!(!upload.exists() && path.join("data/.upload-mine").exists());
         fs::write(folder.models("3-pnn.json"), "mine").unwrap();
-        assert_eq!(folder.free_name(Inner::Models, "3-pnn.json").unwrap(), "3-pnn (2).json");
+        assert_eq!(folder.free_name(ProjectFolder::Models, "3-pnn.json").unwrap(), "3-pnn (2).json");
         assert!(folder.write(&folder.models("3-pnn.json"), Kind::Model, b"{}").is_err());
         assert_eq!(fs::read(folder.models("3-pnn.json")).unwrap(), b"mine");
     }
@@ -373,7 +373,7 @@ mod tests {
         let thesis = folder.data("thesis.doc");
         folder.remove(&thesis);
         assert!(folder.read(&thesis).is_err() && thesis.exists());
-        assert!(folder.free_name(Inner::Data, "b.csv").is_err());
+        assert!(folder.free_name(ProjectFolder::Data, "b.csv").is_err());
         drop(folder);
         assert!(Folder::open(Some(&path)).unwrap_err().to_string().contains("holds no links"));
     }

@@ -1,4 +1,4 @@
-//! What a project consists of: files, how they are read, models. It is one JSON file in the project's folder.
+//! Content of a project: files, how they are read, models. It is one JSON file in the project's folder.
 
 use anyhow::{Result, anyhow, bail};
 use hysid::options::chosen::RateChoice;
@@ -157,7 +157,7 @@ impl Default for Project {
 }
 
 impl Project {
-    /// What is stored in a folder; a new project if nothing is.
+    /// Reads the project of a folder; a new project if there is none.
     ///
     /// # Errors
     /// A file that cannot be read, or is of a later version.
@@ -177,7 +177,7 @@ impl Project {
         project.checked().map_err(|error| wrong(format!("is damaged: {error}")))
     }
 
-    /// The same with a next number that is free. Numbers and names tell which files are written and removed, so each is
+    /// The same with a next number that is free. Numbers and names select the files to write and remove, so each is
     /// there once, and names lead nowhere else.
     fn checked(mut self) -> Result<Self> {
         let of_models = self.models.iter().map(|model| model.begun.id);

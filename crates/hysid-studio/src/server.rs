@@ -37,7 +37,7 @@ const COMPUTING: usize = 2;
 /// Requests that diagnose at the same time. A diagnosis may take minutes, also when nobody waits for it any more.
 const DIAGNOSING: usize = 1;
 
-/// A server that listens and does not answer yet.
+/// A server that listens and sends no responses yet.
 pub struct Server {
     runtime: Runtime,
     listener: TcpListener,
@@ -46,13 +46,13 @@ pub struct Server {
     port: u16,
 }
 
-/// What every answer is made of.
+/// State that all requests share.
 #[derive(Clone)]
 struct Shared {
     studio: Arc<Studio>,
     computing: Arc<Semaphore>,
     diagnosing: Arc<Semaphore>,
-    /// Time after which an answer is given up.
+    /// Time after which a response is given up.
     longest: Duration,
     is_over: watch::Receiver<bool>,
 }

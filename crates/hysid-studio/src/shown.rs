@@ -122,7 +122,7 @@ fn of_model(project: &Project, stored: &ProjectModel, model: Result<Arc<Model>>)
     json!(shown)
 }
 
-/// What the model itself tells.
+/// Facts that the model itself holds.
 fn facts(model: &Model) -> Value {
     let provenance = model.provenance();
     let selection = provenance.selection.as_ref();

@@ -1,5 +1,5 @@
-//! A studio: a project, its files as they are read, its models and its fit. What a page asks for is answered here; how it
-//! asks is the server's matter.
+//! A studio: a project, its files as they are read, its models and its fit. It computes what the server sends to
+//! the page.
 
 mod files;
 mod fits;
@@ -91,7 +91,7 @@ impl Studio {
         self.news.send_modify(|news| news.project += 1);
     }
 
-    /// Reads the files of the project that are not read as it says.
+    /// Reads the files of the project that are not read with its present choices.
     pub fn read_files(&self) {
         self.read_files_with(None);
     }
@@ -105,7 +105,7 @@ impl Studio {
         }
     }
 
-    /// The project, and its files as it says that they are read. Waits until they are.
+    /// The project, and its files read with its choices. Waits until they are.
     fn current(&self) -> (Project, Arc<View>) {
         loop {
             let (project, view) = (self.project().clone(), self.view());

@@ -1,4 +1,4 @@
-//! What is taken away of a model: exports, and the lines that make the very same model without the studio.
+//! Exports of a model, and the lines that make the very same model without the studio.
 
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -81,7 +81,7 @@ fn chosen(begun: &Begun) -> Vec<(&String, &Value)> {
     options
 }
 
-/// The options that tell how tables are read.
+/// The options of reading tables.
 fn of_reading(reading: &ReadingChoice) -> Vec<String> {
     let Ok(Value::Object(named)) = serde_json::to_value(reading) else { unreachable!("it is a map") };
     let words = |(name, value): (String, Value)| match value {
@@ -95,7 +95,7 @@ fn of_reading(reading: &ReadingChoice) -> Vec<String> {
     named.into_iter().flat_map(words).collect()
 }
 
-/// An option on the command line; `None` for one that is not said.
+/// An option on the command line; `None` for one that is not set.
 fn word(name: &str, value: &Value) -> Option<String> {
     let is_truth =
         OPTIONS.iter().any(|option| option.name == name && matches!(option.values, OptionValues::Truth));

@@ -22,12 +22,12 @@ pub struct View {
     understanding: Understanding,
     /// The files of the project, once all are read.
     of: Vec<ProjectFile>,
-    /// The file that tells the columns, if they are guessed.
+    /// Number of the file that determines the columns, if they are guessed.
     first: Option<u64>,
     pub files: Vec<Arc<FileView>>,
     /// Which column is what; `None` without a file, or with [`View::problem`].
     pub roles: Option<Roles>,
-    /// Why the columns of the first file cannot be told apart.
+    /// Why the roles of the columns of the first file cannot be found.
     pub problem: Option<String>,
     /// All training files together, once they were asked for.
     together: OnceLock<Arc<Data>>,
@@ -146,7 +146,7 @@ impl View {
         view
     }
 
-    /// True if all files of a project are read as it says.
+    /// True if all files of a project are read with its present choices.
     pub fn is_of(&self, project: &Project) -> bool {
         self.of == project.files && self.is_read_as(&project.understanding)
     }

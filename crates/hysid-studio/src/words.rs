@@ -1,4 +1,4 @@
-//! Words of errors: never empty, and of bounded length, whatever a file says.
+//! Words of errors: never empty, and of bounded length, whatever a file contains.
 
 use std::borrow::Cow;
 

@@ -92,7 +92,7 @@ fn jacobian(criterion: &mut Criterion) {
     });
 }
 
-/// What the paper's training is made of.
+/// Steps of the paper's training.
 fn paper(criterion: &mut Criterion) {
     let data = data(2000);
     let mut group = group(criterion, "paper");

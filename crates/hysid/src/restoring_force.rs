@@ -98,7 +98,7 @@ impl RestoringForce {
 
 /// The restoring force `u - m (y'' + a)` in records of the motion of a mass, theory.md (15.20).
 ///
-/// What is not measured comes from Savitzky-Golay filters with one window for all records; `window` sets its number of
+/// Unmeasured columns come from Savitzky-Golay filters with one window for all records; `window` sets its number of
 /// rows, an odd number from 5 on. Without it, the window is chosen that has the least noise and smoothing error together.
 ///
 /// ```

@@ -5,7 +5,7 @@ use std::time::Duration;
 /// The time after which a fit ends, from a number of seconds.
 ///
 /// # Errors
-/// What is needed, in words, if the number is not above 0 and below 1e9.
+/// Time limit of a fit; an error states the requirement if the number is not above 0 and below 1e9.
 pub fn time_limit(seconds: f64) -> Result<Duration, &'static str> {
     match seconds > 0.0 && seconds < 1e9 {
         true => Ok(Duration::from_secs_f64(seconds)),

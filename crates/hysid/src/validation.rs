@@ -185,7 +185,7 @@ fn two_of_one_amplitude(data: &Dataset, cuts: &[Cut]) -> Option<[usize; 2]> {
 pub enum Cut {
     /// These records are held out.
     Records(Vec<usize>),
-    /// What follows some rows of each run of a single protocol is judged, up to an end.
+    /// Validates on the rows after some rows of each run of a single protocol, up to an end.
     Forecast {
         /// The rows of each run that are judged.
         judged: Vec<RowsOf>,
@@ -556,7 +556,7 @@ mod tests {
         assert_eq!(rows.of_rows[0], rows.of_rows[1]);
     }
 
-    /// What is held out of a single record is not among what is fitted to, and the way there is driven.
+    /// Held-out rows of a single record are not among the training rows, and the way there is driven.
     #[test]
     fn a_single_record_is_cut_in_time() {
         let one = record("r", 200, 1.0);

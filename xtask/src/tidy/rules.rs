@@ -39,7 +39,7 @@ enum Effect {
     Clock,
 }
 
-/// What the code of the library does not contain, and which effect it has.
+/// Words that the code of the library does not contain, each with its effect.
 const EFFECTS: [(&str, Effect); 10] = [
     ("unsafe", Effect::Unsafe),
     ("println!", Effect::Output),
@@ -101,7 +101,7 @@ pub fn clean_whitespace(path: &str, text: &str) -> Vec<Violation> {
     found
 }
 
-/// What is left to do belongs into the issue tracker.
+/// Finds marks of unfinished work, which belongs into the issue tracker.
 pub fn nothing_left_to_do(path: &str, text: &str) -> Vec<Violation> {
     let mut found = Vec::new();
     for (number, line) in numbered(text) {

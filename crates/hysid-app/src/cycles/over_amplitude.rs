@@ -24,7 +24,7 @@ pub struct Shown<'a> {
     pub colour: Colour,
     /// Radius of their dots, in pixels.
     pub radius: f64,
-    /// What they are cycles of, for the legend.
+    /// Source of the cycles, for the legend.
     pub name: &'a str,
 }
 

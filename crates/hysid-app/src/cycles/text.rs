@@ -1,4 +1,4 @@
-//! The cycles on a terminal: the main figures, both ends of a long table, and what to know of them.
+//! The cycles on a terminal: the main figures, both ends of a long table, and notes.
 
 use hysid::diagnosis::cycles::Field;
 use hysid::significant::Significant;
@@ -12,7 +12,7 @@ use crate::quantities::text_label;
 /// Rows shown at each end of a long table.
 const AT_EACH_END: usize = 8;
 
-/// Cycles that are said of the losses at most.
+/// Largest number of cycles in the text on the losses.
 const MOST_LOSSES: usize = 12;
 
 fn main_figures(field: Field) -> &'static [&'static str] {

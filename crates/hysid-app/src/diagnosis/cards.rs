@@ -10,7 +10,7 @@ use crate::quantities::Quantities;
 /// Points of a curve in a picture.
 const POINTS: usize = 800;
 
-/// What the numbers of a card mean.
+/// Meaning of the numbers of a card.
 pub const EXPLANATION: &str = "The index is a relative difference or size. The threshold separates yes from \
                                no: it is the larger of two values, the difference that matters in practice \
                                and the difference that noise alone can cause in this number of comparisons.";
@@ -25,7 +25,7 @@ pub fn verdicts<'f>(findings: impl IntoIterator<Item = &'f Finding>) -> Part {
     Part::Verdicts(findings.into_iter().map(verdict).collect())
 }
 
-/// A card for each property; `place` tells where it is seen, if that means anything to the reader.
+/// A card for each property; `place` names the place of the evidence, empty if there is none to name.
 pub fn cards(findings: &[Finding], quantities: &Quantities, place: impl Fn(&Finding) -> String) -> Vec<Card> {
     findings
         .iter()

@@ -1,4 +1,4 @@
-//! What the data doctor complains of, and which model is advised.
+//! Data issues, and the advised model.
 
 use hysid::diagnosis::{Advice, DataIssue, Severity, Verdict};
 use hysid_document::plain::indented;
@@ -9,7 +9,7 @@ use super::cards::sentence;
 /// How far words stand in under their heading.
 const INDENT: usize = 4;
 
-/// The complaints under a heading; none is told too.
+/// The issues under a heading, which also reports that there are none.
 pub fn doctor_text(complaints: &[DataIssue]) -> String {
     let told: String = complaints.iter().map(|complaint| indented(&labelled(complaint), INDENT)).collect();
     match complaints.len() {
@@ -38,7 +38,7 @@ pub fn advice_text(advice: &Advice, fit: &str) -> String {
     format!("advice\n{said}{needs}{next}")
 }
 
-/// What the model must be able to do, in a line.
+/// Requirements on the model, in a line.
 fn needs(advice: &Advice) -> String {
     let needs = [
         ("rate dependence", advice.needs_rate),

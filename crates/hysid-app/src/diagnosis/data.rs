@@ -1,4 +1,4 @@
-//! What is told of measured data.
+//! Diagnosis of measured data.
 
 use anyhow::Result;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
@@ -12,7 +12,7 @@ use super::{counsel, findings, loops, paragraph};
 use crate::quantities::Quantities;
 use hysid_document::visible::clipped;
 
-/// A diagnosis of measured data, and what is told with it.
+/// A diagnosis of measured data, and the text around it.
 pub struct DataDiagnosis<'a> {
     data: &'a Data,
     diagnosis: Diagnosis,

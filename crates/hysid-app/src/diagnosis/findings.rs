@@ -13,7 +13,7 @@ const INDENT: usize = 4;
 /// Percentages below this are as good as nought.
 const SMALLEST_PERCENT: f64 = 0.001;
 
-/// The verdicts in a table, under each what was found; and which experiments would tell the rest.
+/// Table of the verdicts, each with its evidence; then experiments for the properties without a verdict.
 pub fn text<'f>(findings: impl IntoIterator<Item = &'f Finding>) -> String {
     let findings: Vec<&Finding> = findings.into_iter().collect();
     let mut rows = vec![HEADINGS.map(String::from).to_vec()];
@@ -33,7 +33,7 @@ pub fn text<'f>(findings: impl IntoIterator<Item = &'f Finding>) -> String {
     text
 }
 
-/// Every experiment that would tell more, once, and the properties it would tell.
+/// Experiments for properties without a verdict, each once, with its properties.
 fn experiments<'f>(findings: &[&'f Finding]) -> Vec<(&'f str, Vec<&'static str>)> {
     let mut experiments: Vec<(&str, Vec<&str>)> = Vec::new();
     for finding in findings {

@@ -1,4 +1,4 @@
-//! What is told of a fitted model.
+//! Diagnosis of a fitted model.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use super::cards::{EXPLANATION, cards, sentence, verdicts};
 use super::{findings, invertibility, paragraph};
 use crate::quantities::{Quantities, text_label};
 
-/// A diagnosis of a model, and what is told with it.
+/// A diagnosis of a model, and the text around it.
 pub struct DiagnosedModel<'a> {
     file: String,
     model: &'a Model,
@@ -120,7 +120,7 @@ impl<'a> DiagnosedModel<'a> {
         Page { title: format!("Diagnosis: {}", self.file), parts }
     }
 
-    /// What the equations promise of each property.
+    /// Structural properties that the equations guarantee.
     fn promises(&self) -> Table {
         let rows = self.diagnosis.promises.iter().map(|promise| {
             let contradicted = if promise.agrees == Some(false) { " !" } else { "" };

@@ -6,7 +6,7 @@ use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Cell, Chart, Colour, Curve, Page, Part, Piece, Table, Text, number, unit};
 
-use super::{Bounds, Inverted, Wanted, WantedRecord, meaning};
+use super::{InputBounds, Inverted, ReferenceOutputs, WantedRecord, meaning};
 use crate::histories::Panel;
 use crate::tracks::times_or_rows;
 use crate::{MEASURED_WIDTH, MODEL_WIDTH, path_curves};
@@ -21,9 +21,9 @@ const LOOP_POINTS: usize = 6000;
 
 pub fn page(
     model: &Model,
-    wanted: &Wanted,
+    wanted: &ReferenceOutputs,
     inverted: &Inverted,
-    bounds: &Bounds,
+    bounds: &InputBounds,
     understood: &[(String, String)],
     warnings: &[String],
 ) -> Page {
@@ -61,7 +61,7 @@ pub fn page(
     Page { title: format!("Inverse of {}", model.name().name()), parts }
 }
 
-/// What ties the charts of a record together.
+/// Track that the charts of a record share.
 fn track(record: &str, times: Option<Vec<f64>>) -> Track {
     Track { record: record.into(), times, cycles: Vec::new() }
 }
@@ -83,7 +83,7 @@ fn lead(model: &Model, inverted: &Inverted) -> Part {
     )
 }
 
-fn shown_records(wanted: &Wanted, inverted: &Inverted) -> Vec<usize> {
+fn shown_records(wanted: &ReferenceOutputs, inverted: &Inverted) -> Vec<usize> {
     let deviation = |index: &usize| inverted.records[*index].rms_deviation(&wanted.records[*index].wanted);
     let mut order: Vec<usize> = (0..wanted.records.len()).collect();
     order.sort_by(|a, b| deviation(b).total_cmp(&deviation(a)));
@@ -93,7 +93,7 @@ fn shown_records(wanted: &Wanted, inverted: &Inverted) -> Vec<usize> {
 }
 
 /// Wanted output and that of the model over the drive.
-fn loops(model: &Model, wanted: &Wanted, inverted: &Inverted, shown: &[usize]) -> Chart {
+fn loops(model: &Model, wanted: &ReferenceOutputs, inverted: &Inverted, shown: &[usize]) -> Chart {
     let most = (LOOP_POINTS / shown.len().max(1)).max(16);
     let curves = shown.iter().map(|&index| {
         let (record, inversion) = (&wanted.records[index], &inverted.records[index]);
@@ -117,7 +117,7 @@ fn record(
     model: &Model,
     record: &WantedRecord,
     inversion: &Inversion,
-    bounds: &Bounds,
+    bounds: &InputBounds,
     points: usize,
 ) -> Vec<Part> {
     let names = model.names();
@@ -183,7 +183,7 @@ fn drive(panel: &Panel, label: &str, inversion: &Inversion, area: Option<Curve>)
 }
 
 /// How many rows have which reach, and where the first of them stands.
-fn reaches(wanted: &Wanted, inverted: &Inverted) -> Table {
+fn reaches(wanted: &ReferenceOutputs, inverted: &Inverted) -> Table {
     let mut table = Table::new(["reach", "rows", "first line"]);
     for reach in Reach::ALL {
         let count = inverted.count(reach);

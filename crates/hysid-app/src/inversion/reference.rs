@@ -9,7 +9,7 @@ use hysid_records::{CellNeed, Roles, UnitFactors, column_of, places_of};
 use hysid_tables::{CellReader, DecimalSign, Table};
 
 /// The wanted outputs of a table, in the units of the model.
-pub struct Wanted {
+pub struct ReferenceOutputs {
     pub file: String,
     pub lines: Vec<u64>,
     pub records: Vec<WantedRecord>,
@@ -38,7 +38,7 @@ impl WantedRecord {
     }
 }
 
-impl Wanted {
+impl ReferenceOutputs {
     /// Reads the columns of a table.
     pub fn of(table: &Table, roles: &Roles, factors: &UnitFactors) -> Result<Self> {
         let mut cells = CellReader::new(table.numbers());

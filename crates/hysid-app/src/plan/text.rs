@@ -28,7 +28,7 @@ pub fn text(planned: &Planned<'_>) -> String {
     blocks.join("\n")
 }
 
-/// What each kind of segment adds, in the order of the drive.
+/// Purpose of each kind of segment, in the order of the drive.
 fn purposes(plan: &Plan) -> Vec<String> {
     let mut kinds: Vec<SegmentKind> = Vec::new();
     for segment in &plan.segments {

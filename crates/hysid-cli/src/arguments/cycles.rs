@@ -71,7 +71,7 @@ pub struct Cycles {
 }
 
 impl Cycles {
-    /// What the library is asked for.
+    /// Options of the library.
     pub fn options(&self) -> CycleOptions {
         CycleOptions {
             smallest_reversal: self.smallest_reversal,
@@ -81,7 +81,7 @@ impl Cycles {
         }
     }
 
-    /// What is removed from the outputs before.
+    /// Corrections of the outputs before the division into cycles.
     pub fn corrections(&self) -> Vec<Correction> {
         self.subtract.iter().copied().chain(self.center.then_some(Correction::Offset)).collect()
     }

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 /// Options of the short help of a command.
 const IN_SHORT_HELP: [&str; 2] = ["model", "members"];
 
-/// What was asked for of the model and its training.
+/// Options of the model and its training, as given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelOptions(pub NamedOptions);
 

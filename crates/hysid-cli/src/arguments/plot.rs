@@ -16,7 +16,7 @@ Examples:
 
 How to make figures for a paper: docs/how-to/figures-for-a-paper.md";
 
-/// What a figure shows.
+/// Content of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum PlotKind {
     /// The output over the input

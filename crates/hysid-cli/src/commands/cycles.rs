@@ -18,7 +18,7 @@ use crate::messages::{note_labelled, raw_results, results, warning};
 use hysid_app::cycles::{self, BEGINNING, BEGINNING_OF_CURVES, Cycles, Files};
 
 pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
-    let outputs = Outputs::of(arguments)?;
+    let outputs = CycleFiles::of(arguments)?;
     let contents: Vec<Vec<u8>> =
         arguments.files.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
     check_outputs(outputs.table.iter().chain(&outputs.page), &arguments.files)?;
@@ -51,13 +51,13 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
 }
 
 /// Where the results go; no files if the table goes to stdout.
-struct Outputs {
+struct CycleFiles {
     table: Option<Destination>,
     page: Option<Destination>,
     curves: Option<Destination>,
 }
 
-impl Outputs {
+impl CycleFiles {
     fn of(arguments: &arguments::Cycles) -> Result<Self> {
         let path =
             arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.files[0], ".cycles.csv"));
@@ -79,7 +79,7 @@ impl Outputs {
 }
 
 /// Prints and writes the results.
-fn tell(arguments: &arguments::Cycles, outputs: &Outputs, cycles: &Cycles) -> Result<Outcome> {
+fn tell(arguments: &arguments::Cycles, outputs: &CycleFiles, cycles: &Cycles) -> Result<Outcome> {
     let table = cycles::csv(cycles)?;
     let Some(destination) = &outputs.table else {
         raw_results(&String::from_utf8(table)?)?;

@@ -16,7 +16,7 @@ use crate::Outcome;
 use crate::arguments::{Arguments, Command, Demo};
 use crate::data::data_of;
 use crate::files::{self, NO_INPUTS, check_outputs};
-use crate::identification::{self, Work, identify, note_interrupted};
+use crate::identification::{self, FitTask, identify, note_interrupted};
 use crate::interrupt;
 use crate::messages::{note, results};
 
@@ -45,7 +45,7 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
     let unseen = read(test)?;
     let typed = fit_as_typed(train);
     let request = typed.model.0.request(None, false);
-    let identified = identify(&data, Work::new(&request))?;
+    let identified = identify(&data, FitTask::new(&request))?;
     let errors = identified.model.evaluate(&unseen.set).map_err(|error| unseen.explain(error))?;
     identification::save(&identified, &model)?;
     let trained = identified.model.as_trained(&data.set)?;

@@ -17,8 +17,8 @@ use crate::files::{self, check_outputs};
 use crate::messages::{note, note_labelled, results, warning};
 use crate::progress::while_working;
 
-/// What is told of a diagnosis, and the page if there is to be one.
-struct Told {
+/// Text of a diagnosis, and its page if there is to be one.
+struct PrintedDiagnosis {
     text: String,
     page: Option<Page>,
 }
@@ -42,7 +42,7 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn of_data(arguments: &Diagnose, tables: Vec<Table>) -> Result<Told> {
+fn of_data(arguments: &Diagnose, tables: Vec<Table>) -> Result<PrintedDiagnosis> {
     let data = data_of(tables, &arguments.columns)?;
     let understood = understanding::of_data(&data, &Summary::of(&data.set));
     note_labelled(&understood);
@@ -54,7 +54,7 @@ fn of_data(arguments: &Diagnose, tables: Vec<Table>) -> Result<Told> {
         DataDiagnosis::of(&data, &arguments.options(), &understood, fit_command(arguments))
     })?;
     let text = if arguments.json { diagnosed.json()? } else { diagnosed.text() };
-    Ok(Told { text, page: (!arguments.no_report).then(|| diagnosed.page()) })
+    Ok(PrintedDiagnosis { text, page: (!arguments.no_report).then(|| diagnosed.page()) })
 }
 
 /// The command that fits a model to the same data.
@@ -64,7 +64,7 @@ fn fit_command(arguments: &Diagnose) -> String {
     words.chain(arguments.columns.choice().options()).collect::<Vec<String>>().join(" ")
 }
 
-fn of_model(arguments: &Diagnose, content: Vec<u8>) -> Result<Told> {
+fn of_model(arguments: &Diagnose, content: Vec<u8>) -> Result<PrintedDiagnosis> {
     let path = &arguments.files[0];
     let model = model_from_bytes(path, content)?;
     let diagnosed = while_working("probing the model", || DiagnosedModel::of(path, &model))?;
@@ -73,7 +73,7 @@ fn of_model(arguments: &Diagnose, content: Vec<u8>) -> Result<Told> {
         warning(format_args!("the diagnosis of a model ignores {option}"));
     }
     let text = if arguments.json { diagnosed.json()? } else { diagnosed.text() };
-    Ok(Told { text, page: (!arguments.no_report).then(|| diagnosed.page()) })
+    Ok(PrintedDiagnosis { text, page: (!arguments.no_report).then(|| diagnosed.page()) })
 }
 
 /// Options that were asked for and that concern data only.

@@ -18,7 +18,7 @@ use crate::errors_table::{AFTER_WARM_UP, errors_table};
 use crate::gathered::Gatherer;
 use crate::messages::{json_results, results, summarised, warning};
 use crate::residual_tests;
-use crate::table_run::{self, Simulated, Wanted};
+use crate::table_run::{self, KeptColumns, Simulated};
 
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
@@ -46,7 +46,7 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
         }
         Ok(ControlFlow::Continue(()))
     };
-    let wanted = Wanted {
+    let wanted = KeptColumns {
         measured: true,
         drive: arguments.residuals,
         cells: false,
@@ -78,7 +78,7 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
             after_warm_up: after_warm_up,
             #[serde(skip_serializing_if = "hysid_document::is_nothing")]
             band: band,
-            /// Tests of the residual, if they are wanted.
+            /// Tests of the residual, if requested.
             #[serde(skip_serializing_if = "hysid_document::is_nothing")]
             residuals: residuals,
         })?,

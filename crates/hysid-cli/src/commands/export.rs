@@ -89,7 +89,7 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// What the name of a model file becomes as an identifier.
+/// Identifier made from the name of a model file.
 fn identifier(path: &Path) -> Result<String> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name: String =

@@ -23,7 +23,7 @@ use crate::arguments::{Fit, RateOption};
 use crate::checkpoint::{self, Keeper};
 use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
-use crate::identification::{self, Work, identify, report_path};
+use crate::identification::{self, FitTask, identify, report_path};
 use crate::interrupt;
 use crate::messages::{Usage, note, told, warning};
 
@@ -50,7 +50,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let keeper = checkpoint.map(Keeper::new).transpose()?;
     let resumable = keeper.as_ref().map(|keeper| keeper.path().to_path_buf());
     warn_of_ignored(chosen);
-    let work = Work {
+    let work = FitTask {
         request: &request,
         begun,
         checkpoint: keeper,
@@ -168,7 +168,7 @@ fn printed(identified: &Identified, out: &Path, trained: &Dataset) -> Result<imp
     };
     let tested = |(data, tests): (String, Residuals)| {
         object! {
-            /// What the data are: `training` or `held-out`.
+            /// Kind of the data: `training` or `held-out`.
             data: data,
             #[serde(flatten)]
             tests: tests,
@@ -178,9 +178,9 @@ fn printed(identified: &Identified, out: &Path, trained: &Dataset) -> Result<imp
         model: out.display().to_string(),
         architecture: architecture(model),
         parameters: model.parameters(),
-        /// Those that answer together; `null` for a single model.
+        /// Members of the ensemble; `null` for a single model.
         members: model.ensemble().map(|ensemble| ensemble.members().iter().map(member).collect::<Vec<_>>()),
-        /// What was tried and how it did; `null` where there was no choice.
+        /// Candidates and their errors; `null` where there was no choice.
         selection: provenance.selection.as_ref(),
         train: &provenance.train,
         /// Without the rows of a warm-up; left out for a model without one.
@@ -199,7 +199,7 @@ fn printed(identified: &Identified, out: &Path, trained: &Dataset) -> Result<imp
         /// Tests of the residual by the data, training first; left out for too few rows.
         #[serde(skip_serializing_if = "hysid_document::is_nothing")]
         residuals: identified.residuals(trained)?.into_iter().map(tested).collect::<Vec<_>>(),
-        /// What to know before relying on the model.
+        /// Limitations of the model.
         notes: model.notes(),
         seconds: identified.seconds,
         evaluations: identified.evaluations,

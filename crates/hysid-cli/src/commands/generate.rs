@@ -74,7 +74,7 @@ impl Set {
         Ok(Self { what, data, text, destination })
     }
 
-    /// Writes the data; says so of a file.
+    /// Writes the data; prints the name of a file.
     fn write(&self) -> Result<()> {
         let Some(destination) = &self.destination else { return raw_results(&self.text) };
         files::write(destination, self.text.as_bytes())?;
@@ -103,7 +103,7 @@ fn list(json: bool) -> Result<()> {
     told(json, described, || specimens.clone().map(description).collect::<Vec<_>>().join("\n"))
 }
 
-/// What `--list` prints of a specimen.
+/// Description of a specimen for `--list`.
 fn description(specimen: &Specimen) -> String {
     let columns = specimen.columns();
     let columns: Vec<String> =

@@ -22,7 +22,7 @@ use crate::errors_table::errors_table;
 use crate::files::{self, check_outputs};
 use crate::messages::{note_labelled, raw_results, told, warning};
 use crate::terminal::clipped;
-use hysid_app::inversion::{self, Bounds, Inverted, Preview, Wanted};
+use hysid_app::inversion::{self, InputBounds, Inverted, Preview, ReferenceOutputs};
 
 pub fn run(arguments: &Invert) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
@@ -39,7 +39,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     let page = page_path.as_ref().map(|path| Destination::new(path.clone(), Kind::Page, force));
     check_outputs(drive.iter().chain(&page), &[&arguments.reference, &arguments.model])?;
 
-    let bounds = Bounds {
+    let bounds = InputBounds {
         limits: arguments.limits,
         slew: arguments.slew,
         preview: arguments.preview,
@@ -47,7 +47,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     };
     let roles = Roles::of_inverse(&model, bounds.need_time(&model)?, &table, &arguments.columns.choice())?;
     let factors = factors(&model, &roles, &table.file, true, arguments.units.same_units)?;
-    let wanted = Wanted::of(&table, &roles, &factors)?;
+    let wanted = ReferenceOutputs::of(&table, &roles, &factors)?;
     let inverted = Inverted::of(&model, &wanted, &bounds)?;
 
     let understood = understood(arguments, &model, &roles, &inverted);
@@ -74,7 +74,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// What separates the cells of the table that is written.
+/// Delimiter of the table that is written.
 fn delimiter_of(table: &Table) -> u8 {
     table.delimiter().in_a_copy(table.numbers().decimal)
 }
@@ -116,7 +116,7 @@ impl Names {
 }
 
 /// The rows of the table with the columns that are added.
-fn rows(table: &Table, wanted: &Wanted, inverted: &Inverted) -> Result<Vec<u8>> {
+fn rows(table: &Table, wanted: &ReferenceOutputs, inverted: &Inverted) -> Result<Vec<u8>> {
     let mut writer = csv::WriterBuilder::new().delimiter(delimiter_of(table)).from_writer(Vec::new());
     let mut number = String::new();
     for (record, inversion) in wanted.records.iter().zip(&inverted.records) {
@@ -139,7 +139,7 @@ fn rows(table: &Table, wanted: &Wanted, inverted: &Inverted) -> Result<Vec<u8>> 
     Ok(writer.into_inner()?)
 }
 
-/// What was asked for and taken, label and text.
+/// Request and its reading, label and text.
 fn understood(
     arguments: &Invert,
     model: &Model,
@@ -188,10 +188,10 @@ fn understood(
     lines.into_iter().map(|(label, text)| (label.to_string(), text)).collect()
 }
 
-/// Deviation of the driven model, in percent of the standard deviation of the wanted output, above which it is said.
+/// Deviation of the driven model, in percent of the standard deviation of the wanted output, above which to warn.
 const LARGE: f64 = 5.0;
 
-/// What the user must know of the drive.
+/// Warnings on the drive.
 fn warnings(inverted: &Inverted) -> Vec<String> {
     let rows = inverted.rows();
     let mut all = Vec::new();

@@ -60,7 +60,7 @@ fn printed(files: &[TableOverview], data: &Result<Data>, warnings: &[String]) ->
         records: data.as_ref().ok().map(|data| data.set.records().len()),
         #[serde(skip_serializing_if = "hysid_document::is_nothing")]
         guessed: data.as_ref().ok().and_then(|data| data.roles.guessed),
-        /// What is doubtful about the data.
+        /// Doubts about the data.
         warnings: warnings,
         /// Why the data cannot be used as they are.
         #[serde(skip_serializing_if = "hysid_document::is_nothing")]

@@ -12,7 +12,7 @@ use crate::arguments::{self, Arguments};
 use crate::files::{self, NO_INPUTS, check_outputs};
 use crate::messages::note;
 
-/// Begins every page, so that Hysid knows its own again. It is a comment of roff.
+/// Begins every page, so that Hysid recognizes its own. It is a comment of roff.
 const MARK: &str = ".\\\" Written by hysid man.\n";
 
 pub fn run(arguments: &arguments::Man) -> Result<Outcome> {

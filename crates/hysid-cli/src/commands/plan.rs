@@ -42,7 +42,7 @@ fn of_kind(arguments: &arguments::Plan, kind: &str) -> Result<Outcome> {
     let plan = protocol.plan(&options).map_err(of_options)?;
     let out =
         arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.drive.csv", protocol.name())));
-    let outputs = Outputs::of(arguments, out, &plan.names)?;
+    let outputs = PlanFiles::of(arguments, out, &plan.names)?;
     let planned = Planned {
         plan: &plan,
         title: format!("First test: {}", protocol.name()),
@@ -52,12 +52,12 @@ fn of_kind(arguments: &arguments::Plan, kind: &str) -> Result<Outcome> {
     tell(arguments, &outputs, &planned)
 }
 
-/// What to measure next.
+/// Plans the next measurement from data.
 fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
     let tables = read_tables(&arguments.like, &arguments.columns.reading)?;
     let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let out = arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.like[0], ".drive.csv"));
-    let outputs = Outputs::of(arguments, out, &roles.names())?;
+    let outputs = PlanFiles::of(arguments, out, &roles.names())?;
     let data = data_with(tables, roles, arguments.columns.reading.zero)?;
     let count = data.roles.inputs.len();
     if count > 1 {
@@ -104,13 +104,13 @@ fn wanted(arguments: &arguments::Plan, step: Option<f64>) -> Result<LimitOptions
 }
 
 /// Where the results go; no files if the table goes to stdout.
-struct Outputs {
+struct PlanFiles {
     header: Vec<u8>,
     table: Option<Destination>,
     page: Option<Destination>,
 }
 
-impl Outputs {
+impl PlanFiles {
     fn of(
         arguments: &arguments::Plan,
         path: PathBuf,
@@ -136,7 +136,7 @@ impl Outputs {
 }
 
 /// Prints and writes the results.
-fn tell(arguments: &arguments::Plan, outputs: &Outputs, planned: &Planned<'_>) -> Result<Outcome> {
+fn tell(arguments: &arguments::Plan, outputs: &PlanFiles, planned: &Planned<'_>) -> Result<Outcome> {
     let table = [outputs.header.clone(), planning::rows(planned.plan)].concat();
     let Some(destination) = &outputs.table else {
         raw_results(&String::from_utf8(table)?)?;

@@ -16,8 +16,8 @@ use crate::data::{data_of, factors, read_tables};
 use crate::files::{self, check_outputs};
 use crate::gathered::{Gathered, Gatherer};
 use crate::messages::{Usage, summarised, warning};
-use crate::plotting::{self, Format, Style, Subject};
-use crate::table_run::{self, Wanted};
+use crate::plotting::{self, Format, PlotData, Style};
+use crate::table_run::{self, KeptColumns};
 
 pub fn run(arguments: &Plot) -> Result<Outcome> {
     let (model, tables) = given(arguments)?;
@@ -68,16 +68,16 @@ fn given(arguments: &Plot) -> Result<(Option<Model>, &[PathBuf])> {
 }
 
 /// Data alone.
-fn measured(arguments: &Plot, tables: &[PathBuf]) -> Result<Subject> {
+fn measured(arguments: &Plot, tables: &[PathBuf]) -> Result<PlotData> {
     if arguments.band.is_some() {
         return Err(Usage("--band needs a model: hysid plot MODEL.json DATA.csv".into()).into());
     }
     let data = data_of(read_tables(tables, &arguments.columns.reading)?, &arguments.columns)?;
-    Ok(Subject { data: data.set, predicted: None, band: None })
+    Ok(PlotData { data: data.set, predicted: None, band: None })
 }
 
 /// Data, and a model run on them.
-fn simulated(arguments: &Plot, model: &Model, tables: &[PathBuf]) -> Result<Subject> {
+fn simulated(arguments: &Plot, model: &Model, tables: &[PathBuf]) -> Result<PlotData> {
     arguments.band.map_or(Ok(()), |_| check_band(model, &arguments.files[0]))?;
     let mut gatherer = Gatherer::default();
     let mut names = None;
@@ -93,7 +93,7 @@ fn simulated(arguments: &Plot, model: &Model, tables: &[PathBuf]) -> Result<Subj
         };
         let roles = roles.with_time(&rows.head, &arguments.columns.choice())?;
         let factors = factors(model, &roles, &rows.head.file, has_output, arguments.units.same_units)?;
-        let wanted = Wanted {
+        let wanted = KeptColumns {
             measured: has_output,
             drive: true,
             cells: false,
@@ -111,5 +111,5 @@ fn simulated(arguments: &Plot, model: &Model, tables: &[PathBuf]) -> Result<Subj
     let (names, file, roles) = names.context("no tables")?;
     let gathered = gatherer.gathered(names).map_err(|error| explained(&file, None, error, &roles))?;
     let Gathered { data, predicted } = gathered;
-    Ok(Subject { data, predicted: Some(predicted), band: arguments.band })
+    Ok(PlotData { data, predicted: Some(predicted), band: arguments.band })
 }

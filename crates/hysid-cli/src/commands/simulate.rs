@@ -15,7 +15,7 @@ use crate::commands::{check_band, read_model};
 use crate::data::factors;
 use crate::files::{self, check_outputs};
 use crate::messages::{stdout_failed, warning};
-use crate::table_run::{self, Simulated, Wanted};
+use crate::table_run::{self, KeptColumns, Simulated};
 use crate::terminal::clipped;
 use crate::{Outcome, interrupt};
 
@@ -55,7 +55,7 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let sink = out.as_ref().map(Destination::create).transpose().map_err(files::explained)?;
     let numbers = Numbers { data: &arguments.data, reading: &reading, roles: &roles, delimiter };
     let mut output = Output { sink, numbers, sign: None, delimiter, text: header };
-    let wanted = Wanted {
+    let wanted = KeptColumns {
         drive: false,
         cells: true,
         measured: false,

@@ -17,7 +17,7 @@ use crate::messages::{insist, note, results, warning};
 /// Time between two looks whether Ctrl-C was pressed.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
 
-/// Time that answers on their way get when the studio ends.
+/// Longest time that requests under way may take when the studio ends.
 const LONGEST_END: Duration = Duration::from_secs(5);
 
 pub fn run(arguments: &Studio) -> Result<Outcome> {

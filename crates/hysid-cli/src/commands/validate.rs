@@ -19,7 +19,7 @@ use crate::interrupt;
 use crate::messages::{insist, told};
 use crate::progress::Follower;
 
-/// What came of the folds, and how it came about.
+/// Result of the folds, with its provenance.
 #[derive(serde::Serialize)]
 struct Validated {
     model: &'static str,

@@ -22,7 +22,7 @@ pub const COLUMNS: [MotionColumn; 6] = [
     MotionColumn::AppliedForce,
 ];
 
-/// What is needed of the cells of a column.
+/// Requirement on the cells of a column.
 pub fn kind(column: MotionColumn) -> CellNeed {
     let required = |if_no_number| CellNeed::Required {
         if_blank: "time, displacement and velocity need a number in every row; choose rows with --rows",
@@ -46,7 +46,7 @@ const NONE: &str = "none";
 
 #[derive(Debug, Clone)]
 pub struct MotionColumns {
-    /// Tells the records apart.
+    /// Column with the name of each row's record.
     pub record: Option<String>,
     pub time: String,
     /// Displacement relative to the base.
@@ -60,7 +60,7 @@ pub struct MotionColumns {
     pub applied_force: Option<String>,
     /// Columns that are copied.
     pub keep: Vec<String>,
-    /// What was found by name and unit, with the option that decides otherwise.
+    /// Columns that were chosen by name and unit, each with the option that overrides the choice.
     pub guessed: Vec<&'static str>,
     /// Columns that may be an acceleration of the mass, if none is used.
     pub unused_accelerations: Vec<String>,
@@ -70,7 +70,7 @@ impl MotionColumns {
     /// The columns that options name, and those that are found.
     pub fn find(table: &Table, options: &MotionOptions) -> Result<Self> {
         table.require_columns()?;
-        let named = Named::of(table, options)?;
+        let named = NamedColumns::of(table, options)?;
         let mut guessed = Vec::new();
         let time = match named.of_option("--time") {
             Some(time) => time,
@@ -136,7 +136,7 @@ impl MotionColumns {
         }
     }
 
-    /// As roles, by which records are told apart.
+    /// Roles of columns that divide the table into records.
     pub fn roles(&self) -> Roles {
         Roles {
             record: self.record.clone(),
@@ -153,9 +153,9 @@ impl MotionColumns {
 }
 
 /// The columns that options name, with their options.
-struct Named(Vec<(&'static str, String)>);
+struct NamedColumns(Vec<(&'static str, String)>);
 
-impl Named {
+impl NamedColumns {
     fn of(table: &Table, options: &MotionOptions) -> Result<Self> {
         let applied_force = options.applied_force.as_ref().filter(|name| *name != NONE);
         let all = [
@@ -200,7 +200,7 @@ fn full_name(table: &Table, name: &str, option: &str) -> Result<String> {
     })
 }
 
-fn time_of(table: &Table, named: &Named) -> Result<String> {
+fn time_of(table: &Table, named: &NamedColumns) -> Result<String> {
     let free = || table.header.iter().filter(|name| !named.has(name));
     let found =
         free().find(|name| unit::is_time(name)).or_else(|| free().find(|name| unit::may_be_time(name)));
@@ -222,7 +222,7 @@ fn only(table: &Table, mut found: Vec<String>, what: &str, option: &str) -> Resu
     }
 }
 
-/// The applied force, where no option tells. A force that is left out would be missing in the result.
+/// Applied force without an option. A force that is left out would be missing in the result.
 fn applied_force(table: &Table, mut found: Vec<String>, has_inertia: bool) -> Result<Option<String>> {
     let (file, columns) = (&table.file, listed(&table.header));
     match (found.len(), has_inertia) {

@@ -1,4 +1,4 @@
-//! What is told of a restoring force: what was understood, how large and how uncertain it is.
+//! Text on a restoring force: how the data were read, how large and how uncertain the force is.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ use crate::files::shown;
 /// Noise or a smoothing error above this share of the standard deviation of the force is warned of, in percent.
 const LARGE: f64 = 10.0;
 
-/// What was understood, label and text.
+/// Reading of the data, label and text.
 pub fn understood(
     table: &Table,
     motion: &MeasuredMotion,
@@ -106,7 +106,7 @@ fn shown_mass(mass: &Mass, motion: &MeasuredMotion) -> String {
     unit.or(is_known.then_some("kg")).map_or(number.clone(), |unit| format!("{number} {}", clipped(unit)))
 }
 
-/// What was converted, and what is assumed.
+/// Conversions of units, and assumptions on them.
 fn units(motion: &MeasuredMotion) -> (&'static str, String) {
     let units = &motion.units;
     let known = units.known();
@@ -132,7 +132,7 @@ fn force_unit(motion: &MeasuredMotion) -> String {
         .map_or_else(|| "an unknown unit".into(), |unit| clipped(unit).into_owned())
 }
 
-/// What the user must know of the force.
+/// Warnings on the force.
 pub fn warnings(motion: &MeasuredMotion, found: &RestoringForce, window: Option<usize>) -> Vec<String> {
     let suffix = unit::suffix(motion.units.force_unit.as_deref());
     // A chosen window has the least of both errors.

@@ -12,7 +12,7 @@ use crate::arguments::Mass;
 
 /// Factors to SI units, and what the result is in.
 #[derive(Debug, Clone)]
-pub struct Units {
+pub struct MotionUnits {
     /// Factor and unit of each column; no unit if it has none that is known.
     columns: Vec<(MotionColumn, f64, Option<String>)>,
     /// Factor of the mass to kg.
@@ -23,11 +23,11 @@ pub struct Units {
     pub force_unit: Option<String>,
     /// Columns without a known unit, each with the SI unit that it is taken to be in.
     pub without: Vec<(String, &'static str)>,
-    /// Nothing was converted because an option says so.
+    /// True if `--same-units` turns conversions off.
     pub is_same: bool,
 }
 
-impl Units {
+impl MotionUnits {
     /// The units in the names of columns.
     pub fn of(file: &str, names: &MotionColumns, mass: &Mass, is_same: bool) -> Result<Self> {
         if is_same {

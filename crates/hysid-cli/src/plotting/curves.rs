@@ -3,7 +3,7 @@
 use hysid_app::{MEASURED_WIDTH, MODEL_WIDTH, path_curves, scored_rows};
 use hysid_document::{Chart, Colour, Curve, unit};
 
-use super::Subject;
+use super::PlotData;
 use hysid_app::cycles::pictures::path;
 
 /// Points of all curves of a colour together.
@@ -12,7 +12,7 @@ const POINTS: usize = 12_000;
 /// Height of a chart of loops over its width.
 const SHAPE: f64 = 0.75;
 
-pub fn loops(subject: &Subject, width: f64) -> Chart {
+pub fn loops(subject: &PlotData, width: f64) -> Chart {
     let most = (POINTS / subject.data.records().len()).max(100);
     let (mut back, mut front) = (Vec::new(), Vec::new());
     for (record, predicted) in subject.records() {
@@ -39,7 +39,7 @@ pub fn loops(subject: &Subject, width: f64) -> Chart {
 }
 
 /// The legend of measured data and a model; nothing for one of both.
-pub fn legend(subject: &Subject) -> Vec<(Colour, &'static str)> {
+pub fn legend(subject: &PlotData) -> Vec<(Colour, &'static str)> {
     match subject.is_measured() && subject.predicted.is_some() {
         true => vec![(Colour::Measured, "measured"), (Colour::Simulated, "model")],
         false => Vec::new(),
@@ -47,7 +47,7 @@ pub fn legend(subject: &Subject) -> Vec<(Colour, &'static str)> {
 }
 
 /// Colour of the only curve there is: of a model without measured data, or of measured data without a model.
-pub fn alone(subject: &Subject) -> Colour {
+pub fn alone(subject: &PlotData) -> Colour {
     if subject.predicted.is_some() { Colour::Simulated } else { Colour::Series(0) }
 }
 

@@ -1,4 +1,4 @@
-//! What is read from cycles, of measured data beside a model.
+//! Figures of cycles: measured data beside a model.
 
 use std::borrow::Cow;
 
@@ -11,7 +11,7 @@ use hysid_app::{MODEL_WIDTH, time_label};
 use hysid_document::chart::thin::Point;
 use hysid_document::{Chart, Colour, Curve, unit};
 
-use super::Subject;
+use super::PlotData;
 use super::curves::{BOTH, alone, legend};
 use hysid_app::cycles::Cycles;
 use hysid_app::cycles::over_amplitude::{self, Shown};
@@ -30,7 +30,7 @@ const LOOP_POINTS: usize = 6000;
 const RADII: [f64; 2] = [4.2, 2.0];
 
 /// The figures of the field over amplitude, in two columns if there is room.
-pub fn figures(subject: &Subject, options: &CycleOptions, width: f64) -> Result<Vec<Chart>> {
+pub fn figures(subject: &PlotData, options: &CycleOptions, width: f64) -> Result<Vec<Chart>> {
     let sets = Sets::of(subject, options)?;
     let charts = over_amplitude::figures(&sets.shown(subject));
     if charts.is_empty() {
@@ -41,7 +41,7 @@ pub fn figures(subject: &Subject, options: &CycleOptions, width: f64) -> Result<
 }
 
 /// The backbones in front of the loops.
-pub fn backbone(subject: &Subject, options: &CycleOptions, width: f64) -> Result<Chart> {
+pub fn backbone(subject: &PlotData, options: &CycleOptions, width: f64) -> Result<Chart> {
     let sets = Sets::of(subject, options)?;
     let all = sets.all();
     let data = &all[0].data;
@@ -70,7 +70,7 @@ pub fn backbone(subject: &Subject, options: &CycleOptions, width: f64) -> Result
 }
 
 /// The energy of the complete cycles so far, over time.
-pub fn energy(subject: &Subject, options: &CycleOptions, width: f64) -> Result<Chart> {
+pub fn energy(subject: &PlotData, options: &CycleOptions, width: f64) -> Result<Chart> {
     let sets = Sets::of(subject, options)?;
     let mut curves = Vec::new();
     for (cycles, (colour, line, radius)) in sets.all().into_iter().zip(sets.looks(subject)) {
@@ -105,7 +105,7 @@ fn cumulative(cycles: &Cycles) -> Vec<Vec<Point>> {
 }
 
 /// Loss of a cycle over frequency, or width of the loop of an actuator.
-pub fn frequency(subject: &Subject, options: &CycleOptions, width: f64) -> Result<Chart> {
+pub fn frequency(subject: &PlotData, options: &CycleOptions, width: f64) -> Result<Chart> {
     let sets = Sets::of(subject, options)?;
     let shown = sets.shown(subject);
     let chart = match shown[0].cycles.table.field {
@@ -132,7 +132,7 @@ struct Sets<'a> {
 }
 
 impl<'a> Sets<'a> {
-    fn of(subject: &'a Subject, options: &CycleOptions) -> Result<Self> {
+    fn of(subject: &'a PlotData, options: &CycleOptions) -> Result<Self> {
         let measured =
             subject.is_measured().then(|| cycles(Cow::Borrowed(&subject.data), options)).transpose()?;
         // Both are divided alike.
@@ -152,7 +152,7 @@ impl<'a> Sets<'a> {
     }
 
     /// Colour, width of lines and radius of dots of each set.
-    fn looks(&self, subject: &Subject) -> Vec<(Colour, f64, f64)> {
+    fn looks(&self, subject: &PlotData) -> Vec<(Colour, f64, f64)> {
         match (&self.measured, &self.model) {
             (Some(_), Some(_)) => {
                 BOTH.iter().zip(RADII).map(|(&(colour, line), radius)| (colour, line, radius)).collect()
@@ -161,7 +161,7 @@ impl<'a> Sets<'a> {
         }
     }
 
-    fn shown(&self, subject: &Subject) -> Vec<Shown<'_>> {
+    fn shown(&self, subject: &PlotData) -> Vec<Shown<'_>> {
         let names = ["measured", "model"];
         let looks = self.looks(subject).into_iter().zip(names);
         let shown = |(cycles, ((colour, _, radius), name))| Shown { cycles, colour, radius, name };

@@ -31,7 +31,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// That which the ending of a name tells.
+    /// Format by the ending of a file name.
     pub fn of(path: &Path) -> Result<Self> {
         match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("svg") => Ok(Self::Svg),

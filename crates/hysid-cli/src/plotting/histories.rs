@@ -10,7 +10,7 @@ use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Chart, Colour, Curve, unit};
 
-use super::Subject;
+use super::PlotData;
 use super::curves::{BOTH, alone};
 use crate::messages::{Usage, note};
 
@@ -27,7 +27,7 @@ const BELOW: f64 = 0.34;
 const OVER_INPUT: f64 = 0.6;
 
 /// Output and input of each record over time.
-pub fn histories(subject: &Subject, width: f64) -> Vec<Chart> {
+pub fn histories(subject: &PlotData, width: f64) -> Vec<Chart> {
     let names = subject.data.names();
     let mut charts = Vec::new();
     for (record, predicted) in drawn(subject) {
@@ -59,7 +59,7 @@ pub fn histories(subject: &Subject, width: f64) -> Vec<Chart> {
 }
 
 /// Error of each record over time, and of all over the input.
-pub fn errors(subject: &Subject, width: f64) -> Result<Vec<Chart>> {
+pub fn errors(subject: &PlotData, width: f64) -> Result<Vec<Chart>> {
     if subject.predicted.is_none() {
         return Err(Usage("errors need a model: hysid plot MODEL.json DATA.csv --kind errors".into()).into());
     }
@@ -93,7 +93,7 @@ pub fn errors(subject: &Subject, width: f64) -> Result<Vec<Chart>> {
     Ok(charts.into_iter().map(|chart| wide(chart, width)).collect())
 }
 
-fn drawn(subject: &Subject) -> impl Iterator<Item = (&Record, Option<&Prediction>)> {
+fn drawn(subject: &PlotData) -> impl Iterator<Item = (&Record, Option<&Prediction>)> {
     let count = subject.data.records().len();
     if count > MOST_RECORDS {
         note(format_args!(
@@ -103,7 +103,7 @@ fn drawn(subject: &Subject) -> impl Iterator<Item = (&Record, Option<&Prediction
     subject.records().take(MOST_RECORDS)
 }
 
-fn panel<'a>(subject: &Subject, record: &'a Record, time: &'a [f64]) -> Panel<'a> {
+fn panel<'a>(subject: &PlotData, record: &'a Record, time: &'a [f64]) -> Panel<'a> {
     Panel {
         time,
         time_label: time_label(&subject.data),
@@ -115,7 +115,7 @@ fn panel<'a>(subject: &Subject, record: &'a Record, time: &'a [f64]) -> Panel<'a
 }
 
 /// The chart with the name of its record if there are several.
-fn titled(chart: Chart, subject: &Subject, record: &Record) -> Chart {
+fn titled(chart: Chart, subject: &PlotData, record: &Record) -> Chart {
     match subject.data.records().len() {
         1 => chart,
         _ => Chart { title: record.name().to_string(), ..chart },

@@ -1,4 +1,4 @@
-//! The files of `hysid reproduce`: their names, and how Hysid knows its own again.
+//! The files of `hysid reproduce`: their names, and how Hysid recognizes its own.
 
 use std::path::Path;
 

@@ -7,7 +7,7 @@ use hysid_paper::{Chapter, ChapterTarget, targets};
 /// Header line of [`csv`].
 pub const CSV_HEADER: &str = "experiment,table,row,column,value\n";
 
-/// A page of one chapter. `made` says when and by what.
+/// A page of one chapter. `made` holds date and program.
 pub fn page(made: Text, chapter: &Chapter) -> Page {
     let mut parts = vec![lead(chapter), Part::Note(made)];
     parts.extend(targets_sections(std::slice::from_ref(chapter)));
@@ -76,7 +76,7 @@ pub fn made(conditions: &str) -> Text {
         .with(Piece::Plain(conditions.into()))
 }
 
-/// What a terminal shows of a chapter: headings, tables and targets, then the verdict.
+/// Chapter in short, for a terminal: headings, tables and targets, then the verdict.
 pub fn summary(chapter: &Chapter) -> Vec<Part> {
     let shown = chapter.parts.iter().filter(|part| matches!(part, Part::Table(_) | Part::Heading(_)));
     let targets = targets_list(std::slice::from_ref(chapter));

@@ -67,7 +67,7 @@ class Studio:
             connection.close()
 
     def ask(self, path: str, body=None):
-        """What it answers to its own page; a `body` is sent."""
+        """Response to its own page; sends `body`."""
         status, _, content = self.request("GET" if body is None else "POST", path, body)
         assert status == 200, (path, status, content)
         return json.loads(content)

@@ -1,4 +1,4 @@
-"""What nobody but the page of a studio may do, and what the page itself may not."""
+"""Requests that only the page of a studio may make, and those that the page itself may not."""
 
 import http.server
 import json

@@ -1,4 +1,4 @@
-"""What is taken away of a studio: source code that compiles, lines of Python, the report, and how answers are labelled."""
+"""Exports of a studio: source code that compiles, lines of Python, the report, and how answers are labelled."""
 
 import ast
 import io

@@ -1,4 +1,4 @@
-//! Broken tables of every kind: one line that says where and what helps, and exit status 1.
+//! Broken tables of every kind: one line with the place and a remedy, and exit status 1.
 
 use crate::workbench::{Workbench, csv, rows, table, with_cell, with_column};
 

@@ -1,4 +1,4 @@
-//! What validation chooses, ensembles with their bands, and cross-validation, as a user runs them.
+//! Choice by validation, ensembles with their bands, and cross-validation, as a user runs them.
 
 use std::time::{Duration, Instant};
 

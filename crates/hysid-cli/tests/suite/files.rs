@@ -182,7 +182,7 @@ fn a_look_shows_columns_also_where_their_roles_are_unclear() {
     assert!(ran.stdout.contains("disp_mm    input    mm"), "{}", ran.stdout);
 }
 
-/// What can be said about a file is said to every command.
+/// Every command takes the options of reading.
 #[test]
 fn options_of_reading_choose_lines_rows_and_offsets() {
     let bench = Workbench::new();
@@ -256,7 +256,7 @@ fn a_table_that_is_streamed_is_read_as_one_that_is_not() {
     assert_eq!(errors("plain.csv", "--rows :20").0, 20);
 }
 
-/// A number may stand for a missing value; only a person knows.
+/// A number may stand for a missing value; only a person can decide.
 #[test]
 fn a_number_that_stands_for_a_missing_value_is_told_with_the_option_that_names_it() {
     let bench = Workbench::new();

@@ -27,7 +27,7 @@ fn commands(page: &str) -> Vec<&str> {
     commands
 }
 
-/// The lines of the `text` blocks of a page, without those that say that something is left out.
+/// The lines of the `text` blocks of a page, without those that mark an omission.
 fn shown(page: &str) -> Vec<&str> {
     let blocks = page.split("\n```text\n").skip(1).filter_map(|rest| rest.split_once("\n```"));
     let lines = blocks.flat_map(|(block, _)| block.lines());
@@ -41,14 +41,14 @@ fn is_alike(shown: &str, printed: &str) -> bool {
 
 /// The figures in the text and the tables of a page, each with its line: numbers with a decimal point or in percent, of at
 /// least two digits.
-fn figures(page: &str) -> Vec<(Figure, &str)> {
+fn figures(page: &str) -> Vec<(PageNumber, &str)> {
     let mut is_code = false;
     let is_text = |line: &&str| {
         let is_fence = line.starts_with("```");
         is_code ^= is_fence;
         !is_code && !is_fence
     };
-    let of_line = |line| words(line).into_iter().filter_map(Figure::of).map(move |figure| (figure, line));
+    let of_line = |line| words(line).into_iter().filter_map(PageNumber::of).map(move |figure| (figure, line));
     page.lines().filter(is_text).flat_map(of_line).collect()
 }
 
@@ -67,13 +67,13 @@ fn words(line: &str) -> Vec<String> {
 }
 
 /// A number as a page shows it.
-struct Figure {
+struct PageNumber {
     value: f64,
     /// Half of its last digit.
     rounding: f64,
 }
 
-impl Figure {
+impl PageNumber {
     fn of(word: String) -> Option<Self> {
         let bare = word.trim_end_matches('%');
         let value: f64 = bare.parse().ok()?;
@@ -95,7 +95,7 @@ fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
 }
 
-/// What the examples print that a page names.
+/// Output of the examples that a page names.
 fn printed_by_examples(page: &str) -> String {
     let names = page.split("`examples/").skip(1).filter_map(|rest| rest.split_once('.'));
     let texts = names.map(|(name, _)| docs().join("../examples").join(name).with_extension("txt"));
@@ -109,7 +109,7 @@ fn tables_of_cycles(bench: &Workbench) -> String {
     tables.map(|path| fs::read_to_string(path).unwrap().replace(',', " ")).collect()
 }
 
-/// Runs the commands of a page, with the files that it tells its reader to copy.
+/// Runs the commands of a page, with the files that its reader is to copy.
 fn follow(path: &str) {
     let bench = Workbench::new();
     bench.put("testing-machine.csv", include_str!("../files/testing-machine.csv"));
@@ -133,7 +133,7 @@ fn follow(path: &str) {
     printed += &tables_of_cycles(&bench);
     let known: Vec<f64> =
         printed.lines().flat_map(words).filter_map(|word| word.trim_end_matches('%').parse().ok()).collect();
-    let is_known = |figure: &Figure| known.iter().any(|known| figure.is_near(*known));
+    let is_known = |figure: &PageNumber| known.iter().any(|known| figure.is_near(*known));
     let unknown: Vec<String> = figures(&page)
         .into_iter()
         .filter(|(figure, _)| path.contains('/') && !is_known(figure))
@@ -212,7 +212,7 @@ fn figures_are_found_in_the_text_and_the_tables_alone() {
     let page = "Off by 3.40 % ([1.5](2.5)), `6.5`, 10 %, 20 rows.\n| a | -12.5 |\n```text\n7.5\n```\n";
     let found: Vec<f64> = figures(page).iter().map(|(figure, _)| figure.value).collect();
     assert_eq!(found, [3.4, 1.5, 12.5]);
-    let figure = |word: &str| Figure::of(word.into()).unwrap();
+    let figure = |word: &str| PageNumber::of(word.into()).unwrap();
     assert!(figure("3.4").is_near(3.449) && figure("3.40").is_near(3.404) && !figure("3.40").is_near(3.41));
 }
 

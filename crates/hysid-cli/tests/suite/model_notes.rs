@@ -1,5 +1,5 @@
-//! What a user is told of a model beside its errors: rows that it was not trained on, data that cannot tell
-//! candidates apart, inputs that are measured from elsewhere than 0.
+//! Notes on a model beside its errors: rows that it was not trained on, data that cannot distinguish
+//! candidates, inputs that are measured from elsewhere than 0.
 
 use crate::workbench::{Workbench, csv, must_contain};
 use hysid::elementary::{cos, sin};

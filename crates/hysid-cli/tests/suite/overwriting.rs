@@ -1,4 +1,4 @@
-//! What is there already: Hysid replaces its own files only, keeps a model that it replaces, and leaves links,
+//! Files that exist: Hysid replaces its own files only, keeps a model that it replaces, and leaves links,
 //! permissions, devices and pipes as they are.
 
 use std::fs;

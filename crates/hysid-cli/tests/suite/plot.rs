@@ -6,7 +6,7 @@ use hysid::elementary::{cos, sin};
 
 use crate::workbench::Workbench;
 
-/// What a machine without fonts says of PDF and PNG. Set where no proof may be missing.
+/// Set where PDF and PNG must be tested; a machine without fonts otherwise skips them.
 const PROVE_ALL: &str = "HYSID_PROVE_ALL";
 
 /// Draws as PDF or PNG; `false`, said aloud, on a machine that has no fonts for it.

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::workbench::Workbench;
 
-/// The commands of a page and what the page says they print.
+/// The commands of a page and their output on the page.
 fn blocks(page: &str) -> Vec<(&str, &str)> {
     let blocks = page.split("```console\n$ hysid ").skip(1);
     blocks.filter_map(|rest| rest.split_once("\n```")?.0.split_once('\n')).collect()

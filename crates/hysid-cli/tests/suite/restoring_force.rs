@@ -218,7 +218,7 @@ fn blanks_leave_blanks_and_a_force_goes_to_stdout() {
     assert_eq!(said.stdout.lines().count(), ROWS + 1);
 }
 
-/// What helps if `--force` is given a value.
+/// Hint if `--force` is given a value.
 const HINT: &str =
     "--force replaces files; a column with the applied force is named by --applied-force force)";
 

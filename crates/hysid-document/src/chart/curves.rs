@@ -79,7 +79,7 @@ impl Canvas<'_> {
         text
     }
 
-    /// What a page needs to know of a curve.
+    /// Attributes of a curve for the script of the page.
     fn attributes(&self, curve: &Curve) -> String {
         let class = match curve.colour {
             Colour::Level(_) => " class=\"curve level\"",
@@ -128,7 +128,7 @@ fn moment(time: f64) -> String {
     format!("{:.12}", Significant(time))
 }
 
-/// What a page needs to know of a drawing, to show a part of it.
+/// Attributes of a drawing for the script of the page, which enlarges a part of it.
 pub(super) fn attributes(chart: &Chart, frame: &Frame) -> String {
     let axis = |name: &str, axis: &Axis| {
         let (low, high, is_logarithmic) = axis.limits();

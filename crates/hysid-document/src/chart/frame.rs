@@ -1,4 +1,4 @@
-//! Axes, title and legend of a drawing. The one place that knows the drawing library.
+//! Axes, title and legend of a drawing. The one place that uses the drawing library.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -30,7 +30,7 @@ const AXIS: f64 = 3.23;
 /// Room that the legend leaves free on both sides together, in pixels.
 const LEGEND_EDGE: f64 = 40.0;
 
-/// What is around the curves.
+/// Surroundings of the curves: axes, labels and legend.
 pub(super) struct Frame {
     pub markup: String,
     /// Left, top, width and height of the place of the curves, in units of the drawing.
@@ -48,7 +48,7 @@ pub(super) fn frame(chart: &Chart, appearance: &Appearance) -> Frame {
     {
         let size = (fine(chart.size.0) as u32, fine(chart.size.1) as u32);
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        place = Layout { chart, appearance }.draw(&root).expect("a drawing into a string succeeds");
+        place = ChartLayout { chart, appearance }.draw(&root).expect("a drawing into a string succeeds");
         root.present().expect("a drawing into a string succeeds");
     }
     // The library escapes what XML needs, and lets through characters that XML has no place for.
@@ -78,12 +78,12 @@ pub(super) fn tick_letters(chart: &Chart, appearance: &Appearance) -> usize {
     vertical_axis(chart, appearance, header).longest_text()
 }
 
-struct Layout<'a> {
+struct ChartLayout<'a> {
     chart: &'a Chart,
     appearance: &'a Appearance,
 }
 
-impl Layout<'_> {
+impl ChartLayout<'_> {
     fn draw(&self, root: &Area) -> Result<[i32; 4], DrawingAreaErrorKind<std::io::Error>> {
         let (chart, appearance) = (self.chart, self.appearance);
         let legend = legend_lines(chart, appearance);

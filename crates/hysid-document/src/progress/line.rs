@@ -6,14 +6,14 @@ const BAR: usize = 24;
 /// Cells of the bar in a narrow terminal.
 const SHORT_BAR: usize = 10;
 
-/// What a line of progress says.
+/// Content of a line of progress.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Line {
     /// Share of the work that is done, 0 to 1.
     pub done: f64,
     /// The fold that is fitted to, counted from 1, and how many there are; `None` without folds.
     pub fold: Option<(usize, usize)>,
-    /// What is being done, such as `iteration 12`.
+    /// Current step of the work, such as `iteration 12`.
     pub part: String,
     /// Training error so far, in percent of the standard deviation of the output, in words without a unit.
     pub error: Option<String>,
@@ -25,7 +25,7 @@ impl Line {
     /// The longest form that fits into this number of columns. All characters of it are one column wide if those of
     /// `part` are.
     ///
-    /// What is left out first is what matters least: cells of the bar, then the bar, words, the part and the error. The
+    /// Shortens the line, the least important first: cells of the bar, then the bar, words, the part and the error. The
     /// share that is done stays, and the remaining time as long as possible.
     pub fn in_columns(&self, columns: usize) -> String {
         let bars = [BAR, SHORT_BAR].map(|cells| format!("[{}] {}", self.bar(cells), self.longest()));

@@ -1,12 +1,12 @@
 //! The remaining time that is shown: an estimate that never rises.
 
-/// Seconds before the first estimate: the first steps of a fit tell little of the others.
+/// Seconds before the first estimate: the first steps of a fit are no measure of the others.
 const BEFORE_THE_FIRST: f64 = 2.0;
 
 /// Less of the work than this gives no estimate.
 const LEAST_SHARE: f64 = 0.01;
 
-/// Below so many seconds the time is not told more precisely.
+/// Seconds below which the remaining time is `a few seconds`.
 const A_FEW: f64 = 5.0;
 
 /// Share of work that is done, at least that of its time limit: work that a limit ends is over with it.
@@ -54,7 +54,7 @@ pub fn in_words(seconds: f64) -> String {
 mod tests {
     use super::*;
 
-    /// Seconds that the words say.
+    /// Seconds in the words.
     fn said(words: &str) -> f64 {
         if words == "a few seconds left" {
             return A_FEW;

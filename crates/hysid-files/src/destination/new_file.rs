@@ -49,7 +49,7 @@ impl<'d> NewFile<'d> {
         self.destination.path()
     }
 
-    /// What is to be said of an error while writing.
+    /// Failure for an error while writing.
     pub fn failed(&self, error: io::Error) -> Failure {
         Failure::refused(self.destination.path())(error)
     }

@@ -134,7 +134,7 @@ def _arrays(rows: list[dict[str, Any]], names: tuple[str, ...]) -> dict[str, np.
 def named_options(
     division: str | None, field: str | None, smoothing_factor: int | None
 ) -> tuple[str | None, str | None, int | None]:
-    """What the native module takes."""
+    """Arguments of the native module."""
     factor = None if smoothing_factor is None else whole("smoothing_factor", smoothing_factor, 1, 10)
     return name_of("division", division), name_of("field", field), factor
 

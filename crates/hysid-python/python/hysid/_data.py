@@ -237,7 +237,7 @@ def _of_table(
 
 
 def _taken_by_name(x: Any, others: dict[str, Any]) -> tuple[Any, list[Any]]:
-    """What is given by the name of a column of `x`, and `x` without these columns."""
+    """`x` without the columns that are given by name, and these columns."""
     named = {what: name for what, name in others.items() if isinstance(name, str)}
     if not named:
         return x, list(others.values())

@@ -63,7 +63,7 @@ class Finding:
 
 
 class _Findings:
-    """What diagnoses of data and of models have in common."""
+    """Base class of the diagnoses of data and of models."""
 
     def __init__(self, content: dict[str, Any]) -> None:
         self.content = content

@@ -1,4 +1,4 @@
-"""What lists of findings have in common: their table in a notebook, and how one is named."""
+"""Lists of findings: their table in a notebook, and how one is named."""
 
 from __future__ import annotations
 

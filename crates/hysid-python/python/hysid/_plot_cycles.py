@@ -45,7 +45,7 @@ def _check(figure: str) -> str:
 
 
 def _whole(table: Cycles, figure: str, over: str) -> tuple[np.ndarray, np.ndarray]:
-    """What a figure is drawn over, and its values, of the complete cycles that have both."""
+    """Abscissae and values of a figure, of the complete cycles that have both."""
     complete = table["complete"]
     places = np.arange(1, complete.sum() + 1) if over == "cycle" else table[over][complete]
     values = table[figure][complete]

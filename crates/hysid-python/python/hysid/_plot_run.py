@@ -1,4 +1,4 @@
-"""What plots are made of: measured data, a free run of a model, and labels of the axes."""
+"""Content of plots: measured data, a free run of a model, and labels of the axes."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Run:
         return [(kind, self.columns._replace(output=Column(y, name))) for kind, y in both if y is not None]
 
     def _shifts_of_records(self) -> dict[int, float]:
-        """What is added to the times of each record, by its first row, if the times of records overlap."""
+        """Offsets to add to the times of each record, by its first row, if the times of records overlap."""
         records = [rows for rows in self.records() if rows.stop > rows.start]
         if self.columns.time is None:
             return {}

@@ -1,4 +1,4 @@
-"""What a model gives: errors, predictions, members."""
+"""Results of a model: errors, predictions, members."""
 
 from __future__ import annotations
 

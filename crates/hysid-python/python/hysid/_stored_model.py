@@ -21,7 +21,7 @@ Self = TypeVar("Self", bound="StoredModel")
 
 
 class StoredModel:
-    """What a model file holds, without running the model."""
+    """Content of a model file, without running the model."""
 
     def __init__(self, native: _hysid.Model) -> None:
         self._native = native
@@ -324,7 +324,7 @@ class StoredModel:
         return Summary(self._facts(), self._errors(), self._parts(), self.notes)
 
     def _facts(self) -> list[tuple[str, str]]:
-        """What it is, in words."""
+        """Description in words."""
         rate = "" if self.rate is None else f", rate by {self.rate} differences"
         if self.rate in ("given", "savitzky-golay"):
             rate = f", rate: {self.rate}"

@@ -22,7 +22,7 @@ WIDTH = 100
 
 @dataclass(frozen=True)
 class Summary:
-    """What a model is, its errors and its parameters: ``print`` it, or display it in a notebook.
+    """Summary of a model, its errors and its parameters: ``print`` it, or display it in a notebook.
 
     Attributes
     ----------

@@ -12,7 +12,7 @@ from hysid import _hysid
 __all__ = ["is_frame", "like", "named_columns", "row_labels", "table_name", "with_column"]
 
 UNITLESS = ("", "1", "-", "dimensionless")
-"""What stands for no unit in the attributes of xarray."""
+"""Attributes of xarray that stand for no unit."""
 
 
 def is_frame(values: Any) -> bool:

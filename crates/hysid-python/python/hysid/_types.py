@@ -1,4 +1,4 @@
-"""What a type checker knows of the data that `Model.simulate` takes and gives."""
+"""Types of the data that `Model.simulate` takes and gives, for type checkers."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Frame(Protocol):
 
 
 class SupportsArray(Protocol):
-    """What NumPy makes an array of."""
+    """Objects that NumPy converts to an array."""
 
     def __array__(self) -> Any: ...
 

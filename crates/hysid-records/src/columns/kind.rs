@@ -11,7 +11,7 @@ pub enum ColumnKind {
     Drives(Domain),
     /// An output.
     Follows(Domain),
-    /// An input, because its name says so: an excitation.
+    /// An input by its name: an excitation.
     Excites,
     /// Temperature, humidity, frequency: a condition of the test.
     Condition,
@@ -231,7 +231,7 @@ pub fn is_current(name: &str) -> bool {
     }
 }
 
-/// True for a name that says no more than the number of a channel.
+/// True for a name that is no more than the number of a channel.
 pub fn is_channel(name: &str) -> bool {
     let letters: String = name.chars().filter(|c| c.is_alphabetic()).collect::<String>().to_lowercase();
     name.chars().any(|c| c.is_ascii_digit())

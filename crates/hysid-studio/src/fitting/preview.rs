@@ -9,7 +9,7 @@ use hysid_records::Data;
 
 use super::latest::Latest;
 use super::watch::SoFar;
-use super::{Course, Keep};
+use super::{FitCourse, Keep};
 
 /// Rows that are simulated: the first of the data.
 const MOST_ROWS: usize = 20_000;
@@ -17,9 +17,9 @@ const MOST_ROWS: usize = 20_000;
 /// Time between two writings of the best model so far.
 const BETWEEN_FILES: Duration = Duration::from_secs(3);
 
-/// What the best model so far simulates.
+/// Simulation of the best model so far.
 #[derive(Clone)]
-pub struct Preview {
+pub struct FitPreview {
     /// Number of the file whose rows were simulated.
     pub file: u64,
     /// Name of the model.
@@ -29,7 +29,7 @@ pub struct Preview {
 }
 
 /// Draws models as they come, until there are no more.
-pub fn draw(models: &Latest<SoFar>, course: &Course, data: &Data, file: u64, keep: &Keep) {
+pub fn draw(models: &Latest<SoFar>, course: &FitCourse, data: &Data, file: u64, keep: &Keep) {
     let rows: Vec<Record> = first_rows(data);
     let mut due = Instant::now();
     while let Some(so_far) = models.take() {
@@ -40,7 +40,7 @@ pub fn draw(models: &Latest<SoFar>, course: &Course, data: &Data, file: u64, kee
             due = Instant::now() + BETWEEN_FILES;
         }
         let Some(output) = simulated(&model, &rows) else { continue };
-        let preview = Preview { file, name, output: Arc::new(output) };
+        let preview = FitPreview { file, name, output: Arc::new(output) };
         *course.preview.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(preview);
         course.change(|state| state.preview += 1);
     }

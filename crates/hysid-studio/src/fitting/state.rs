@@ -1,4 +1,4 @@
-//! What a page shows of a fit.
+//! State of a fit, for the page.
 
 use anyhow::Result;
 use hysid::options::FitSpec;
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::words::said;
 
-/// What is known of a fit. Errors are in percent of the standard deviation of the output.
+/// State of a fit. Errors are in percent of the standard deviation of the output.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct FitState {
     /// Its number.
@@ -23,13 +23,13 @@ pub struct FitState {
     pub remaining_seconds: Option<f64>,
     /// The same in words.
     pub remaining: Option<String>,
-    /// What is being done.
+    /// Current step of the work.
     pub part: String,
     /// The error so far.
     pub error_percent: Option<f64>,
     /// Seconds, and the lowest error until then.
     pub curve: Vec<(f64, f64)>,
-    /// What the errors of the curve are.
+    /// Kind of the errors of the curve.
     pub curve_is: &'static str,
     /// Candidates of `auto`, the lowest error first.
     pub candidates: Vec<Candidate>,

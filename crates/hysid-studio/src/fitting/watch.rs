@@ -10,9 +10,9 @@ use hysid::model::Model;
 use hysid_document::progress::{Remaining, in_words, share_done};
 
 use super::latest::Latest;
-use super::{Candidate, Course, state};
+use super::{Candidate, FitCourse, state};
 
-/// Time between two changes that a page is told of.
+/// Least time between two reports to a page.
 const BETWEEN: Duration = Duration::from_millis(250);
 
 /// Time between two models that are drawn.
@@ -29,8 +29,8 @@ pub struct SoFar {
 
 /// The observer of a fit.
 pub struct Watch<'c> {
-    course: &'c Arc<Course>,
-    words: hysid_app::Course,
+    course: &'c Arc<FitCourse>,
+    words: hysid_app::ProgressText,
     began: Instant,
     limit: Option<Duration>,
     told: Instant,
@@ -46,7 +46,7 @@ pub struct Watch<'c> {
 impl<'c> Watch<'c> {
     /// Passes the best model so far on to `models`.
     pub fn new(
-        course: &'c Arc<Course>,
+        course: &'c Arc<FitCourse>,
         models: &'c Latest<SoFar>,
         starts: usize,
         time_limit: Option<f64>,
@@ -54,7 +54,7 @@ impl<'c> Watch<'c> {
         let now = Instant::now();
         Self {
             course,
-            words: hysid_app::Course::new(starts),
+            words: hysid_app::ProgressText::new(starts),
             began: now,
             limit: time_limit.map(Duration::from_secs_f64),
             told: now,
@@ -66,7 +66,7 @@ impl<'c> Watch<'c> {
         }
     }
 
-    /// Takes what the fit tells; breaks if it is to end.
+    /// Takes a report of the fit's progress; breaks if the fit is to end.
     pub fn observe(&mut self, progress: &Progress) -> ControlFlow<()> {
         self.words.take(progress);
         let lowest = self.errors.last().map_or(f64::INFINITY, |(_, lowest)| *lowest);
@@ -89,7 +89,7 @@ impl<'c> Watch<'c> {
         if is_late || self.course.is_to_stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Ends with the fit; tells its seconds.
+    /// Ends with the fit; returns its seconds.
     pub fn finish(mut self) -> f64 {
         let seconds = self.began.elapsed().as_secs_f64();
         self.course.change(|state| {

@@ -8,17 +8,17 @@ use std::sync::{Mutex, MutexGuard};
 
 use anyhow::{Result, bail};
 
-use super::{Folder, Inner};
+use super::{Folder, ProjectFolder};
 
-/// Begins the names of empty files that tell which data were being read. The number of the file follows.
+/// Begins the names of empty files that mark which data were being read. The number of the file follows.
 const READING: &str = ".reading-";
 
 /// Files that are held back, until one is read again or removed.
 #[derive(Debug, Default)]
-pub(super) struct Readings(Mutex<State>);
+pub(super) struct Readings(Mutex<ReadingState>);
 
 #[derive(Debug, Default)]
-struct State {
+struct ReadingState {
     held_back: HashSet<u64>,
     is_ending: bool,
 }
@@ -26,7 +26,7 @@ struct State {
 impl Readings {
     /// Those that a studio left in a folder of data when it was killed.
     pub fn left_in(data: &Path) -> Self {
-        Self(Mutex::new(State { held_back: numbers(data), is_ending: false }))
+        Self(Mutex::new(ReadingState { held_back: numbers(data), is_ending: false }))
     }
 }
 
@@ -67,7 +67,7 @@ impl Folder {
     pub fn end_readings(&self) {
         let mut readings = self.readings();
         readings.is_ending = true;
-        for id in numbers(&self.root.join(Inner::Data.name())) {
+        for id in numbers(&self.root.join(ProjectFolder::Data.name())) {
             if !readings.held_back.contains(&id) {
                 self.remove(&self.mark_of_reading(id));
             }
@@ -75,10 +75,10 @@ impl Folder {
     }
 
     fn mark_of_reading(&self, id: u64) -> PathBuf {
-        self.root.join(Inner::Data.name()).join(format!("{READING}{id}"))
+        self.root.join(ProjectFolder::Data.name()).join(format!("{READING}{id}"))
     }
 
-    fn readings(&self) -> MutexGuard<'_, State> {
+    fn readings(&self) -> MutexGuard<'_, ReadingState> {
         self.readings.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }

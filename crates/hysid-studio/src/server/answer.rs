@@ -57,13 +57,13 @@ impl IntoResponse for Problem {
     }
 }
 
-/// An answer, or why there is none.
+/// A response, or why there is none.
 pub type Answer<T> = Result<T, Problem>;
 
-/// Time after which an answer is given up.
+/// Time after which a response is given up.
 pub const LONGEST_COMPUTATION: Duration = Duration::from_secs(600);
 
-/// Computes an answer on a thread of its own: reads tables or runs models, one of few at a time.
+/// Computes a response on a thread of its own: reads tables or runs models, one of few at a time.
 pub async fn computed<T: Send + 'static>(
     shared: Shared,
     compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
@@ -81,7 +81,7 @@ pub async fn diagnosed<T: Send + 'static>(
     on_a_thread(shared, permit.ok(), compute).await
 }
 
-/// An answer that takes moments: it waits for no other.
+/// Computes a quick response, which waits for no other.
 pub async fn at_once<T: Send + 'static>(
     shared: Shared,
     compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,

@@ -15,7 +15,7 @@ const PAGE: &str = include_str!("../../page/index.html");
 /// The page that shows a report.
 const REPORT: &str = include_str!("../../page/report.html");
 
-/// What a report may do: run the program's own script, and nothing else.
+/// Script that a report may run: the program's own, and no other.
 static REPORT_SCRIPT: LazyLock<String> = LazyLock::new(|| checksum(html::script_of_pages()));
 
 /// A script as a policy names it.

@@ -16,7 +16,7 @@ use tokio::task::{AbortHandle, JoinSet};
 /// Time after which a connection is tried again that the system refused: once one was closed, and if none could be.
 const AFTER_FAILURE: [Duration; 2] = [Duration::from_millis(2), Duration::from_millis(100)];
 
-/// What connections may take.
+/// Limits of connections.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
     /// Time for the first lines of a request; a connection without requests is closed after it too.

@@ -20,23 +20,23 @@ const BETWEEN: Duration = Duration::from_millis(150);
 /// Time between two keep-alive messages, by which a browser notices that a connection is gone.
 const ALIVE: Duration = Duration::from_secs(15);
 
-/// What a page knows already.
-struct Known {
+/// State that a page has received.
+struct PageState {
     shared: Shared,
     news: watch::Receiver<News>,
     project: Option<u64>,
     fit: u64,
 }
 
-/// Tells of changes until the page or the studio is closed. The first event is the state of the project.
+/// Sends changes until the page or the studio is closed. The first event is the state of the project.
 pub async fn events(State(shared): State<Shared>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
     let news = shared.studio.news();
     let fit = news.borrow().fit.wrapping_sub(1);
-    let known = Known { fit, news, shared, project: None };
+    let known = PageState { fit, news, shared, project: None };
     Sse::new(unfold(known, next)).keep_alive(KeepAlive::new().interval(ALIVE))
 }
 
-async fn next(mut known: Known) -> Option<(Result<Event, Infallible>, Known)> {
+async fn next(mut known: PageState) -> Option<(Result<Event, Infallible>, PageState)> {
     loop {
         let present = *known.news.borrow_and_update();
         if known.project != Some(present.project) {

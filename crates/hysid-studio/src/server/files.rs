@@ -102,7 +102,7 @@ pub async fn read_again(State(shared): State<Shared>, Path(id): Path<u64>) -> An
     Ok(done())
 }
 
-/// What a file is for.
+/// Use of a file, in the query of a request.
 #[derive(Deserialize)]
 pub struct Usage {
     #[serde(rename = "use")]
@@ -170,7 +170,7 @@ impl AskedColumns {
     }
 }
 
-/// Says which columns are what; answers with a note if one of them stays what it was.
+/// Sets the roles of columns; returns a note if one of them stays what it was.
 pub async fn columns(
     State(shared): State<Shared>,
     Json(asked): Json<Option<AskedColumns>>,
@@ -212,7 +212,7 @@ fn columns_of(data: &Data) -> Vec<(&'static str, Vec<f64>)> {
     columns
 }
 
-/// What may be wrong with the training data.
+/// Issues of the training data.
 pub async fn findings(State(shared): State<Shared>) -> Answer<Response> {
     Ok(value(diagnosed(shared, |studio| studio.findings()).await?))
 }

@@ -1,4 +1,4 @@
-//! Access: only the page that this studio opened gets answers about the project.
+//! Access: only the page that this studio opened can read the project.
 //!
 //! Every request about the project needs the key in a header. A page of somebody else has no key; nor can it pretend to
 //! be this machine by a name of its own (DNS rebinding), because `Host` must be the address of this server, and `Origin`,
@@ -21,12 +21,12 @@ use super::keys::Keys;
 
 const KEY: HeaderName = HeaderName::from_static("x-hysid-key");
 
-/// What a page may do: use what this server gives, and nothing else.
+/// Content policy of a page: it uses only what this server gives.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
                       connect-src 'self'; font-src 'self'; form-action 'none'; base-uri 'none'; \
                       frame-ancestors 'none'";
 
-/// Headers of every answer.
+/// Headers of every response.
 const HEADERS: [(HeaderName, &str); 6] = [
     (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
     (header::X_FRAME_OPTIONS, "DENY"),
@@ -38,9 +38,9 @@ const HEADERS: [(HeaderName, &str); 6] = [
 
 /// The address and the keys of this studio.
 #[derive(Clone)]
-pub struct Guard(Arc<Known>);
+pub struct Guard(Arc<GuardState>);
 
-struct Known {
+struct GuardState {
     host: String,
     origin: String,
     cookie: String,
@@ -53,7 +53,7 @@ impl Guard {
         // `localhost` may be the address of another server, at `::1`.
         let host = format!("127.0.0.1:{port}");
         // Cookies do not tell ports apart: two studios need two names.
-        Self(Arc::new(Known {
+        Self(Arc::new(GuardState {
             origin: format!("http://{host}"),
             host,
             cookie: format!("hysid-studio-{port}"),
@@ -78,7 +78,7 @@ impl Guard {
         None
     }
 
-    /// The answer to an address with a token: the page without it, and a ticket; `None` for any other address.
+    /// Response to an address with a token: the page without it, and a ticket; `None` for any other address.
     fn opening(&self, request: &Request) -> Option<Response> {
         let query = request.uri().query().filter(|_| request.uri().path() == "/")?;
         let token = query.split('&').find_map(|pair| pair.strip_prefix("token="))?;
@@ -136,7 +136,7 @@ pub async fn check_key(
     Problem::refused(words).into_response()
 }
 
-/// Refuses requests of other pages, opens the page, and gives every answer its headers.
+/// Refuses requests of other pages, opens the page, and adds the headers to every response.
 pub async fn check(State(guard): State<Guard>, request: Request, next: Next) -> Response {
     let refused = guard.refusal(&request).map(IntoResponse::into_response);
     let mut response = match refused.or_else(|| guard.opening(&request)) {

@@ -1,4 +1,4 @@
-//! What opens a studio: a token that is used once, and the key that the page has from then on.
+//! Keys of a studio: a token that is used once, and the key that the page has from then on.
 //!
 //! A token is in the address that is printed, another in a file that only the user can read. Whoever opens one of them
 //! gets a ticket in a cookie, which the page exchanges for the key at once. The key goes with every request in a header,
@@ -18,7 +18,7 @@ const BYTES: usize = 24;
 /// Time in which a page exchanges its ticket.
 const TICKET_LIFE: Duration = Duration::from_secs(60);
 
-/// What opens a studio.
+/// Tokens, tickets and the key of a studio.
 pub struct Keys {
     studio: Arc<Studio>,
     port: u16,
@@ -26,7 +26,7 @@ pub struct Keys {
     valid: Mutex<Valid>,
 }
 
-/// What is valid until it is used.
+/// Tokens and tickets that are valid until used.
 struct Valid {
     /// The token of the printed address.
     printed: Option<String>,

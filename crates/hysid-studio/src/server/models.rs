@@ -40,7 +40,7 @@ pub async fn unsaved(State(shared): State<Shared>) -> Answer<Response> {
     Ok(download(&name, "application/json", text.into_bytes()))
 }
 
-/// What the best model so far simulates.
+/// Simulation of the best model so far.
 pub async fn preview(State(shared): State<Shared>) -> Answer<Arrays> {
     let nothing = || Problem::new(axum::http::StatusCode::NOT_FOUND, "there is no model so far");
     let preview = shared.studio.preview().ok_or_else(nothing)?;
@@ -109,7 +109,7 @@ pub async fn run(
     .await
 }
 
-/// What is known of a model.
+/// Facts of a model.
 pub async fn facts(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
     Ok(value(json!({"html": diagnosed(shared, move |studio| studio.facts(id)).await?})))
 }

@@ -15,7 +15,7 @@ use crate::choices;
 /// Largest body of a request that is no file: a path of some inputs.
 const MOST_BODY_BYTES: usize = 8 << 20;
 
-/// All addresses, for the page that the guard knows.
+/// All addresses, for the page that the guard admits.
 pub fn router(shared: Shared, guard: Guard) -> Router {
     let of_files = Router::new()
         .route("/files", post(files::upload).layer(DefaultBodyLimit::disable()))
@@ -69,7 +69,7 @@ async fn project(State(shared): State<Shared>) -> Answer<Response> {
     Ok(value(at_once(shared, |studio| Ok(studio.shown())).await?))
 }
 
-/// What the server itself refuses, in words of the same form.
+/// Rewrites errors of the server itself in the form of all others.
 async fn in_words(response: Response) -> Response {
     let kind = response.headers().get("content-type").map(|kind| kind.to_str().unwrap_or_default());
     let is_in_words = kind.is_some_and(|kind| kind.starts_with("application/json"));

@@ -8,7 +8,7 @@ use super::*;
 use crate::folder::Folder;
 
 /// A server that runs, asked byte by byte.
-struct Running {
+struct RunningServer {
     port: u16,
     address: String,
     studio: Arc<Studio>,
@@ -23,7 +23,7 @@ struct Answered {
     body: String,
 }
 
-impl Running {
+impl RunningServer {
     fn begin(folder: &Path, limits: Limits) -> Self {
         let studio = Arc::new(Studio::open(Folder::open(Some(folder)).unwrap()).unwrap());
         let (server, ending) = Server::bind(Arc::clone(&studio), Some(0)).unwrap();
@@ -73,7 +73,7 @@ impl Running {
     }
 }
 
-impl Drop for Running {
+impl Drop for RunningServer {
     fn drop(&mut self) {
         self.ending.end();
         drop(self.serving.take().map(JoinHandle::join));
@@ -108,7 +108,7 @@ fn asked(stream: &mut TcpStream, port: u16, request: &str, headers: &str, body: 
 #[test]
 fn tokens_work_once_and_only_the_key_reads_the_project() {
     let place = tempfile::tempdir().unwrap();
-    let running = Running::begin(&place.path().join("p"), Limits::default());
+    let running = RunningServer::begin(&place.path().join("p"), Limits::default());
     let token = running.address.split_once("?token=").unwrap().1.to_string();
     let cookie = running.ticket(&token).unwrap();
     assert_eq!(running.ask(&format!("GET /?token={token}"), "", "").status, 403, "a second time");
@@ -135,7 +135,7 @@ fn tokens_work_once_and_only_the_key_reads_the_project() {
 fn the_file_that_opens_the_page_is_private_and_always_new() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path().join("p");
-    let running = Running::begin(&folder, Limits::default());
+    let running = RunningServer::begin(&folder, Limits::default());
     let (first, printed) = (running.filed_token(), running.address.split_once("=").unwrap().1);
     assert_ne!(first, printed);
     assert!(running.key(&running.ticket(&first).unwrap()).is_some());
@@ -153,7 +153,7 @@ fn the_file_that_opens_the_page_is_private_and_always_new() {
     assert!(!folder.join("studio.html").exists());
     // A file of the user stays, and the printed address does it alone.
     std::fs::write(folder.join("studio.html"), "mine").unwrap();
-    let running = Running::begin(&folder, Limits::default());
+    let running = RunningServer::begin(&folder, Limits::default());
     running.opened();
     drop(running);
     assert_eq!(std::fs::read(folder.join("studio.html")).unwrap(), b"mine");
@@ -163,7 +163,7 @@ fn the_file_that_opens_the_page_is_private_and_always_new() {
 fn strangers_that_only_wait_are_closed_and_shut_nobody_out() {
     let place = tempfile::tempdir().unwrap();
     let limits = Limits { header: Duration::from_secs(1), connections: 6 };
-    let running = Running::begin(&place.path().join("p"), limits);
+    let running = RunningServer::begin(&place.path().join("p"), limits);
     let key = running.opened();
     let mut own = running.connect();
     assert_eq!(asked(&mut own, running.port, "GET /api/project", &key, "").unwrap().status, 200);
@@ -189,7 +189,7 @@ fn strangers_that_only_wait_are_closed_and_shut_nobody_out() {
 #[test]
 fn light_requests_are_answered_while_files_are_read_and_diagnoses_run() {
     let place = tempfile::tempdir().unwrap();
-    let running = Running::begin(&place.path().join("p"), Limits::default());
+    let running = RunningServer::begin(&place.path().join("p"), Limits::default());
     let key = running.opened();
     running.studio.take_specimen("ferromagnet", 1, 0.0).unwrap();
     let _reading = running.studio.being_read();
@@ -217,7 +217,7 @@ fn light_requests_are_answered_while_files_are_read_and_diagnoses_run() {
 #[test]
 fn errors_have_words_and_not_too_many() {
     let place = tempfile::tempdir().unwrap();
-    let running = Running::begin(&place.path().join("p"), Limits::default());
+    let running = RunningServer::begin(&place.path().join("p"), Limits::default());
     let headers = format!("{}Origin: http://127.0.0.1:{}\r\n", running.opened(), running.port);
     let long = "x".repeat(200_000);
     for (request, body) in [

@@ -1,4 +1,4 @@
-//! Files of a project, and what they say.
+//! Files of a project, and their content.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use hysid_tables::Table;
 use serde_json::{Value, json};
 
 use super::Studio;
-use crate::folder::{Inner, UPLOAD, cannot_read};
+use crate::folder::{ProjectFolder, UPLOAD, cannot_read};
 use crate::project::{ChosenColumns, Project, ProjectFile, Use};
 use crate::view::{View, read};
 use crate::words::said;
@@ -47,7 +47,7 @@ impl Studio {
     /// is in none.
     pub fn take_file(&self, given: &str, place: &Path, usage: Use) -> Result<u64> {
         let reading = self.project().understanding.reading.clone();
-        let name = self.folder.free_name(Inner::Data, given)?;
+        let name = self.folder.free_name(ProjectFolder::Data, given)?;
         let content = fs::read(place).map_err(|error| cannot_read(Path::new(&name), &error))?;
         let bytes = content.len() as u64;
         let checksum = hysid_files::checksum(&content[..])?;
@@ -55,7 +55,7 @@ impl Studio {
         let mut stored = None;
         let entered = self.change(|project| {
             check_room(project)?;
-            let name = self.folder.free_name(Inner::Data, given)?;
+            let name = self.folder.free_name(ProjectFolder::Data, given)?;
             let path = self.folder.data(&name);
             fs::rename(place, &path)
                 .map_err(|error| anyhow!("{name}: cannot be stored: {}", hysid_files::reason(&error)))?;
@@ -98,7 +98,7 @@ impl Studio {
         self.take_content(&name, &content, usage).map(drop)
     }
 
-    /// What the next file is for: the first are for training; once there is a model, a file is unseen.
+    /// Use of the next file: the first are for training; once there is a model, a file is unseen.
     pub fn usage_of_next(&self) -> Use {
         if self.project().models.is_empty() { Use::Training } else { Use::Unseen }
     }
@@ -165,7 +165,7 @@ impl Studio {
     /// # Errors
     /// Columns that the training files do not have, or one with two roles. Nothing is then changed.
     ///
-    /// The answer is a note on a column that has a role by its name although none was chosen for it.
+    /// Returns a note on a column that has a role by its name although none was chosen for it.
     pub fn choose_columns(&self, columns: Option<ChosenColumns>) -> Result<Option<String>> {
         let before = self.project().clone();
         let first = before.files_for(Use::Training).chain(&before.files).next();
@@ -216,7 +216,7 @@ impl Studio {
         view.training(&project, &self.folder)
     }
 
-    /// What may be wrong with the training data: what a fit warns of, and what the diagnosis finds.
+    /// Issues of the training data: warnings of a fit, and findings of the diagnosis.
     pub fn findings(&self) -> Result<Value> {
         let data = self.training_data()?;
         let warnings = summarised(&Summary::of(&data.set).warnings(&data.set));

@@ -12,12 +12,12 @@ use hysid_files::Kind;
 use hysid_records::{Data, Usage};
 
 use super::Studio;
-use crate::fitting::{Finish, FitState, Preview, Unsaved, Work, caught};
-use crate::folder::Inner;
+use crate::fitting::{Finish, FitPreview, FitState, FitWork, Unsaved, caught};
+use crate::folder::ProjectFolder;
 use crate::project::{Begun, ChosenColumns, FitRequest, ProjectModel, Use};
 use crate::words::said;
 
-/// What a fit has found, until it is stored.
+/// Result of a fit, until it is stored.
 pub struct Found {
     begun: Begun,
     identified: Identified,
@@ -71,7 +71,7 @@ impl Studio {
             let folder = &keeping.folder;
             drop(folder.write(&folder.best_so_far(), Kind::Model, model.to_json().as_bytes()));
         });
-        let work = Work { id, request: spec, data, beforehand, file, time_limit, keep };
+        let work = FitWork { id, request: spec, data, beforehand, file, time_limit, keep };
         let finish: Finish = Box::new(move |found| match found {
             Ok((identified, data)) => {
                 let text = identified.model.to_json();
@@ -101,15 +101,15 @@ impl Studio {
         self.fits.state()
     }
 
-    /// What the best model so far simulates.
-    pub fn preview(&self) -> Option<Preview> {
+    /// Simulation of the best model so far.
+    pub fn preview(&self) -> Option<FitPreview> {
         self.fits.preview()
     }
 
     /// Ends everything: the fit stops with its best model so far, which is saved.
     ///
     /// # Errors
-    /// A model that cannot be stored; the error says where a copy is.
+    /// A model that cannot be stored; the error names the place of a copy.
     pub fn end(&self) -> Result<()> {
         self.folder.end_readings();
         self.fits.end();
@@ -161,7 +161,7 @@ impl Studio {
     fn store_model(&self, found: &Found) -> Result<()> {
         let file = self.place_model(found.begun.id, &found.identified.model, &found.text)?;
         // A model is worth more than its report.
-        let report = self.folder.free_name(Inner::Models, &format!("{}.html", found.stem()))?;
+        let report = self.folder.free_name(ProjectFolder::Models, &format!("{}.html", found.stem()))?;
         let written = caught(|| self.write_report(&report, &file, found));
         self.keep(ProjectModel {
             begun: found.begun.clone(),
@@ -181,7 +181,7 @@ impl Studio {
         if !is_named && self.folder.read(&path).is_ok_and(|there| there == text.as_bytes()) {
             return Ok(file);
         }
-        let file = self.folder.free_name(Inner::Models, &file)?;
+        let file = self.folder.free_name(ProjectFolder::Models, &file)?;
         self.folder.write(&self.folder.models(&file), Kind::Model, text.as_bytes())?;
         Ok(file)
     }
@@ -220,7 +220,7 @@ impl Studio {
         drop(forgotten);
     }
 
-    /// Keeps the best model so far of a fit that ends without a model, and says so.
+    /// Keeps the best model so far of a fit that ends without a model, and reports it.
     fn keep_the_best(&self, problem: anyhow::Error) -> anyhow::Error {
         let Some(begun) = self.project().unfinished.clone() else { return problem };
         match self.model_in(&self.folder.best_so_far()) {
@@ -253,7 +253,7 @@ impl Studio {
         })
     }
 
-    /// Keeps the model of a fit that an earlier studio did not bring to its end, and says so.
+    /// Keeps the model of a fit that an earlier studio did not bring to its end, and reports it.
     ///
     /// # Errors
     /// It cannot be stored; it stays where it is.

@@ -29,18 +29,18 @@ pub(super) struct Models(Mutex<HashMap<u64, ReadModel>>);
 
 /// A model, or why its file holds none.
 struct ReadModel {
-    of: State,
+    of: FileStamp,
     model: std::result::Result<Arc<Model>, String>,
 }
 
-/// What tells that a file is another than the one that was read.
+/// Size and time stamp of a file, which show that it has changed since it was read.
 #[derive(PartialEq)]
-struct State {
+struct FileStamp {
     bytes: u64,
     changed: Option<SystemTime>,
 }
 
-impl State {
+impl FileStamp {
     fn of(path: &Path) -> Option<Self> {
         let found = fs::symlink_metadata(path).ok()?;
         Some(Self { bytes: found.len(), changed: found.modified().ok() })
@@ -54,7 +54,7 @@ impl Models {
 
     /// The model of a file, which is read once, also if it holds none.
     pub fn of(&self, id: u64, path: &Path, text: impl FnOnce() -> Result<String>) -> Result<Arc<Model>> {
-        let state = State::of(path);
+        let state = FileStamp::of(path);
         if let Some(known) = self.kept().get(&id).filter(|known| Some(&known.of) == state.as_ref()) {
             return known.model.clone().map_err(anyhow::Error::msg);
         }
@@ -146,7 +146,7 @@ impl Studio {
         })
     }
 
-    /// What is known of a model, as HTML.
+    /// Facts of a model, as HTML.
     pub fn facts(&self, id: u64) -> Result<String> {
         let (model, path) = (self.model(id)?, self.model_file(id)?);
         let file = PathBuf::from(path.file_name().unwrap_or_default());

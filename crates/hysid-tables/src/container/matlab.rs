@@ -112,7 +112,7 @@ fn lines(variables: &[MatVariable]) -> String {
     text
 }
 
-/// The last part of a name says what it is; a matrix has numbered columns.
+/// The last part of a name is the column's; a matrix has numbered columns.
 fn columns_of(variable: &MatVariable) -> Vec<(String, &Vec<f64>)> {
     let name = variable.name.rsplit('.').next().unwrap_or_default();
     match variable.columns.as_slice() {

@@ -106,7 +106,7 @@ impl LineRun {
         Some(run)
     }
 
-    /// With the rows directly above in which too many cells are no numbers: what is wrong with them is told where they
+    /// With the rows directly above in which too many cells are no numbers: their faults are reported where they
     /// are read.
     pub fn with_rows_above(mut self, lines: &[TextLine<'_>]) -> Self {
         for place in (1..self.lines.start).rev() {

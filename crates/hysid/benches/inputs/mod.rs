@@ -1,4 +1,4 @@
-//! What the benchmarks measure on: an input, networks of any size, and data to fit.
+//! Inputs of the benchmarks: an input, networks of any size, and data to fit.
 
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::elementary::{cos, ln, sin};

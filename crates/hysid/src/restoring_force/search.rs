@@ -24,7 +24,7 @@ const LONGER: f64 = 1.7;
 /// The channel of each record: its time stamps and values.
 pub type Channel<'a> = (&'a [f64], &'a [f64]);
 
-/// What filters are tried on.
+/// Records on which filters are tried.
 pub struct Search<'s> {
     records: &'s [Channel<'s>],
     /// The rows of each record.
@@ -143,7 +143,7 @@ impl Trial {
 #[derive(Debug, Clone, Copy)]
 struct Apart {
     total: f64,
-    /// What noise, and the smoothing error of the other filter, add to it.
+    /// Error that noise, and the smoothing error of the other filter, add to it.
     by_others: f64,
 }
 

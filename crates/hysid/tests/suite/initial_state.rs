@@ -53,7 +53,7 @@ fn magnet() -> Preisach {
     .unwrap()
 }
 
-/// What the magnet does along a path after a lead-in that nobody has recorded.
+/// Record of the magnet along a path, after a lead-in that is not recorded.
 fn measured(name: &str, lead_in: &[f64], x: Vec<f64>) -> Record {
     let driven: Vec<f64> = lead_in.iter().chain(&x).copied().collect();
     let y = run(&magnet(), &samples_of(&driven)).split_off(lead_in.len());

@@ -19,7 +19,7 @@ fn fitted_to(data: &Dataset, name: ModelName, rate: Option<RateMethod>) -> Model
 
 use Property::*;
 
-/// What theory guarantees of each model whatever its parameters: properties it has and properties it has not.
+/// Properties that theory guarantees for each model whatever its parameters: those it has and those it has not.
 fn guaranteed(name: &str) -> (&'static [Property], &'static [Property]) {
     match name {
         "pnn" | "masing" | "prandtl-ishlinskii" => {

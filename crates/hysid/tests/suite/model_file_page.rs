@@ -23,7 +23,7 @@ fn in_backticks(text: &str) -> Vec<&str> {
     text.split('`').skip(1).step_by(2).collect()
 }
 
-/// What the page documents: the first cells of the tables that begin with `field`, below headings with paths.
+/// Fields that the page documents: the first cells of the tables that begin with `field`, below headings with paths.
 fn documented(page: &str) -> Fields {
     let mut fields = Fields::new();
     let mut objects = Vec::new();

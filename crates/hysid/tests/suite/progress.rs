@@ -1,4 +1,4 @@
-//! What an observer of a fit can see: the best model so far, and the candidates of `auto`.
+//! Observers of a fit: the best model so far, and the candidates of `auto`.
 
 use crate::scaffold::*;
 use std::collections::BTreeMap;
@@ -109,16 +109,16 @@ fn a_law_without_a_search_has_no_model_on_its_way() {
     assert!(models.is_empty());
 }
 
-/// What was told of a candidate last.
+/// Last report on a candidate.
 #[derive(Debug, PartialEq)]
-struct Told {
+struct CandidateReport {
     standing: Standing,
     error_percent: Option<(f64, f64)>,
     folds: (usize, usize),
 }
 
 /// A fit with what was told of each candidate, until `most` tellings.
-fn told(data: &Dataset, request: &FitSpec, most: usize) -> (Model, BTreeMap<String, Told>) {
+fn told(data: &Dataset, request: &FitSpec, most: usize) -> (Model, BTreeMap<String, CandidateReport>) {
     let mut all = BTreeMap::new();
     let mut count = 0;
     let fitted = identify(data, request, &mut |progress: &Progress| {
@@ -133,7 +133,7 @@ fn told(data: &Dataset, request: &FitSpec, most: usize) -> (Model, BTreeMap<Stri
         let trained = tried.model.and_then(|model| model.provenance().trained_error().nrmse_std_percent);
         assert_eq!(trained, (!progress.train_nrmse_percent.is_nan()).then_some(progress.train_nrmse_percent));
         let (error_percent, folds) = (tried.error_percent, (tried.folds, tried.of));
-        all.insert(tried.name.clone(), Told { standing: tried.standing, error_percent, folds });
+        all.insert(tried.name.clone(), CandidateReport { standing: tried.standing, error_percent, folds });
         count += 1;
         if count == most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
@@ -148,7 +148,7 @@ fn the_candidates_that_are_told_are_those_of_the_selection() {
     let selection = model.provenance().selection.as_ref().unwrap();
     for candidate in &selection.candidates {
         let of = selection.folds.len();
-        let expected = Told {
+        let expected = CandidateReport {
             standing: Standing::Complete,
             error_percent: Some(candidate.error_percent),
             folds: (of, of),

@@ -1,4 +1,4 @@
-//! What every model promises, whatever it is: it is found by its name, its file holds it to the last bit,
+//! Guarantees of every model: it is found by its name, its file holds it to the last bit,
 //! stepping and simulating agree, its parameters are named.
 
 use crate::scaffold::*;

@@ -1,4 +1,4 @@
-//! What most tests of the suite use.
+//! Imports and helpers that most tests of the suite use.
 
 pub use std::ops::ControlFlow;
 

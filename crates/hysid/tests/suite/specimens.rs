@@ -98,7 +98,7 @@ fn every_cycle_dissipates_what_its_loop_encloses() {
     }
 }
 
-/// What the joint is designed to show, and that it is degradation and pinching that show it.
+/// Strength and stiffness fall and the loops pinch, and degradation and pinching cause it.
 #[test]
 fn the_joint_loses_strength_and_stiffness_and_pinches() {
     let test = Specimen::named("reinforced-concrete-joint").unwrap().test();

@@ -91,7 +91,7 @@ fn many_records_stop_too() {
     }
 }
 
-/// What a search had found when it was asked to stop in the midst of its first round is a model.
+/// A search that is stopped in the midst of its first round gives a model.
 #[test]
 fn a_search_that_is_stopped_early_gives_its_best_point() {
     let data = noisy(3000, 1);

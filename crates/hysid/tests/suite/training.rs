@@ -124,8 +124,8 @@ fn the_rate_tells_two_speeds_apart() {
     assert!(with < 5.0 && without > 20.0, "{with} %, {without} %");
 }
 
-/// What the observer is told.
-struct Told {
+/// Progress report of the observer.
+struct TrainingReport {
     phase: Phase,
     start: usize,
     epoch: usize,
@@ -133,7 +133,7 @@ struct Told {
     done: f64,
 }
 
-impl Told {
+impl TrainingReport {
     fn of(progress: &Progress) -> Self {
         let &Progress { phase, start, epoch, train_nrmse_percent, done, .. } = progress;
         Self { phase, start, epoch, train_nrmse_percent, done }
@@ -144,9 +144,9 @@ impl Told {
 fn the_observer_sees_the_share_of_the_work_grow() {
     let data = bank_data(150);
     let options = small(Family::PreisachNn, 3, 2);
-    let mut seen: Vec<Told> = Vec::new();
+    let mut seen: Vec<TrainingReport> = Vec::new();
     let fitted = fit(&data, &options, &mut |progress: &Progress| {
-        seen.push(Told::of(progress));
+        seen.push(TrainingReport::of(progress));
         ControlFlow::Continue(())
     });
     assert!(seen.len() > 20);

@@ -17,7 +17,7 @@ pub fn source_folder(path: &str) -> Option<String> {
     folder.ends_with("src/").then(|| folder.to_owned())
 }
 
-/// What the rooms of the crate in a folder use of each other, and what the parts of each room use of each other.
+/// Uses among the rooms of the crate in a folder, and among the parts of each room.
 pub fn uses(folder: &str, files: &[SourceFile]) -> Result<Vec<Uses>> {
     let mut re_exported = BTreeMap::new();
     let mut by_rooms: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();

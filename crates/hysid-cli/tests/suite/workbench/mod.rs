@@ -12,7 +12,7 @@ pub struct Workbench {
     folder: TempDir,
 }
 
-/// What a run left.
+/// Result of a run.
 pub struct Ran {
     /// Exit status; `None` if a signal ended it.
     pub status: Option<i32>,
@@ -114,7 +114,7 @@ impl Workbench {
         ran
     }
 
-    /// What a run that succeeds prints as JSON.
+    /// Runs the program, which must succeed, and parses its stdout as JSON.
     #[track_caller]
     pub fn json(&self, arguments: &str) -> serde_json::Value {
         json(&self.succeeds(arguments))
@@ -153,7 +153,7 @@ pub fn must_contain(text: &str, words: &[&str]) {
     }
 }
 
-/// What a run that succeeded printed as JSON.
+/// Stdout of a successful run, parsed as JSON.
 pub fn json(ran: &Ran) -> serde_json::Value {
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
     serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {}", ran.stdout))
@@ -172,7 +172,7 @@ pub fn columns(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
     (names, columns)
 }
 
-/// Rows of a table: on each line the exit status, the arguments of the program, `=>`, and what it says.
+/// Rows of a table: on each line the exit status, the arguments of the program, `=>`, and its output.
 pub fn cases(table: &str) -> impl Iterator<Item = (i32, &str, &str)> {
     table.lines().filter(|line| !line.trim().is_empty()).map(|line| {
         let (asked, said) = line.trim().split_once(" => ").unwrap();

@@ -1,4 +1,4 @@
-//! MATLAB files of version 5, which MATLAB writes unless told otherwise, as far as they have real numbers, in variables
+//! MATLAB files of version 5, the default of MATLAB, as far as they have real numbers, in variables
 //! and in structures. Source: "MAT-File Format", The MathWorks.
 //!
 //! A file is a header of 128 bytes and elements: type, size, data. A matrix is an element of elements: flags, sizes,

@@ -1,5 +1,5 @@
-//! The archive of a spreadsheet, checked before a library reads it: what its parts unpack to, and what their numbers ask
-//! for.
+//! The archive of a spreadsheet, checked before a library reads it: the unpacked size of its parts, and the memory that
+//! their numbers need.
 
 use std::io::{Cursor, Write as _};
 
