@@ -1,4 +1,4 @@
-//! Models side by side: each is fitted to the same data, and judged on data that none has seen.
+//! Comparison of models: fits them to the same data and compares their errors on test data.
 
 mod page;
 
@@ -24,16 +24,16 @@ use hysid_document::visible;
 /// A simulation is timed over at least this time.
 const TIMED: Duration = Duration::from_millis(30);
 
-/// Seconds for a model that is named; `auto` has no limit of its own, so that its row is what `fit` gives.
+/// Default time limit of a named model, in seconds; `auto` has none, so that its result is that of `fit`.
 const TIME_LIMIT: f64 = 20.0;
 
 /// Models to compare, and the data for it.
 #[derive(Debug, Clone)]
 pub struct CompareRequest<'a> {
     pub train: &'a Dataset,
-    /// Data that no model is fitted to; without them, models are compared on the training data.
+    /// Test data, which no model is fitted to; without them, models are compared on the training data.
     pub test: Option<&'a Dataset>,
-    /// Models with their options; the one that takes longest first.
+    /// Models with their options, in the order in which their fits begin: the slowest first saves time.
     pub specs: Vec<FitSpec>,
     /// Seconds for each fit; by default 20, and no limit for `auto`.
     pub time_limit: Option<f64>,
@@ -48,15 +48,15 @@ pub enum ComparedData {
     Test,
 }
 
-/// Follows a comparison, from several threads.
+/// Follows a comparison; called from several threads.
 pub trait CompareObserver: Sync {
-    /// True once fits are to end with their best model so far, and no further one is to begin.
+    /// True to stop: running fits end with their best model so far, and no new fit begins.
     fn is_to_stop(&self) -> bool;
 
-    /// The progress of the fit of the specification at a place of the request.
+    /// Called with the progress of the fit of `specs[place]`.
     fn progress(&self, _place: usize, _progress: &Progress<'_>) {}
 
-    /// The fit of the specification at a place of the request has ended: its row, and the number of fits that have.
+    /// Called when the fit of `specs[place]` has ended; `count` fits have, this one included.
     fn ended(&self, _place: usize, _row: &CompareRow, _count: usize) {}
 
     /// An error in words.
@@ -65,12 +65,14 @@ pub trait CompareObserver: Sync {
     }
 }
 
-/// Models with their errors; the lowest error on unseen data comes first.
+/// Models with their errors; the lowest error on test data comes first.
 #[derive(Debug)]
 pub struct CompareOutcome {
     pub rows: Vec<CompareRow>,
-    /// True if there were data that no model was fitted to.
+    /// True if test data were given.
     pub is_tested: bool,
+    /// Threads of each fit.
+    pub threads_of_a_fit: usize,
 }
 
 /// A model and the result of its fit.
@@ -125,14 +127,14 @@ impl ComparedFit {
         self.model.provenance().termination == Termination::Stopped
     }
 
-    /// Error on unseen data; on the training data if there are no others.
+    /// Errors on the test data, or on the training data if there are no test data.
     fn judged(&self) -> &Errors {
         self.test.as_ref().unwrap_or(&self.train)
     }
 }
 
-/// Fits every model, several at a time, each on one thread (on more, if there are fewer models) and under its time
-/// limit.
+/// Fits all models in parallel, each within its time limit and on one thread, or on an equal share of the threads if these
+/// are at least twice as many as the models.
 ///
 /// # Errors
 /// Threads that cannot be started.
@@ -167,7 +169,7 @@ pub fn compare(request: &CompareRequest<'_>, observer: &dyn CompareObserver) -> 
         fit.simulate_ns_per_sample = ns_per_sample(&fit.model, request.train.records(), TIMED)?;
     }
     rows.sort_by(|a, b| a.error().total_cmp(&b.error()));
-    Ok(CompareOutcome { rows, is_tested: request.test.is_some() })
+    Ok(CompareOutcome { rows, is_tested: request.test.is_some(), threads_of_a_fit: threads })
 }
 
 /// One of the fits of a comparison.
@@ -277,6 +279,14 @@ fn structure(model: &Model) -> Option<String> {
 }
 
 impl CompareOutcome {
+    /// The threads of each fit, in words.
+    fn threads(&self) -> String {
+        match self.threads_of_a_fit {
+            1 => "one thread".into(),
+            threads => format!("{threads} threads"),
+        }
+    }
+
     /// The comparison as plain text in 80 columns.
     pub fn text(&self) -> String {
         const NAME: usize = 33;
@@ -306,7 +316,8 @@ impl CompareOutcome {
         };
         text + &format!(
             "\nErrors: NRMSE of free runs, in % of the standard deviation of the output.\nSorted by the error \
-             on {data}.\nEach fit ran on one thread.\n{stopped}"
+             on {data}.\nEach fit ran on {}.\n{stopped}",
+            self.threads()
         )
     }
 

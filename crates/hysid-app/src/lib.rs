@@ -5,7 +5,7 @@
 
 // Only the crates of Hysid use this one: what a name says needs no comment.
 #![allow(missing_docs)]
-// Python has no tables of its own, and so less to show.
+// Without tables, as in the Python package, some items are not used.
 #![cfg_attr(not(feature = "tables"), allow(dead_code))]
 
 mod band;

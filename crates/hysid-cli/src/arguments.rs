@@ -523,7 +523,7 @@ pub struct Compare {
     /// Seed of all random numbers
     #[arg(long, value_name = "N", default_value_t = SEED, value_parser = whole::<u64>, help_heading = RUN)]
     pub seed: u64,
-    /// Number of models fitted at the same time, each on one thread [default: one for each processor]
+    /// Number of models fitted at the same time; fewer models share the threads [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = RUN, hide_short_help = true)]
     pub threads: Option<u16>,
     /// Print the result as a list of JSON objects

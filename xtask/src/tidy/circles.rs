@@ -1,5 +1,5 @@
-//! Circles among the rooms of a crate (its top-level modules), among the parts of a room (its modules), and among the
-//! files of the Python package, found from the source. Tests may look upwards; everything else may not.
+//! Dependency circles, found from the source: among the rooms of a crate (its top-level modules), among the parts of a room
+//! (its modules), and among the files of the Python package. Test code is not checked.
 
 mod python;
 mod rust;
@@ -32,7 +32,7 @@ impl Uses {
         }
     }
 
-    /// Leaves out uses of what is no room.
+    /// Removes uses of anything that is not one of the rooms.
     fn keep(&mut self, rooms: &BTreeSet<String>) {
         for of_room in self.0.values_mut() {
             of_room.retain(|to, _| rooms.contains(to));

@@ -39,8 +39,9 @@ impl CompareOutcome {
             )
         }));
         let words = format!(
-            "NRMSE of free runs, in percent of the standard deviation of the output. Each fit ran on one \
-             thread, several fits at the same time. {}",
+            "NRMSE of free runs, in percent of the standard deviation of the output. Each fit ran on {}. \
+             {}",
+            self.threads(),
             stopped_note(rows)
         );
         parts.push(Part::section("Errors", [Part::Table(rows_table(rows)), Part::note(words)]));

@@ -164,7 +164,7 @@ def compare(
     seed : int, optional
         Seed of all random numbers.
     threads : int, optional
-        Number of models fitted at the same time, each on one thread; by default one for each processor.
+        Number of models fitted at the same time; fewer models share the threads. By default one for each processor.
     progress : bool or callable, default True
         As of `hysid.fit`. If a callable returns true, the models that are being fitted end with their best fit so far, and
         the others are not fitted.

@@ -69,9 +69,10 @@ class Columns(NamedTuple):
 
 
 def in_units_of(arranged: Columns, trained: Mapping[str, Any]) -> Columns:
-    """The columns in the units of the training, converted where names contain units; warns of conversions.
+    """The columns in the units of the training data, with a warning for each conversion.
 
-    `trained` has the names of training data: time, inputs, rate, output.
+    A column is converted if its name and that in `trained` contain units. `trained` maps ``time``, ``inputs``, ``rate`` and
+    ``output`` to the names of the training data.
     """
     notes: list[str] = []
 

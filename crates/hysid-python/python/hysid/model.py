@@ -375,19 +375,19 @@ class Model(StoredModel):
         same_units: bool = False,
         force: bool = False,
     ) -> None:
-        """Write a page on the model and its free run over measured data: loops, errors, tests of the residual, limits.
+        """Write an HTML report on the model and its free run over measured data: loops, errors, residual tests, limits.
 
         Parameters
         ----------
         path : path
-            The page, an HTML file that needs no other file.
+            The report, an HTML file that needs no other file.
         x, y, time, rate, records : array
             As of `evaluate`.
         title : str, optional
-            Title of the page; by default the name of the model.
+            Title of the report; by default the name of the model.
         name : str, optional
-            Name of the data on the page, by default ``"unseen"``. With ``"training"``, for the data that the model was fitted
-            to, the page has the intervals of the parameters too.
+            Name of the data in the report, by default ``"unseen"``. Use ``"training"`` for the data that the model was
+            fitted to: the report then has the intervals of the parameters too, for laws that have them.
         same_units : bool
             As of `simulate`.
         force : bool

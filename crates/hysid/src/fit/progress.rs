@@ -77,22 +77,21 @@ impl<'a> Progress<'a> {
         self.present?.0.checkpoint()
     }
 
-    /// The best model of the fit so far, complete, as if the fit had been stopped: the network with the lowest
-    /// objective, or the law that the search ranks first. It is made only on request, which takes a free run over the
-    /// training data.
+    /// The best model so far, which the fit would return if it stopped now: the network with the lowest objective, or the
+    /// law that the search ranks first. Each call simulates the training data once.
     ///
-    /// `None` before there is any model, for a law that is found without a search, and for a fit that is only a part
-    /// of the work; candidates of `auto` have models of their own in [`tried`](Self::tried).
+    /// `None` before there is any model, for a law that is fitted without a search, and for a fit that is part of a larger
+    /// one; for candidates of `auto` see [`tried`](Self::tried).
     pub fn model_so_far(&self) -> Option<Model> {
         self.present?.0.model_so_far()
     }
 
-    /// The same of a fit that is only a part of the work, and so without its state.
+    /// Copy for a fit that is part of a larger one: without its state, `done` is the share of the whole work.
     pub(crate) fn of_part(&self, done: f64) -> Self {
         Self { done, is_part: true, present: None, ..self.clone() }
     }
 
-    /// The same without what it refers to.
+    /// Copy without borrowed data.
     pub(crate) fn without_state(&self) -> Progress<'static> {
         Progress { tried: None, present: None, ..self.clone() }
     }
@@ -109,7 +108,7 @@ impl<'a> Progress<'a> {
         Self::beginning(ModelName::Classical(model), Method::LeastSquares)
     }
 
-    /// Of a candidate of `auto`: what has become known of it, and its error on the rows that it was fitted to.
+    /// Report on a candidate of `auto`: its result so far, and its training error.
     pub(crate) fn of_candidate(model: ModelName, done: f64, tried: Tried<'a>) -> Self {
         let trained = tried.model.and_then(|model| model.provenance().trained_error().nrmse_std_percent);
         let train_nrmse_percent = trained.unwrap_or(f64::NAN);

@@ -7,10 +7,10 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::network::{Architecture, ParameterLayout};
 use crate::optimise::random::{normal, seed_of};
 
-/// Thresholds start between this share of the largest input and the whole of it.
+/// Smallest initial threshold, relative to the largest input; the largest is 1.
 const SMALLEST_THRESHOLD: f64 = 0.01;
 
-/// Spread of the weights of the rate, next to 1 for the input.
+/// Standard deviation of the initial weights of the rate, where that of the input is 1.
 const RATE_WEIGHT: f64 = 0.3;
 
 /// Capacities that stops are drawn with: ln β is normal.
