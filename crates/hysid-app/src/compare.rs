@@ -7,19 +7,20 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use crate::models::parts;
-use crate::ns_per_sample;
 use anyhow::{Context, Result};
 use hysid::Error;
 use hysid::data::metrics::Errors;
 use hysid::data::record::Dataset;
+use hysid::fit::identify;
 use hysid::fit::progress::Progress;
-use hysid::fit::{identify, memory_need};
 use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::significant::Significant;
 use hysid::termination::Termination;
 use hysid_document::visible;
+
+use crate::models::parts;
+use crate::{check_memory, ns_per_sample};
 
 /// A simulation is timed over at least this time.
 const TIMED: Duration = Duration::from_millis(30);
@@ -39,6 +40,8 @@ pub struct CompareRequest<'a> {
     pub time_limit: Option<f64>,
     /// Number of fits at the same time; by default one for each processor.
     pub threads: Option<usize>,
+    /// Times the simulations of the models too.
+    pub times_simulations: bool,
 }
 
 /// The data that an error concerns.
@@ -91,8 +94,8 @@ pub struct ComparedFit {
     /// Errors on the test data, if there are any.
     pub test: Option<Errors>,
     pub fit_seconds: f64,
-    /// Nanoseconds for a sample of a free run, on one thread.
-    pub simulate_ns_per_sample: f64,
+    /// Nanoseconds for a sample of a free run, on one thread; `None` if simulations are not timed.
+    pub simulate_ns_per_sample: Option<f64>,
 }
 
 impl CompareRow {
@@ -165,8 +168,11 @@ pub fn compare(request: &CompareRequest<'_>, observer: &dyn CompareObserver) -> 
         workers.into_iter().try_for_each(|worker| worker.join().expect("a worker does not panic"))
     })?;
     let mut rows = ended.into_inner().expect("all threads are done");
-    for fit in rows.iter_mut().filter_map(|row| row.fit.as_mut().ok()) {
-        fit.simulate_ns_per_sample = ns_per_sample(&fit.model, request.train.records(), TIMED)?;
+    if request.times_simulations {
+        for fit in rows.iter_mut().filter_map(|row| row.fit.as_mut().ok()) {
+            let time = ns_per_sample(&fit.model, request.train.records(), TIMED)?;
+            fit.simulate_ns_per_sample = Some(time);
+        }
     }
     rows.sort_by(|a, b| a.error().total_cmp(&b.error()));
     Ok(CompareOutcome { rows, is_tested: request.test.is_some(), threads_of_a_fit: threads })
@@ -189,9 +195,7 @@ impl CompareTask<'_> {
         }
         spec.model().check_data(train, spec.rate()).map_err(|error| error.to_string())?;
         let of_train = |error| observer.explain(error, ComparedData::Train);
-        memory_need(train, spec, self.threads)
-            .and_then(|need| need.check(hysid_files::available_memory()))
-            .map_err(of_train)?;
+        check_memory(train, spec, self.threads).map_err(of_train)?;
         let limit = match spec {
             FitSpec::Auto(_) => f64::INFINITY,
             FitSpec::Network(_) | FitSpec::Classical(_) => TIME_LIMIT,
@@ -211,7 +215,7 @@ impl CompareTask<'_> {
             test: test.map_err(|error| observer.explain(error, ComparedData::Test))?,
             model,
             fit_seconds,
-            simulate_ns_per_sample: f64::NAN,
+            simulate_ns_per_sample: None,
         })
     }
 }
@@ -227,7 +231,7 @@ fn cells(fitted: &ComparedFit) -> [String; 5] {
         percent(&fitted.train),
         fitted.model.parameters().to_string(),
         format!("{:.2}{}", Significant(fitted.fit_seconds), if fitted.is_stopped() { STOPPED } else { "" }),
-        format!("{:.2}", Significant(fitted.simulate_ns_per_sample)),
+        fitted.simulate_ns_per_sample.map_or_else(String::new, |time| format!("{:.2}", Significant(time))),
     ]
 }
 
@@ -259,7 +263,7 @@ pub enum PrintedFit<'a> {
         train: &'a Errors,
         test: Option<&'a Errors>,
         fit_seconds: f64,
-        simulate_ns_per_sample: f64,
+        simulate_ns_per_sample: Option<f64>,
         termination: Termination,
     },
     Failed {

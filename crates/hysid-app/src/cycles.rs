@@ -13,7 +13,6 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::quantities::Quantities;
 use anyhow::{Result, anyhow};
 use hysid::Model;
 use hysid::data::record::Dataset;
@@ -22,6 +21,8 @@ use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
 use hysid_document::visible::clipped;
 use hysid_document::{count, object};
+
+use crate::quantities::Quantities;
 
 pub use page::page;
 #[cfg(feature = "tables")]

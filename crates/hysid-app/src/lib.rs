@@ -25,6 +25,7 @@ pub mod histories;
 mod identified;
 #[cfg(feature = "tables")]
 pub mod inversion;
+mod memory;
 pub mod models;
 pub mod origin;
 pub mod parameters;
@@ -54,6 +55,7 @@ pub use beforehand::data_warnings;
 pub use course::ProgressText;
 pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, scored_rows, small_loops};
 pub use identified::{Beforehand, Identified};
+pub use memory::check_memory;
 pub use timing::ns_per_sample;
 pub use tracks::Tracks;
 

@@ -6,12 +6,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use hysid::data::metrics::Errors;
 use hysid::data::record::Dataset;
-use hysid::fit::memory_need;
 use hysid::fit::network::resume;
 use hysid::fit::progress::{Checkpoint, Progress};
 use hysid::model::Provenance;
 use hysid::options::FitSpec;
-use hysid_app::{Beforehand, Identified};
+use hysid_app::{Beforehand, Identified, check_memory};
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_files::Destination;
 use hysid_records::Data;
@@ -53,11 +52,6 @@ pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -
     note_labelled(&beforehand.understood);
     beforehand.warnings.iter().for_each(warning);
     Ok(beforehand)
-}
-
-/// Refuses work that needs more memory than there is.
-pub fn check_memory(data: &Dataset, request: &FitSpec, threads: usize) -> hysid::Result<()> {
-    memory_need(data, request, threads)?.check(hysid_files::available_memory())
 }
 
 /// Pool of so many threads; by default one for each processor.

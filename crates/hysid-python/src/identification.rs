@@ -13,6 +13,7 @@ use hysid::fit::progress::Progress;
 use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};
 use hysid::options::table::OPTIONS;
 use hysid::options::{self, ModelName};
+use hysid_app::check_memory;
 use hysid_app::compare::{CompareObserver, CompareRequest, CompareRow};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
@@ -149,7 +150,7 @@ pub fn identify(
 ) -> PyResult<(Model, usize, bool)> {
     let (set, request) = (Arc::clone(&data.set), request.request.clone());
     let work = move |exchange: &Exchange| {
-        check_memory(&set, &request)?;
+        check_memory(&set, &request, rayon::current_num_threads())?;
         fit::identify(&set, &request, &mut |progress| exchange.observe(progress))
     };
     let (fitted, interrupted) = attended(py, threads, time_limit, progress, work)?;
@@ -170,7 +171,7 @@ pub fn validate(
 ) -> PyResult<(String, bool)> {
     let (set, request) = (Arc::clone(&data.set), request.request.clone());
     let work = move |exchange: &Exchange| {
-        check_memory(&set, &request)?;
+        check_memory(&set, &request, rayon::current_num_threads())?;
         cross_validate(&set, &request, folds, &mut |progress| exchange.observe(progress))
     };
     let (validation, interrupted) = attended(py, threads, time_limit, progress, work)?;
@@ -198,7 +199,8 @@ pub fn compare(
     let (train, test) = (Arc::clone(&data.set), test.map(|test| Arc::clone(&test.set)));
     let work = move |exchange: &Exchange| {
         let done = Mutex::new(vec![0.0; specs.len()]);
-        let request = CompareRequest { train: &train, test: test.as_deref(), specs, time_limit, threads };
+        let (train, test) = (train.as_ref(), test.as_deref());
+        let request = CompareRequest { train, test, specs, time_limit, threads, times_simulations: false };
         Ok(hysid_app::compare::compare(&request, &CompareProgress { exchange, done }))
     };
     let (outcome, interrupted) = attended(py, None, None, progress, work)?;
@@ -247,12 +249,6 @@ impl CompareObserver for CompareProgress<'_> {
     fn ended(&self, place: usize, _: &CompareRow, _: usize) {
         self.keep(place, 1.0);
     }
-}
-
-/// Refuses work that needs more memory than there is, with the threads of this pool.
-fn check_memory(data: &hysid::data::record::Dataset, request: &options::FitSpec) -> hysid::Result<()> {
-    let need = fit::memory_need(data, request, rayon::current_num_threads())?;
-    need.check(hysid_files::available_memory())
 }
 
 /// Does the work in a thread of its own, while the caller's checks for Ctrl-C and reports the progress. Returns

@@ -12,9 +12,9 @@ use std::thread::JoinHandle;
 
 use anyhow::{Context, Result, anyhow, bail};
 use hysid::Model;
-use hysid::fit::{identify, memory_need};
+use hysid::fit::identify;
 use hysid::options::FitSpec;
-use hysid_app::{Beforehand, Identified};
+use hysid_app::{Beforehand, Identified, check_memory};
 use hysid_records::Data;
 
 use latest::Latest;
@@ -76,8 +76,7 @@ impl Fits {
             bail!("a fit is running: stop it, or wait until it ends");
         }
         let pool = hysid::thread_pool(None).context("cannot start the threads")?;
-        memory_need(&work.data.set, &work.request, pool.current_num_threads())
-            .and_then(|need| need.check(hysid_files::available_memory()))
+        check_memory(&work.data.set, &work.request, pool.current_num_threads())
             .map_err(|error| work.data.explain(error))?;
         let course = Arc::new(FitCourse {
             state: Mutex::new(FitState::begun(work.id, &work.request)),

@@ -1,4 +1,4 @@
-//! First-order reversal curves: their table as CSV, and what they are in words.
+//! First-order reversal curves in words.
 
 use hysid::diagnosis::reversal_curves::{ReversalCurves, ReversalNode};
 

@@ -63,6 +63,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
         specs: requests,
         time_limit: arguments.time_limit,
         threads: arguments.threads.map(usize::from),
+        times_simulations: true,
     };
     let listener = Listener { train: &train, test: test.as_ref(), count: request.specs.len() };
     let outcome = compare(&request, &listener)?;

@@ -8,13 +8,14 @@ use hysid::model::Model;
 use hysid::significant::Significant;
 use hysid::termination::Termination;
 use hysid::validation::{CrossValidation, CrossValidator, FoldErrors};
+use hysid_app::check_memory;
 use hysid_document::plain::{WIDTH, aligned, wrapped};
 
 use crate::Outcome;
 use crate::arguments::Validate;
 use crate::commands::fit::warn_of_ignored;
 use crate::data::{data_of, read_tables};
-use crate::identification::{check_memory, say_beforehand, thread_pool};
+use crate::identification::{say_beforehand, thread_pool};
 use crate::interrupt;
 use crate::messages::{insist, told};
 use crate::progress::Follower;

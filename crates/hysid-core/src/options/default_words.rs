@@ -10,33 +10,28 @@ use crate::options::table::FitOption;
 impl FitOption {
     /// Its defaults in words, with the models that have them.
     pub fn default_in_words(&self) -> String {
-        in_words(self)
+        let mut groups: Vec<(String, Vec<&'static str>)> = Vec::new();
+        for (name, preset) in by_name(self) {
+            let text = preset.to_string();
+            match groups.iter_mut().find(|group| group.0 == text) {
+                Some(group) => group.1.push(name),
+                None => groups.push((text, vec![name])),
+            }
+        }
+        if let [(only, _)] = &groups[..] {
+            return only.clone();
+        }
+        let longest = groups.iter().map(|group| group.1.len()).max().unwrap_or_default();
+        let (named, otherwise): (Vec<_>, Vec<_>) =
+            groups.into_iter().partition(|group| group.1.len() < longest.max(MOST_NAMES + 1));
+        let named = named.into_iter().map(|(text, names)| format!("{text} for {}", listed(&names)));
+        let otherwise = otherwise.into_iter().map(|(text, _)| format!("otherwise {text}"));
+        named.chain(otherwise).collect::<Vec<_>>().join("; ")
     }
 }
 
 /// Names that one default is listed for at most; a longer list becomes "otherwise".
 const MOST_NAMES: usize = 5;
-
-/// The default of an option in words, for the models and trainers that use it.
-fn in_words(option: &FitOption) -> String {
-    let mut groups: Vec<(String, Vec<&'static str>)> = Vec::new();
-    for (name, preset) in by_name(option) {
-        let text = preset.to_string();
-        match groups.iter_mut().find(|group| group.0 == text) {
-            Some(group) => group.1.push(name),
-            None => groups.push((text, vec![name])),
-        }
-    }
-    if let [(only, _)] = &groups[..] {
-        return only.clone();
-    }
-    let longest = groups.iter().map(|group| group.1.len()).max().unwrap_or_default();
-    let (named, otherwise): (Vec<_>, Vec<_>) =
-        groups.into_iter().partition(|group| group.1.len() < longest.max(MOST_NAMES + 1));
-    let named = named.into_iter().map(|(text, names)| format!("{text} for {}", listed(&names)));
-    let otherwise = otherwise.into_iter().map(|(text, _)| format!("otherwise {text}"));
-    named.chain(otherwise).collect::<Vec<_>>().join("; ")
-}
 
 /// The defaults of an option with the name of the model, or of the trainer where networks differ by it.
 fn by_name(option: &FitOption) -> Vec<(&'static str, Preset)> {
