@@ -53,7 +53,7 @@ pub fn run(data: &[u8]) {
 }
 
 fn chosen(bytes: &mut Bytes) -> Map<String, Value> {
-    let names = OPTIONS.map(|option| option.name);
+    let names: Vec<&str> = OPTIONS.iter().map(|option| option.name).collect();
     let models: Vec<&str> = hysid::options::ModelName::all().map(|model| model.name()).collect();
     let mut all = Map::new();
     all.insert("model".into(), json!(bytes.one_of(&models)));

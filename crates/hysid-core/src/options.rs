@@ -6,6 +6,7 @@ pub mod chosen;
 pub mod classical;
 pub(crate) mod default_words;
 pub mod effort;
+mod fields;
 pub mod fit_spec;
 pub mod input_options;
 pub mod model_name;

@@ -1,8 +1,10 @@
-//! `docs/options.md` is made from the table of options: `HYSID_WRITE=1 cargo test -p hysid-core --test options_page`
-//! writes it.
+//! `docs/options.md` and the options in the Python package are made from the table of options:
+//! `HYSID_WRITE=1 cargo test -p hysid-core --test options_page` writes them.
+
+mod python;
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::PathBuf;
 
 use hysid_core::options::ModelName;
 use hysid_core::options::table::{FitOption, OPTIONS, OptionGroup, OptionValues};
@@ -85,16 +87,31 @@ fn page() -> String {
     page + TAIL
 }
 
+fn path(file: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..").join(file)
+}
+
+fn read(file: &str) -> String {
+    std::fs::read_to_string(path(file)).unwrap_or_default().replace("\r\n", "\n")
+}
+
+/// Compares a file with its text as generated; writes it if `HYSID_WRITE` is set.
+fn assert_generated(file: &str, text: &str) {
+    if std::env::var_os("HYSID_WRITE").is_some() {
+        std::fs::write(path(file), text).unwrap();
+    }
+    assert_eq!(read(file), text, "HYSID_WRITE=1 cargo test writes {file} anew");
+}
+
 #[test]
 fn the_page_of_options_is_that_of_the_table() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/options.md");
-    let page = page();
-    if std::env::var_os("HYSID_WRITE").is_some() {
-        std::fs::write(&path, &page).unwrap();
+    assert_generated("docs/options.md", &page());
+}
+
+#[test]
+fn the_python_package_has_the_options_of_the_table() {
+    for (file, generate) in python::GENERATED {
+        let file = format!("crates/hysid-python/python/hysid/{file}");
+        assert_generated(&file, &generate(&read(&file)));
     }
-    assert_eq!(
-        std::fs::read_to_string(&path).unwrap(),
-        page,
-        "HYSID_WRITE=1 cargo test writes the page anew"
-    );
 }

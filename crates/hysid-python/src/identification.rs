@@ -83,12 +83,6 @@ pub fn option_names() -> Vec<&'static str> {
     OPTIONS.iter().map(|option| option.name).collect()
 }
 
-/// Name, meaning and default of every option of a model and its training.
-#[pyfunction]
-pub fn option_table() -> Vec<(&'static str, &'static str, String)> {
-    OPTIONS.iter().map(|option| (option.name, option.meaning, option.default_in_words())).collect()
-}
-
 /// Arguments of a progress callback: share of the work done, error on the training rows in percent of std,
 /// start, epoch, what is being done, the model that is being fitted, and whether that fit is one of many.
 type Report = (f64, f64, usize, usize, String, String, bool);

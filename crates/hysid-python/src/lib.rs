@@ -30,9 +30,7 @@ mod _hysid {
     #[pymodule_export]
     use crate::folds::folds;
     #[pymodule_export]
-    use crate::identification::{
-        FitSpec, compare, identify, model_names, option_names, option_table, validate,
-    };
+    use crate::identification::{FitSpec, compare, identify, model_names, option_names, validate};
     #[pymodule_export]
     use crate::inverse::Inverse;
     #[pymodule_export]

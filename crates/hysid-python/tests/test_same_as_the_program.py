@@ -177,19 +177,6 @@ def test_options_have_the_program_s_names(program, tmp_path):
     assert offered - files == keywords - {"x", "y", "time", "records", "progress"}
 
 
-def test_options_are_described_as_in_the_table():
-    described = " ".join(inspect.getdoc(hysid.fit).split())
-    for name, meaning, default in _hysid.option_table():
-        assert re.search(rf" {name} : [a-z ]+, optional {re.escape(f'{meaning}. Default: {default}.')}", described), name
-
-
-def test_the_estimator_has_the_same_options():
-    from hysid import HysteresisRegressor
-
-    parameters = set(inspect.signature(HysteresisRegressor).parameters)
-    assert set(_hysid.option_names()) - parameters == {"seed"}, "random_state is what scikit-learn calls it"
-
-
 @pytest.mark.parametrize(
     "keywords",
     [{"model": "masing", "stops": 3}, {"model": "masing", "modes": 2}, {"model": "pnn", "population": 20, "epochs": 2, "starts": 1}],

@@ -1,4 +1,4 @@
-"""Result types of `Model.simulate` for its argument types: `test_types.py` runs mypy over this file."""
+"""Result types of `Model.simulate`, and types of options: `test_types.py` runs mypy over this file."""
 
 import numpy as np
 import polars
@@ -19,3 +19,11 @@ def of_each_kind(model: hysid.Model, array: np.ndarray, series: polars.Series, f
     assert_type(model.simulate([series, series]), list[polars.Series])
     assert_type(model.simulate([{"x": array}]), list[np.ndarray])
     assert_type(model.simulate([[1.0], [2.0]]), np.ndarray)
+
+
+def of_options(array: np.ndarray) -> None:
+    hysid.fit(array, array, model="masing", sign="any", thresholds=[0.5, 1.0])
+    hysid.fit(array, array, model="masin")  # type: ignore[arg-type]
+    hysid.validate(array, array, model=hysid.models[0], operators=3)
+    hysid.validate(array, array, operator=3)  # type: ignore[call-arg]
+    hysid.validate(array, array, sign="positive")  # type: ignore[arg-type]

@@ -30,7 +30,7 @@ use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, ErrorsInside, Facts, Rate};
+use crate::law::facts::{ErrorsInside, Facts, Rate};
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 use crate::simd;
@@ -110,14 +110,13 @@ impl Law for DuhemNn {
             &["operators", "hidden", "states", "starts", "epochs", "rate_companding"],
             ErrorsInside { softening: 0.4, sigmoid: 0.4, other: 0.6 },
         )
-        .with_defaults(Defaults {
-            operators: 6,
-            hidden: 8,
-            states: 3,
-            starts: 6,
-            epochs: 45,
-            ..Defaults::SEARCHED
-        })
+        .with_defaults(&[
+            ("operators", 6),
+            ("hidden", 8),
+            ("states", 3),
+            ("starts", 6),
+            ("epochs", 45),
+        ])
     };
 
     fn virgin(&self) -> CellMemory {

@@ -21,7 +21,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, ErrorsInside, Facts};
+use crate::law::facts::{ErrorsInside, Facts};
 use crate::law::hysteretic_dynamics::{DAMPING_RATIOS, Propagation};
 use crate::law::modified_prandtl_ishlinskii::dead_zone;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
@@ -114,12 +114,7 @@ impl Law for DynamicPrandtlIshlinskii {
             &["operators", "dead_zones", "relaxation", "resonance", "lagged_input", "starts", "epochs"],
             ErrorsInside { softening: 0.04, sigmoid: 0.7, other: 0.6 },
         )
-        .with_defaults(Defaults {
-            operators: 10,
-            dead_zones: 2,
-            relaxation: 2,
-            ..Defaults::SEARCHED
-        })
+        .with_defaults(&[("operators", 10), ("dead_zones", 2), ("relaxation", 2)])
     };
 
     fn virgin(&self) -> DynamicState {

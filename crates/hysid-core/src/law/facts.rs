@@ -19,9 +19,9 @@ pub struct Facts {
     pub options: &'static [&'static str],
     /// Smallest and largest values of such options, where they are not those of the table of options.
     pub limits: &'static [(&'static str, usize, usize)],
-    /// Default values of those options that count something.
+    /// Default values of those options that count something, where they are not 0 or those of all searches.
     pub defaults: Defaults,
-    /// The same with `degradation`; equal for a law without this variant.
+    /// Those that differ with `degradation`.
     pub defaults_with_degradation: Defaults,
     /// The options that select a variant of the law, each by itself: a further term, or another form.
     pub variants: &'static [&'static str],
@@ -41,63 +41,24 @@ pub struct ErrorsInside {
     pub other: f64,
 }
 
-/// Default values of options that count something, for one law. 0 for what the law does not have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Defaults {
-    /// Plays, breakpoints, intervals of each axis of a Preisach plane, or stops.
-    pub operators: usize,
-    /// Tanh neurons.
-    pub hidden: usize,
-    /// Memory states.
-    pub states: usize,
-    /// Modes of vibration.
-    pub modes: usize,
-    /// Dead zones on each side.
-    pub dead_zones: usize,
-    /// Relaxation elements.
-    pub relaxation: usize,
-    /// Starts of the search.
-    pub starts: usize,
-    /// Iterations of each start.
-    pub epochs: usize,
-}
+/// Default values of options that count something, by their names.
+pub type Defaults = &'static [(&'static str, usize)];
 
-impl Defaults {
-    /// Defaults of a law that linear least squares finds.
-    pub const LINEAR: Self = Self {
-        operators: 0,
-        hidden: 0,
-        states: 0,
-        modes: 0,
-        dead_zones: 0,
-        relaxation: 0,
-        starts: 0,
-        epochs: 0,
-    };
-
-    /// Defaults of a law that a search finds.
-    pub const SEARCHED: Self = Self { starts: 8, epochs: 40, ..Self::LINEAR };
-
-    /// The value of an option by its name; `None` for an option that counts nothing.
-    pub fn of(&self, option: &str) -> Option<usize> {
-        match option {
-            "operators" => Some(self.operators),
-            "hidden" => Some(self.hidden),
-            "states" => Some(self.states),
-            "modes" => Some(self.modes),
-            "dead_zones" => Some(self.dead_zones),
-            "relaxation" => Some(self.relaxation),
-            "starts" => Some(self.starts),
-            "epochs" => Some(self.epochs),
-            _ => None,
-        }
-    }
-}
+/// Defaults of a law that a search finds.
+const OF_SEARCHES: Defaults = &[("starts", 8), ("epochs", 40)];
 
 impl Facts {
-    /// The same facts with defaults of the law's own, in all its variants.
+    /// The same facts with defaults of the law's own.
     pub const fn with_defaults(self, defaults: Defaults) -> Self {
-        Self { defaults, defaults_with_degradation: defaults, ..self }
+        Self { defaults, ..self }
+    }
+
+    /// Default value of an option that counts something; 0 for what the law does not have.
+    pub fn default_of(&self, option: &str, degradation: bool) -> usize {
+        let with_degradation = if degradation { self.defaults_with_degradation } else { &[] };
+        let of_searches = if self.identification == Identification::Search { OF_SEARCHES } else { &[] };
+        let mut all = [with_degradation, self.defaults, of_searches].into_iter().flatten();
+        all.find(|(name, _)| *name == option).map_or(0, |(_, count)| *count)
     }
 
     /// A law that linear least squares finds, without a rate, limits or variants.
@@ -116,8 +77,8 @@ impl Facts {
             identification: Identification::LeastSquares,
             options,
             limits: &[],
-            defaults: Defaults::LINEAR,
-            defaults_with_degradation: Defaults::LINEAR,
+            defaults: &[],
+            defaults_with_degradation: &[],
             variants: &[],
             errors_inside,
         }
@@ -131,7 +92,6 @@ impl Facts {
         errors_inside: ErrorsInside,
     ) -> Self {
         Self { identification: Identification::Search, ..Self::linear(name, summary, options, errors_inside) }
-            .with_defaults(Defaults::SEARCHED)
     }
 }
 

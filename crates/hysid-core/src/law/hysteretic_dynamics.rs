@@ -34,7 +34,6 @@ use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::Defaults;
 use crate::law::{Dimension, Parameter, Sample};
 use crate::simd;
 
@@ -292,15 +291,6 @@ impl Dynamics {
     }
 }
 
-/// Defaults of a law with this number of modes: memory states, or deteriorating stops for elements with degradation.
-pub(super) const fn defaults(modes: usize, degradation: bool) -> Defaults {
-    let search = Defaults { modes, starts: 4, epochs: 200, ..Defaults::SEARCHED };
-    match degradation {
-        false => Defaults { operators: 0, states: 2, hidden: 8, ..search },
-        true => Defaults { operators: 6, states: 0, hidden: 4, ..search },
-    }
-}
-
 /// Makes a law of a type that holds [`Dynamics`]: its form, its default number of modes, its words in errors, its name
 /// and its summary.
 macro_rules! law_of_dynamics {
@@ -311,8 +301,9 @@ macro_rules! law_of_dynamics {
             const FACTS: $crate::law::facts::Facts = $crate::law::facts::Facts {
                 needs_time: true,
                 limits: $crate::law::hysteretic_dynamics::LIMITS,
-                defaults: $crate::law::hysteretic_dynamics::defaults($modes, false),
-                defaults_with_degradation: $crate::law::hysteretic_dynamics::defaults($modes, true),
+                defaults: &[("modes", $modes), ("states", 2), ("hidden", 8), ("starts", 4), ("epochs", 200)],
+                // Deteriorating stops in place of memory states.
+                defaults_with_degradation: &[("operators", 6), ("states", 0), ("hidden", 4)],
                 ..$crate::law::facts::Facts::searched(
                     $name,
                     $summary,

@@ -31,7 +31,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::elementary::powf;
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, ErrorsInside, Facts};
+use crate::law::facts::{ErrorsInside, Facts};
 use crate::law::properties::ODD;
 use crate::law::yield_curve::yielding;
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -310,7 +310,7 @@ impl Law for MenegottoPinto {
             &["asymmetric", "starts", "epochs"],
             ErrorsInside { softening: 0.06, sigmoid: 0.3, other: 0.3 },
         )
-        .with_defaults(Defaults { starts: 16, ..Defaults::SEARCHED })
+        .with_defaults(&[("starts", 16)])
     };
 
     fn virgin(&self) -> MenegottoPintoState {

@@ -16,7 +16,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{Defaults, ErrorsInside, Facts};
+use crate::law::facts::{ErrorsInside, Facts};
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::properties::WIPES_OUT;
 use crate::law::thresholds::{check_count, check_weights};
@@ -173,7 +173,7 @@ impl Law for ModifiedPrandtlIshlinskii {
         &["operators", "thresholds", "sign", "dead_zones"],
         ErrorsInside { softening: 0.08, sigmoid: 0.4, other: 0.3 },
     )
-    .with_defaults(Defaults { operators: 20, dead_zones: 6, ..Defaults::LINEAR });
+    .with_defaults(&[("operators", 20), ("dead_zones", 6)]);
 
     fn virgin(&self) -> Vec<f64> {
         self.hysteresis.virgin()

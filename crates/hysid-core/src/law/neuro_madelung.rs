@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::elementary::tanh;
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, ErrorsInside, Facts, Rate};
+use crate::law::facts::{ErrorsInside, Facts, Rate};
 use crate::law::turning_point_stack::TurningPointStack;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -151,7 +151,7 @@ impl Law for NeuroMadelung {
             &["hidden", "starts", "epochs", "rate_companding"],
             ErrorsInside { softening: 0.6, sigmoid: 0.4, other: 0.6 },
         )
-        .with_defaults(Defaults { hidden: 8, starts: 16, epochs: 60, ..Defaults::SEARCHED })
+        .with_defaults(&[("hidden", 8), ("starts", 16), ("epochs", 60)])
     };
 
     fn virgin(&self) -> TurningPointStack<f64> {

@@ -37,7 +37,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::elementary::powf;
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, ErrorsInside, Facts};
+use crate::law::facts::{ErrorsInside, Facts};
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -331,10 +331,10 @@ impl Law for PeakOriented {
         ..Facts::searched(
             "peak-oriented",
             "members and joints: reloading leads to the largest displacement so far",
-            &["degradation", "asymmetric", "starts", "epochs"],
+            &["asymmetric", "degradation", "starts", "epochs"],
             ErrorsInside { softening: 0.15, sigmoid: 0.25, other: 0.2 },
         )
-        .with_defaults(Defaults { starts: 16, ..Defaults::SEARCHED })
+        .with_defaults(&[("starts", 16)])
     };
 
     fn virgin(&self) -> PeakOrientedState {

@@ -14,7 +14,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{Defaults, ErrorsInside, Facts};
+use crate::law::facts::{ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -105,7 +105,7 @@ impl Law for PrandtlIshlinskii {
         &["operators", "thresholds", "sign"],
         ErrorsInside { softening: 0.04, sigmoid: 0.7, other: 0.6 },
     )
-    .with_defaults(Defaults { operators: 30, ..Defaults::LINEAR });
+    .with_defaults(&[("operators", 30)]);
 
     fn virgin(&self) -> Vec<f64> {
         vec![0.0; self.thresholds.len()]

@@ -20,7 +20,7 @@ pub mod plane;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{Defaults, ErrorsInside, Facts};
+use crate::law::facts::{ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::thresholds::{check_weights, limited};
 use crate::law::turning_point_stack::{StackBranch, TurningPointStack};
@@ -165,7 +165,7 @@ impl Law for Preisach {
             &["operators", "sign"],
             ErrorsInside { softening: 0.6, sigmoid: 0.1, other: 0.2 },
         )
-        .with_defaults(Defaults { operators: 30, ..Defaults::LINEAR })
+        .with_defaults(&[("operators", 30)])
     };
 
     fn virgin(&self) -> Self::State {

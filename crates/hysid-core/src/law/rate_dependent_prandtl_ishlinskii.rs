@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::elementary::{ln, powf};
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{Defaults, ErrorsInside, Facts, Rate};
+use crate::law::facts::{ErrorsInside, Facts, Rate};
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -111,7 +111,7 @@ impl Law for RateDependentPrandtlIshlinskii {
             &["operators", "free_weights", "logarithmic_thresholds", "starts", "epochs", "rate_companding"],
             ErrorsInside { softening: 0.04, sigmoid: 0.7, other: 0.6 },
         )
-        .with_defaults(Defaults { operators: 10, starts: 16, ..Defaults::SEARCHED })
+        .with_defaults(&[("operators", 10), ("starts", 16)])
     };
 
     fn virgin(&self) -> Vec<f64> {

@@ -17,7 +17,7 @@ pub enum Family {
     #[serde(rename = "preisach-nn")]
     PreisachNn,
     /// Extended Preisach neural network (XPNN, EPNN): deteriorating stops of x and its rate, tanh layer.
-    #[serde(rename = "xpnn")]
+    #[serde(rename = "xpnn", alias = "epnn")]
     Xpnn,
     /// Beyond the paper: XPNN with relaxation neurons, a direct linear path and further inputs.
     #[serde(rename = "xpnn+")]

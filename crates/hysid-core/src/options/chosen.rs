@@ -2,66 +2,27 @@
 
 use std::str::FromStr;
 
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, SpeedEvidence};
 use crate::error::{Error, OptionError, Result};
 use crate::law::thresholds::MOST_THRESHOLDS;
-use crate::network::{Family, Sizes};
-use crate::options::classical::{ClassicalModel, ClassicalOptions, Sign};
-use crate::options::effort::Effort;
+use crate::network::Family;
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
+use crate::options::fields::{fields_of, with_fields};
 use crate::options::fit_spec::AutoOptions;
 use crate::options::input_options::InputOptions;
 use crate::options::network::{FitOptions, Trainer};
+pub use crate::options::table::NamedOptions;
 use crate::options::table::{FitOption, OPTIONS, OptionValues, check};
 use crate::options::{FitSpec, ModelName};
 
-/// Options of a fit, described in [`OPTIONS`]; `None` stands for the default of the model or its trainer.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-#[allow(missing_docs, reason = "each field is the option of its name")]
-pub struct NamedOptions {
-    #[serde(deserialize_with = "named")]
-    pub model: Option<ModelName>,
-    pub members: Option<usize>,
-    pub stops: Option<usize>,
-    pub hidden: Option<usize>,
-    pub relaxation: Option<usize>,
-    pub no_deterioration: Option<bool>,
-    pub history: Option<bool>,
-    pub companding: Option<f64>,
-    pub rate_companding: Option<f64>,
-    pub warm_up: Option<usize>,
-    #[serde(deserialize_with = "named")]
-    pub initial_state: Option<InitialState>,
-    #[serde(deserialize_with = "named")]
-    pub training: Option<Trainer>,
-    pub effort: Option<Effort>,
-    pub starts: Option<usize>,
-    pub epochs: Option<usize>,
-    pub population: Option<usize>,
-    pub stall: Option<usize>,
-    pub seed: Option<u64>,
-    pub validation: Option<f64>,
-    pub ridge: Option<f64>,
-    pub decay: Option<f64>,
-    pub operators: Option<usize>,
-    pub states: Option<usize>,
-    pub modes: Option<usize>,
-    pub thresholds: Option<Vec<f64>>,
-    pub sign: Option<Sign>,
-    pub dead_zones: Option<usize>,
-    pub free_weights: Option<bool>,
-    pub logarithmic_thresholds: Option<bool>,
-    pub degradation: Option<bool>,
-    pub asymmetric: Option<bool>,
-    pub differential_form: Option<bool>,
-    pub resonance: Option<bool>,
-    pub lagged_input: Option<bool>,
-}
+/// Options that a network or a law has not in a field of the same name: those of the ensemble and of the input transform.
+const ELSEWHERE: [&str; 7] =
+    ["model", "members", "companding", "rate_companding", "history", "warm_up", "initial_state"];
 
 impl NamedOptions {
     /// Options from a map of names and values; `null` is the default.
@@ -78,7 +39,7 @@ impl NamedOptions {
     }
 
     fn check(&self) -> Result<()> {
-        let model = self.model();
+        let (model, fields) = (self.model(), fields_of(self));
         let limits = match model {
             ModelName::Classical(rival) => rival.facts().limits,
             ModelName::Network(_) | ModelName::Auto(_) => &[],
@@ -86,16 +47,8 @@ impl NamedOptions {
         let most_models = ("operators", 1, MOST_THRESHOLDS);
         let is_named = limits.iter().any(|limit| limit.0 == most_models.0);
         for (option, least, most) in limits.iter().copied().chain((!is_named).then_some(most_models)) {
-            let asked = match option {
-                "hidden" => self.hidden,
-                "operators" => self.operators,
-                "states" => self.states,
-                "relaxation" => self.relaxation,
-                _ => unreachable!(
-                    "a law limits the number of its neurons, operators, states or relaxation elements"
-                ),
-            };
-            let Some(asked) = asked else { continue };
+            let Some(asked) = fields.get(option).and_then(Value::as_u64) else { continue };
+            let asked = asked as usize;
             let needed = match asked {
                 _ if asked < least => format!("{} has at least {least}", model.name()),
                 _ if asked > most => format!("{} has at most {most}", model.name()),
@@ -137,11 +90,7 @@ impl NamedOptions {
     /// The same without the options that the model or its trainer ignores.
     fn used(&self) -> Self {
         let ignored = self.ignored();
-        let Ok(Value::Object(mut named)) = serde_json::to_value(self) else {
-            unreachable!("the options are a map")
-        };
-        named.retain(|name, _| !ignored.iter().any(|ignored| ignored.option == name));
-        serde_json::from_value(Value::Object(named)).expect("the options with fewer fields")
+        with_fields(self, ignored.into_iter().map(|ignored| (ignored.option.into(), Value::Null)))
     }
 
     fn of_auto(
@@ -150,87 +99,40 @@ impl NamedOptions {
         always_rate: bool,
         only: Option<Box<FitSpec>>,
     ) -> AutoOptions {
-        let defaults = AutoOptions::default();
-        let members = self.members.unwrap_or(defaults.members);
-        let effort = self.effort.unwrap_or_default();
+        let elsewhere = ["model", "companding", "no_deterioration"];
+        let of_others = OPTIONS.iter().filter(|option| !option.is_used_by(ModelName::AUTO, self.trainer()));
+        let elsewhere: Vec<&str> = of_others.map(|option| option.name).chain(elsewhere).collect();
+        let defaults = self.onto(&AutoOptions::default(), &elsewhere);
+        let starts = if only.is_some() { defaults.members } else { defaults.effort.starts() };
         AutoOptions {
-            members,
-            effort,
             // Of one model, all members are starts.
-            starts: self.starts.unwrap_or(if only.is_some() { members } else { effort.starts() }),
+            starts: self.starts.unwrap_or(starts),
             only,
             rate,
             always_rate: always_rate && rate.is_some(),
             deterioration: self.no_deterioration.map(|none| !none),
-            relaxation: self.relaxation,
-            stops: self.stops,
-            hidden: self.hidden,
-            operators: self.operators,
-            modes: self.modes,
-            epochs: self.epochs,
             companding: self.companding.map(|share| share > 0.0),
-            history: self.history,
-            warm_up: self.warm_up,
-            initial_state: self.initial_state,
-            ridge: self.ridge,
-            decay: self.decay,
-            seed: self.seed.unwrap_or(defaults.seed),
             ..defaults
         }
     }
 
     fn of_network(&self, model: Family, rate: Option<RateMethod>) -> FitOptions {
-        let defaults = FitOptions::of(self.trainer());
-        let sizes = Sizes::default();
-        FitOptions {
-            model,
-            sizes: Sizes {
-                stops: self.stops.unwrap_or(sizes.stops),
-                hidden: self.hidden.unwrap_or(sizes.hidden),
-                relaxation: self.relaxation.unwrap_or(sizes.relaxation),
-            },
-            no_deterioration: self.no_deterioration.unwrap_or(defaults.no_deterioration),
-            rate,
-            shaping: self.shaping(),
-            starts: self.starts.unwrap_or(defaults.starts),
-            epochs: self.epochs.unwrap_or(defaults.epochs),
-            population: self.population.unwrap_or(defaults.population),
-            stall: self.stall.unwrap_or(defaults.stall),
-            seed: self.seed.unwrap_or(defaults.seed),
-            validation: self.validation,
-            ridge: self.ridge,
-            decay: self.decay,
-            ..defaults
-        }
+        let defaults = FitOptions { model, rate, shaping: self.shaping(), ..FitOptions::of(self.trainer()) };
+        self.onto(&defaults, &ELSEWHERE)
     }
 
     fn of_rival(&self, model: ClassicalModel, rate: Option<RateMethod>) -> ClassicalOptions {
-        let defaults = ClassicalOptions::of(model);
-        ClassicalOptions {
-            model,
-            operators: self.operators,
-            thresholds: self.thresholds.clone(),
-            sign: self.sign,
-            dead_zones: self.dead_zones,
-            free_weights: self.free_weights,
-            logarithmic_thresholds: self.logarithmic_thresholds.unwrap_or(defaults.logarithmic_thresholds),
-            degradation: self.degradation.unwrap_or(defaults.degradation),
-            asymmetric: self.asymmetric.unwrap_or(defaults.asymmetric),
-            differential_form: self.differential_form.unwrap_or(defaults.differential_form),
-            hidden: self.hidden,
-            states: self.states,
-            modes: self.modes,
-            relaxation: self.relaxation,
-            resonance: self.resonance.unwrap_or(defaults.resonance),
-            lagged_input: self.lagged_input.unwrap_or(defaults.lagged_input),
-            deterioration: self.no_deterioration.map(|none| !none),
-            rate,
-            shaping: self.shaping(),
-            starts: self.starts,
-            epochs: self.epochs,
-            near: Vec::new(),
-            seed: self.seed.unwrap_or(defaults.seed),
-        }
+        let deterioration = self.no_deterioration.map(|none| !none);
+        let shaping = self.shaping();
+        let defaults = ClassicalOptions { rate, shaping, deterioration, ..ClassicalOptions::of(model) };
+        self.onto(&defaults, &[&ELSEWHERE[..], &["no_deterioration"]].concat())
+    }
+
+    /// The defaults with the chosen options in the fields of their names, but for the options that are elsewhere.
+    fn onto<T: Serialize + DeserializeOwned>(&self, defaults: &T, elsewhere: &[&str]) -> T {
+        let is_chosen =
+            |(name, value): &(String, Value)| !value.is_null() && !elsewhere.contains(&name.as_str());
+        with_fields(defaults, fields_of(self).into_iter().filter(is_chosen))
     }
 
     fn shaping(&self) -> InputOptions {
@@ -249,9 +151,7 @@ impl NamedOptions {
 
     /// Options that were set and that the model, or the trainer of a network, ignores.
     pub fn ignored(&self) -> Vec<Ignored> {
-        let Ok(Value::Object(named)) = serde_json::to_value(self) else {
-            unreachable!("the options are a map")
-        };
+        let named = fields_of(self);
         // A flag that is not set asks for nothing.
         let is_asked = |option: &FitOption| match named.get(option.name) {
             None | Some(Value::Null) => false,
@@ -314,16 +214,6 @@ impl FromStr for RateChoice {
     }
 }
 
-/// A value by its name, with the error that the command line has for an unknown one.
-fn named<'de, D, T>(deserializer: D) -> std::result::Result<Option<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: FromStr<Err = Error>,
-{
-    let name = Option::<String>::deserialize(deserializer)?;
-    name.map(|name| name.parse().map_err(serde::de::Error::custom)).transpose()
-}
-
 #[cfg(test)]
 mod tests {
     use serde_json::json;
@@ -331,6 +221,8 @@ mod tests {
     use super::*;
     use crate::data::record::{ColumnNames, Record};
     use crate::elementary::sin;
+    use crate::network::Sizes;
+    use crate::options::classical::Sign;
 
     fn chosen(value: Value) -> Result<NamedOptions> {
         let Value::Object(map) = value else { panic!("{value} is no map") };
@@ -382,21 +274,36 @@ mod tests {
             ..ClassicalOptions::of(ClassicalModel::ModifiedPrandtlIshlinskii)
         };
         assert_eq!(law(given), expected);
-        let given = json!({ "model": "rate-dependent-prandtl-ishlinskii", "logarithmic_thresholds": true,
-            "free_weights": false, "starts": 2, "epochs": 3 });
-        let expected = ClassicalOptions {
-            logarithmic_thresholds: true,
-            free_weights: Some(false),
-            starts: Some(2),
-            epochs: Some(3),
-            ..ClassicalOptions::of(ClassicalModel::RateDependentPrandtlIshlinskii)
-        };
-        assert_eq!(law(given), expected);
-        assert!(law(json!({ "model": "bouc-wen", "degradation": true })).degradation);
-        assert!(law(json!({ "model": "peak-oriented", "asymmetric": true })).asymmetric);
-        assert!(law(json!({ "model": "jiles-atherton", "differential_form": true })).differential_form);
         let random_stops = law(json!({ "model": "random-stops", "hidden": 4, "no_deterioration": true }));
         assert_eq!((random_stops.hidden, random_stops.deterioration), (Some(4), Some(false)));
+    }
+
+    #[test]
+    fn every_option_changes_the_request_of_each_of_its_users() {
+        let values = |option: &FitOption| match option.values {
+            OptionValues::Count(low, _) => [json!(low.max(2)), json!(low.max(2) + 1)],
+            OptionValues::Whole => [json!(2), json!(3)],
+            OptionValues::Positive => [json!([0.5]), json!([0.6])],
+            OptionValues::Flag | OptionValues::Truth => [json!(true), json!(false)],
+            OptionValues::Names(names) => [json!(names()[0]), json!(names()[1])],
+            OptionValues::Fraction | OptionValues::ZeroOr(..) | OptionValues::Number(..) => {
+                [json!(0.3), json!(0.4)]
+            }
+        };
+        for option in OPTIONS.iter().filter(|option| option.name != "model") {
+            for model in option.users() {
+                let mut trainers = Trainer::ALL.into_iter();
+                let trainer = trainers.find(|trainer| option.is_used_by(model, *trainer)).unwrap();
+                let request = |value: &Value| {
+                    let named =
+                        json!({ "model": model.name(), "training": trainer.name(), option.name: value });
+                    chosen(named).unwrap().request(None, false)
+                };
+                let plain = request(&Value::Null);
+                let is_seen = values(option).iter().any(|value| request(value) != plain);
+                assert!(is_seen, "{} of {}", option.name, model.name());
+            }
+        }
     }
 
     #[test]
@@ -459,17 +366,13 @@ mod tests {
     }
 
     #[test]
-    fn every_option_is_a_row_of_the_table_and_is_used_by_some_model() {
-        let Ok(Value::Object(fields)) = serde_json::to_value(NamedOptions::default()) else { panic!() };
-        let names: Vec<&str> = OPTIONS.iter().map(|option| option.name).collect();
-        assert_eq!(fields.keys().len(), names.len());
-        for option in &OPTIONS {
-            assert!(fields.contains_key(option.name), "{}", option.name);
+    fn every_option_is_used_by_some_model_and_a_law_lists_none_that_is_not_there() {
+        for option in OPTIONS {
             assert!(!option.users().is_empty(), "{}", option.name);
         }
         for &rival in ClassicalModel::ALL {
             for option in rival.facts().options {
-                assert!(names.contains(option), "{} lists `{option}`", rival.name());
+                assert!(FitOption::named(option).is_some(), "{} lists `{option}`", rival.name());
             }
         }
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::rate::RateMethod;
 use crate::for_each_law;
 use crate::law::Law;
-use crate::law::facts::{Defaults, ErrorsInside, Facts, Identification, Rate};
+use crate::law::facts::{ErrorsInside, Facts, Identification, Rate};
 use crate::options::input_options::InputOptions;
 use crate::options::network::SEED;
 
@@ -17,17 +17,18 @@ const RANDOM_STOPS: Facts = Facts {
         &["operators", "hidden", "no_deterioration", "history", "rate_companding"],
         ErrorsInside { softening: 0.05, sigmoid: 0.7, other: 0.6 },
     )
-    .with_defaults(Defaults { operators: 300, ..Defaults::LINEAR })
+    .with_defaults(&[("operators", 300)])
 };
 
 macro_rules! classical_model {
     ($($module:ident::$law:ident),* $(,)?) => {
         /// A model other than a network and `auto`.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+        #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case")]
         pub enum ClassicalModel {
             $(#[doc = concat!("[`", stringify!($law), "`](crate::law::Classical::", stringify!($law), ").")] $law,)*
             /// Random deteriorating stops and a ridge: a network whose stops are not trained.
+            #[default]
             RandomStops,
         }
 
@@ -91,7 +92,7 @@ impl ClassicalModel {
 }
 
 /// Options of such a model, named as on the command line. A model ignores those that it does not use.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassicalOptions {
     /// The model.
@@ -157,7 +158,7 @@ macro_rules! counts {
             $(
                 #[doc = concat!($meaning, ": the requested value, or the default of the model.")]
                 pub fn $option(&self) -> usize {
-                    self.$option.unwrap_or(self.defaults().$option)
+                    self.$option.unwrap_or(self.model.facts().default_of(stringify!($option), self.degradation))
                 }
             )*
         }
@@ -177,26 +178,8 @@ counts! {
 impl ClassicalOptions {
     /// Relaxation elements: the requested number, or that of the model; none beside a resonance.
     pub fn relaxation(&self) -> usize {
-        self.relaxation.unwrap_or(if self.resonance { 0 } else { self.defaults().relaxation })
-    }
-
-    /// The defaults of the model in its variant.
-    pub fn defaults(&self) -> &'static Defaults {
-        let facts = self.model.facts();
-        if self.degradation { &facts.defaults_with_degradation } else { &facts.defaults }
-    }
-
-    /// The field of the option that selects a variant of the law: a further term, or another form.
-    pub fn variant(&mut self, option: &str) -> Option<&mut bool> {
-        match option {
-            "degradation" => Some(&mut self.degradation),
-            "asymmetric" => Some(&mut self.asymmetric),
-            "differential_form" => Some(&mut self.differential_form),
-            "logarithmic_thresholds" => Some(&mut self.logarithmic_thresholds),
-            "resonance" => Some(&mut self.resonance),
-            "lagged_input" => Some(&mut self.lagged_input),
-            _ => None,
-        }
+        let default = if self.resonance { 0 } else { self.model.facts().default_of("relaxation", false) };
+        self.relaxation.unwrap_or(default)
     }
 
     /// True for random stops that deteriorate, or are followed by tanh neurons: as flexible as a network.
@@ -212,31 +195,7 @@ impl ClassicalOptions {
 
     /// The defaults of a model.
     pub fn of(model: ClassicalModel) -> Self {
-        Self {
-            model,
-            operators: None,
-            thresholds: None,
-            sign: None,
-            dead_zones: None,
-            free_weights: None,
-            logarithmic_thresholds: false,
-            degradation: false,
-            asymmetric: false,
-            differential_form: false,
-            hidden: None,
-            states: None,
-            modes: None,
-            relaxation: None,
-            resonance: false,
-            lagged_input: false,
-            deterioration: None,
-            rate: None,
-            shaping: InputOptions::default(),
-            starts: None,
-            epochs: None,
-            near: Vec::new(),
-            seed: SEED,
-        }
+        Self { model, seed: SEED, ..Self::default() }
     }
 }
 

@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn networks_differ_only_by_their_trainer() {
-        for option in &crate::options::table::OPTIONS {
+        for option in crate::options::table::OPTIONS {
             let networks = option.users().into_iter().filter(|model| matches!(model, ModelName::Network(_)));
             let networks: Vec<ModelName> = networks.collect();
             for trainer in Trainer::ALL {

@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::options::ModelName;
-use crate::options::classical::ClassicalModel;
 
 /// The default of an option for one model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,12 +48,6 @@ impl fmt::Display for Preset {
 /// The default count of an option that laws and networks have: the law's own, or that of networks.
 pub(super) fn count_of(model: ModelName, option: &str, of_networks: usize) -> Preset {
     let ModelName::Classical(law) = model else { return Preset::Count(of_networks) };
-    let [plain, degrading] = counts(law, option);
+    let [plain, degrading] = [false, true].map(|degradation| law.facts().default_of(option, degradation));
     if plain == degrading { Preset::Count(plain) } else { Preset::WithDegradation(plain, degrading) }
-}
-
-fn counts(law: ClassicalModel, option: &str) -> [usize; 2] {
-    let facts = law.facts();
-    [facts.defaults, facts.defaults_with_degradation]
-        .map(|defaults| defaults.of(option).expect("an option that counts something"))
 }

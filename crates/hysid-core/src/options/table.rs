@@ -1,6 +1,7 @@
 //! The table of options: name, meaning, range and default of each option of a fit, once. The command line, the Python
 //! keywords, the checks, the warnings and `docs/options.md` are made from it or tested against it.
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::data::initial_state::InitialState;
@@ -92,21 +93,48 @@ const PENALTY: OptionValues = OptionValues::Number(*PENALTIES.start(), *PENALTIE
 
 const SHARE: OptionValues = OptionValues::ZeroOr(*SHARES.start(), *SHARES.end());
 
-/// Every option, in the order in which it is listed.
-pub const OPTIONS: [FitOption; 34] = [
-    FitOption {
-        name: "model",
-        group: Model,
+/// Makes the table and the options by name from one row for each option: its name, its type, and the fields of
+/// [`FitOption`], the meaning first.
+macro_rules! options {
+    ($($name:ident: $kind:ty {
+        meaning: $meaning:literal, $($field:ident: $value:expr,)* $(..$others:expr)?
+    })*) => {
+        /// Every option, in the order in which it is listed.
+        pub const OPTIONS: &[FitOption] = &[
+            $(FitOption { name: stringify!($name), meaning: $meaning, $($field: $value,)* $(..$others)? },)*
+        ];
+
+        /// Options of a fit, described in [`OPTIONS`]; `None` stands for the default of the model or its trainer.
+        #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+        #[serde(default, deny_unknown_fields)]
+        pub struct NamedOptions {
+            $(#[doc = $meaning] pub $name: Option<$kind>,)*
+        }
+    };
+}
+
+/// A flag that selects a variant of classical models.
+const FLAG_OF_LAWS: FitOption = FitOption {
+    name: "",
+    meaning: "",
+    group: Classical,
+    values: OptionValues::Flag,
+    default: |_, _| Preset::Off,
+    used_by: of_none,
+};
+
+options! {
+    model: ModelName {
         meaning: "Model to fit. `auto` cross-validates networks and classical models and combines the best",
+        group: Model,
         values: OptionValues::Names(models),
         default: |_, _| Preset::Name(ModelName::AUTO.name()),
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "members",
-        group: Model,
+    }
+    members: usize {
         meaning: "Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts \
                   that are combined",
+        group: Model,
         values: OptionValues::Count(1, MOST_MEMBERS),
         default: |model, _| {
             Preset::Count(match model {
@@ -115,20 +143,18 @@ pub const OPTIONS: [FitOption; 34] = [
             })
         },
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "stops",
-        group: Model,
+    }
+    stops: usize {
         meaning: "Stop neurons of a network",
+        group: Model,
         values: NEURONS,
         default: |_, _| Preset::Count(Sizes::default().stops),
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "hidden",
-        group: Model,
+    }
+    hidden: usize {
         meaning: "Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100), of random-stops, or of each \
                   hysteretic element (at most 60)",
+        group: Model,
         values: NEURONS,
         default: |model, _| match model {
             ModelName::Classical(ClassicalModel::RandomStops) => Preset::Chosen,
@@ -136,297 +162,249 @@ pub const OPTIONS: [FitOption; 34] = [
             _ => count_of(model, "hidden", Sizes::default().hidden),
         },
         used_by: |model, _| network_or_auto(model, |family| family.has_tanh_layer()),
-    },
-    FitOption {
-        name: "relaxation",
-        group: Model,
+    }
+    relaxation: usize {
         meaning: "Relaxation neurons of each input of xpnn+, for data with time stamps, or relaxation elements of \
                   dynamic-prandtl-ishlinskii (at most 3); 0 for none",
+        group: Model,
         values: OptionValues::Count(0, 1000),
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::ByCandidate,
             _ => count_of(model, "relaxation", Sizes::default().relaxation),
         },
         used_by: |model, _| network_or_auto(model, |family| family.relaxes()),
-    },
-    FitOption {
-        name: "no_deterioration",
-        group: Model,
+    }
+    no_deterioration: bool {
         meaning: "Use stops that do not deteriorate",
+        group: Model,
         values: OptionValues::Flag,
         default: |model, _| match model {
             ModelName::Network(_) => Preset::Off,
             _ => Preset::Chosen,
         },
         used_by: |model, _| network_or_auto(model, |family| family.deteriorates()),
-    },
-    FitOption {
-        name: "history",
-        group: Model,
+    }
+    history: bool {
         meaning: "Add the running peak and the travelled path of the input as inputs",
+        group: Model,
         values: OptionValues::Flag,
         default: chosen_or_off,
         used_by: |model, _| network_or_auto(model, |family| family.takes_further_inputs()),
-    },
-    FitOption {
-        name: "companding",
-        group: Model,
+    }
+    companding: f64 {
         meaning: "Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as \
                   0.1; 0 for off",
+        group: Model,
         values: SHARE,
         default: chosen_or_off,
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "rate_companding",
-        group: Model,
+    }
+    rate_companding: f64 {
         meaning: "Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all \
                   rows stay below; 0 for off",
+        group: Model,
         values: SHARE,
         default: |_, _| Preset::Off,
         used_by: |model, _| matches!(model, ModelName::Network(family) if family.uses_rate()),
-    },
-    FitOption {
-        name: "warm_up",
-        group: Training,
+    }
+    warm_up: usize {
         meaning: "Rows at the beginning of each record that drive the memory and are not trained on, for records that \
                   do not begin in the virgin state",
+        group: Training,
         values: OptionValues::Whole,
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::Chosen,
             _ => Preset::Count(0),
         },
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "initial_state",
-        group: Training,
+    }
+    initial_state: InitialState {
         meaning: "State of the memory at the beginning of each record: without history, after a visit of the upper or \
                   the lower end of the input range, demagnetised, periodic (each record is a period of a steady state), \
                   or unknown and found for each record",
+        group: Training,
         values: OptionValues::Names(initial_states),
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::Chosen,
             _ => Preset::Name(InitialState::default().name()),
         },
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "training",
-        group: Training,
+    }
+    training: Trainer {
         meaning: "Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic \
                   algorithm, or the paper's hybrid of the genetic algorithm and the sub-gradient method",
+        group: Training,
         values: OptionValues::Names(trainers),
         default: |_, _| Preset::Name(Trainer::default().name()),
         used_by: of_networks,
-    },
-    FitOption {
-        name: "effort",
-        group: Training,
+    }
+    effort: Effort {
         meaning: "How long `auto` searches: `quick` takes about half the normal time, `thorough` about five times as \
                   long",
+        group: Training,
         values: OptionValues::Names(efforts),
         default: |_, _| Preset::Name(Effort::default().name()),
         used_by: |model, _| matches!(model, ModelName::Auto(_)),
-    },
-    FitOption {
-        name: "starts",
-        group: Training,
+    }
+    starts: usize {
         meaning: "Number of random starts: networks, populations or parameter sets from which the training begins",
+        group: Training,
         values: OptionValues::Count(1, MOST_STARTS),
         default: |model, trainer| match model {
             ModelName::Auto(_) => Preset::Count(AutoOptions::default().starts),
             _ => count_of(model, "starts", trainer.default_starts()),
         },
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "epochs",
-        group: Training,
+    }
+    epochs: usize {
         meaning: "Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm, \
                   iterations of the sub-gradient method; the hybrid uses half of them for each",
+        group: Training,
         values: OptionValues::Count(0, MOST_EPOCHS),
         default: |model, trainer| match model {
             ModelName::Auto(_) => Preset::ByCandidate,
             _ => count_of(model, "epochs", trainer.default_epochs()),
         },
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "population",
-        group: Training,
+    }
+    population: usize {
         meaning: "Individuals of the genetic algorithm",
+        group: Training,
         values: OptionValues::Count(*POPULATIONS.start(), *POPULATIONS.end()),
         default: |_, trainer| Preset::Count(FitOptions::of(trainer).population),
         used_by: |model, trainer| of_networks(model, trainer) && trainer.is_genetic(),
-    },
-    FitOption {
-        name: "stall",
-        group: Training,
+    }
+    stall: usize {
         meaning: "Epochs without a noticeable improvement after which the genetic algorithm or the sub-gradient method \
                   ends; 0 for never",
+        group: Training,
         values: OptionValues::Whole,
         default: |_, trainer| Preset::Count(FitOptions::of(trainer).stall),
         used_by: |model, trainer| of_networks(model, trainer) && trainer != Trainer::LevenbergMarquardt,
-    },
-    FitOption {
-        name: "seed",
-        group: Training,
+    }
+    seed: u64 {
         meaning: "Seed of all random numbers; the same data, options and seed give the same model",
+        group: Training,
         values: OptionValues::Whole,
         default: |_, _| Preset::Count(SEED as usize),
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "validation",
-        group: Training,
+    }
+    validation: f64 {
         meaning: "Share of the data held out to validate a network on, between 0 and 1; the final network is trained \
                   on all data",
+        group: Training,
         values: OptionValues::Fraction,
         default: |_, _| Preset::Folds,
         used_by: of_networks,
-    },
-    FitOption {
-        name: "ridge",
-        group: Training,
+    }
+    ridge: f64 {
         meaning: "Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as \
                   in the paper",
+        group: Training,
         values: PENALTY,
         default: |model, _| match model {
             ModelName::Network(_) => Preset::Penalty(Regularisation::default().ridge),
             _ => Preset::Chosen,
         },
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "decay",
-        group: Training,
+    }
+    decay: f64 {
         meaning: "Penalty on the squared weights of stops and tanh neurons",
+        group: Training,
         values: PENALTY,
         default: |model, _| match model {
             ModelName::Network(_) => Preset::Penalty(Regularisation::default().decay),
             _ => Preset::Chosen,
         },
         used_by: |_, _| true,
-    },
-    FitOption {
-        name: "operators",
-        group: Classical,
+    }
+    operators: usize {
         meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of \
                   duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none)",
+        group: Classical,
         values: OptionValues::Count(0, 1000),
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::ByCandidate,
             _ => count_of(model, "operators", 0),
         },
         used_by: of_auto,
-    },
-    FitOption {
-        name: "states",
-        group: Classical,
+    }
+    states: usize {
         meaning: "States of duhem-nn, driven by the input and by time (1 to 20), or memory states of each hysteretic \
                   element, which change only when its displacement changes (0 to 10; an element without memory states \
                   and stops has no hysteresis)",
+        group: Classical,
         values: OptionValues::Count(0, MOST_STATES),
         default: |model, _| count_of(model, "states", 0),
         used_by: of_none,
-    },
-    FitOption {
-        name: "modes",
-        group: Classical,
+    }
+    modes: usize {
         meaning: "Modes of vibration of hysteretic-oscillator and hysteretic-state-space",
+        group: Classical,
         values: OptionValues::Count(1, MOST_PARTS),
         default: |model, _| match model {
             ModelName::Auto(_) => Preset::ByCandidate,
             _ => count_of(model, "modes", 0),
         },
         used_by: of_auto,
-    },
-    FitOption {
-        name: "thresholds",
-        group: Classical,
+    }
+    thresholds: Vec<f64> {
         meaning: "Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of \
                   the input",
+        group: Classical,
         values: OptionValues::Positive,
         default: |_, _| Preset::Chosen,
         used_by: of_none,
-    },
-    FitOption {
-        name: "sign",
-        group: Classical,
+    }
+    sign: Sign {
         meaning: "Sign of the weights of plays, or of the cells of a Preisach plane",
+        group: Classical,
         values: OptionValues::Names(signs),
         default: |_, _| Preset::Chosen,
         used_by: of_none,
-    },
-    FitOption {
-        name: "dead_zones",
-        group: Classical,
+    }
+    dead_zones: usize {
         meaning: "Dead zones on each side of modified-prandtl-ishlinskii or dynamic-prandtl-ishlinskii",
+        group: Classical,
         values: OptionValues::Count(1, 100),
         default: |model, _| count_of(model, "dead_zones", 0),
         used_by: of_none,
-    },
-    FitOption {
-        name: "free_weights",
-        group: Classical,
+    }
+    free_weights: bool {
         meaning: "Give each play of generalized-prandtl-ishlinskii or rate-dependent-prandtl-ishlinskii a weight of its \
                   own, in place of an exponential law",
+        group: Classical,
         values: OptionValues::Truth,
         default: |_, _| Preset::On,
         used_by: of_none,
-    },
-    FitOption {
-        name: "logarithmic_thresholds",
-        group: Classical,
+    }
+    logarithmic_thresholds: bool {
         meaning: "Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate",
-        values: OptionValues::Flag,
-        default: |_, _| Preset::Off,
-        used_by: of_none,
-    },
-    FitOption {
-        name: "degradation",
-        group: Classical,
+        ..FLAG_OF_LAWS
+    }
+    degradation: bool {
         meaning: "Use bouc-wen with the degradation and pinching of Baber and Noori, peak-oriented with softening \
                   and deterioration, or hysteretic-oscillator and hysteretic-state-space with stops that deteriorate",
-        values: OptionValues::Flag,
-        default: |_, _| Preset::Off,
-        used_by: of_none,
-    },
-    FitOption {
-        name: "asymmetric",
-        group: Classical,
+        ..FLAG_OF_LAWS
+    }
+    asymmetric: bool {
         meaning: "Use peak-oriented or menegotto-pinto with different strengths upwards and downwards",
-        values: OptionValues::Flag,
-        default: |_, _| Preset::Off,
-        used_by: of_none,
-    },
-    FitOption {
-        name: "differential_form",
-        group: Classical,
+        ..FLAG_OF_LAWS
+    }
+    differential_form: bool {
         meaning: "Use jiles-atherton in its differential form of 1992 in place of that of 1986",
-        values: OptionValues::Flag,
-        default: |_, _| Preset::Off,
-        used_by: of_none,
-    },
-    FitOption {
-        name: "resonance",
-        group: Classical,
+        ..FLAG_OF_LAWS
+    }
+    resonance: bool {
         meaning: "Use dynamic-prandtl-ishlinskii with a resonance behind its plays",
-        values: OptionValues::Flag,
-        default: |_, _| Preset::Off,
-        used_by: of_none,
-    },
-    FitOption {
-        name: "lagged_input",
-        group: Classical,
+        ..FLAG_OF_LAWS
+    }
+    lagged_input: bool {
         meaning: "Use dynamic-prandtl-ishlinskii with a lag before its plays and the input beside them, for an output that \
                   follows the integral of the input, as the voltage of a cell follows its charge",
-        values: OptionValues::Flag,
-        default: |_, _| Preset::Off,
-        used_by: of_none,
-    },
-];
+        ..FLAG_OF_LAWS
+    }
+}
 
 fn chosen_or_off(model: ModelName, _: Trainer) -> Preset {
     match model {

@@ -1,9 +1,46 @@
 //! Variants of a law: its equations with and without an optional term, or in another form.
 
+use serde_json::Value;
+
+use crate::network::Family;
 use crate::options::FitSpec;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
+use crate::options::fields::{fields_of, with_fields};
+use crate::options::network::ENSEMBLE_PENALTIES;
+use crate::options::table::{FitOption, OptionValues};
 
 impl FitSpec {
+    /// The model and its variant in a few words, such as `bouc-wen (degradation, rate)`.
+    pub fn label(&self) -> String {
+        let variant = self.variant();
+        let name = self.model().name();
+        if variant.is_empty() { name.into() } else { format!("{name} ({})", variant.join(", ")) }
+    }
+
+    /// The options that differ from the model's default, in a few words.
+    fn variant(&self) -> Vec<String> {
+        let (shaping, mut variant) = match self {
+            Self::Network(options) => (
+                options.shaping,
+                named([
+                    ("deterioration", options.deteriorates()),
+                    ("rate", options.rate.is_some()),
+                    ("relaxation", options.model == Family::XpnnPlus && options.sizes.relaxation > 0),
+                ]),
+            ),
+            Self::Classical(options) => (options.shaping, of_law(options)),
+            Self::Auto(_) => return Vec::new(),
+        };
+        if let Self::Network(options) = self {
+            let ridge = options.ridge.filter(|ridge| *ridge != ENSEMBLE_PENALTIES.ridge);
+            variant.extend(ridge.map(|ridge| format!("ridge {ridge:e}")));
+        }
+        variant.extend(shaping.companding.map(|share| format!("input companded {share}")));
+        variant.extend(shaping.rate_companding.map(|share| format!("rate companded {share}")));
+        variant.extend(shaping.history.then(|| "history".to_string()));
+        variant
+    }
+
     /// The name of the model, and of the variant of its law if it has more than one.
     pub fn variant_label(&self) -> String {
         if self.variants().len() > 1 { self.label() } else { self.model().name().into() }
@@ -36,14 +73,44 @@ pub fn variants(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
 }
 
 fn terms(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
-    let with = |options: &ClassicalOptions, variant, is_there| {
-        let mut options = options.clone();
-        *options.variant(variant).expect("a law names an option that there is") = is_there;
-        options
+    let both = |option: &'static str| {
+        move |options: ClassicalOptions| {
+            [false, true].map(|is_there| {
+                let near = options.near.clone();
+                ClassicalOptions { near, ..with_fields(&options, [(option.into(), is_there.into())]) }
+            })
+        }
     };
-    let both = |variant| move |options: ClassicalOptions| [false, true].map(|is| with(&options, variant, is));
     let variants = options.model.facts().variants.iter();
     variants.fold(vec![options.clone()], |all, variant| all.into_iter().flat_map(both(variant)).collect())
+}
+
+/// Flags, rate and parts of a law, in a few words.
+fn of_law(options: &ClassicalOptions) -> Vec<String> {
+    let fields = fields_of(options);
+    let is_flag = |name: &&&str| {
+        matches!(FitOption::named(name), Some(FitOption { values: OptionValues::Flag, .. }))
+            && fields.get(**name) == Some(&Value::Bool(true))
+    };
+    let flags = options.model.facts().options.iter().filter(is_flag).map(|name| name.replace('_', " "));
+    let has_no_memory = options.has_no_memory();
+    let has_tanh_layer =
+        options.model == ClassicalModel::RandomStops && options.hidden.is_some_and(|hidden| hidden > 0);
+    let deterioration = named([("deterioration", options.deterioration == Some(true))]);
+    let others = named([
+        ("rate", options.rate.is_some() && !options.model.needs_rate()),
+        ("tanh layer", has_tanh_layer),
+        ("no stops", options.operators == Some(0) && !has_no_memory),
+        ("no memory", has_no_memory),
+    ]);
+    let modes =
+        options.modes.map(|modes| if modes == 1 { "1 mode".into() } else { format!("{modes} modes") });
+    deterioration.into_iter().chain(flags).chain(others).chain(modes).collect()
+}
+
+/// The names of what is so.
+fn named<const N: usize>(all: [(&str, bool); N]) -> Vec<String> {
+    all.into_iter().filter(|(_, is_so)| *is_so).map(|(name, _)| name.to_string()).collect()
 }
 
 #[cfg(test)]

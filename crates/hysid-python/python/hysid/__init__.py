@@ -34,11 +34,12 @@ from hysid.specimens import Records, Specimen, specimen, specimens
 
 if TYPE_CHECKING:
     from hysid import plot
+    from hysid._options import ModelName
     from hysid.regressor import HysteresisRegressor
 
 __version__: str = _hysid.__version__
 
-models: tuple[str, ...] = tuple(_hysid.model_names())
+models: tuple[ModelName, ...] = tuple(_hysid.model_names())
 """Names of all models, the networks first; ``"auto"`` chooses among them."""
 
 __all__ = [

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from hysid._data import Values
+    from hysid._options import ModelName
 
 @dataclass(frozen=True)
 class Compared:
@@ -141,7 +142,7 @@ def compare(
     records: ArrayLike | str | None = None,
     *,
     test: Any = None,
-    models: Sequence[str] | None = None,
+    models: Sequence[ModelName] | None = None,
     time_limit: float | None = None,
     seed: int | None = None,
     threads: int | None = None,

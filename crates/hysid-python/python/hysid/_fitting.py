@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from hysid.model import Model
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from hysid import _options
     from hysid._data import Columns, Values
 
 
@@ -29,19 +31,21 @@ def fit(
     rate: str | ArrayLike = "auto",
     records: ArrayLike | str | None = None,
     *,
-    model: str | None = None,
+    # Model
+    model: _options.ModelName | None = None,
     members: int | None = None,
     stops: int | None = None,
     hidden: int | None = None,
     relaxation: int | None = None,
     no_deterioration: bool | None = None,
+    history: bool | None = None,
     companding: float | None = None,
     rate_companding: float | None = None,
-    history: bool | None = None,
+    # Training
     warm_up: int | None = None,
-    initial_state: str | None = None,
-    training: str | None = None,
-    effort: str | None = None,
+    initial_state: _options.InitialStateName | None = None,
+    training: _options.TrainingName | None = None,
+    effort: _options.EffortName | None = None,
     starts: int | None = None,
     epochs: int | None = None,
     population: int | None = None,
@@ -50,11 +54,12 @@ def fit(
     validation: float | None = None,
     ridge: float | None = None,
     decay: float | None = None,
+    # Classical models
     operators: int | None = None,
     states: int | None = None,
     modes: int | None = None,
     thresholds: ArrayLike | None = None,
-    sign: str | None = None,
+    sign: _options.SignName | None = None,
     dead_zones: int | None = None,
     free_weights: bool | None = None,
     logarithmic_thresholds: bool | None = None,
@@ -63,6 +68,7 @@ def fit(
     differential_form: bool | None = None,
     resonance: bool | None = None,
     lagged_input: bool | None = None,
+    # Run
     time_limit: float | None = None,
     threads: int | None = None,
     progress: Listener = True,
@@ -98,107 +104,102 @@ def fit(
     model : str, optional
         Model to fit. `auto` cross-validates networks and classical models and combines the best. Default: auto.
     members : int, optional
-        Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts
-        that are combined. Default: 6 for auto; otherwise 1.
+        Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts that are
+        combined. Default: 6 for auto; otherwise 1.
     stops : int, optional
         Stop neurons of a network. Default: 10.
     hidden : int, optional
-        Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100), of random-stops, or of each
-        hysteretic element (at most 60). Default: 10 for networks; set by each candidate for auto; 8 for
-        neuro-madelung and duhem-nn; 8 (4 with degradation) for hysteretic-oscillator and
-        hysteretic-state-space; chosen by cross-validation for random-stops.
+        Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100), of random-stops, or of each hysteretic
+        element (at most 60). Default: 10 for networks; set by each candidate for auto; 8 for neuro-madelung and
+        duhem-nn; 8 (4 with degradation) for hysteretic-oscillator and hysteretic-state-space; chosen by
+        cross-validation for random-stops.
     relaxation : int, optional
         Relaxation neurons of each input of xpnn+, for data with time stamps, or relaxation elements of
-        dynamic-prandtl-ishlinskii (at most 3); 0 for none. Default: 4 for networks; set by each candidate for
-        auto; 2 for dynamic-prandtl-ishlinskii.
+        dynamic-prandtl-ishlinskii (at most 3); 0 for none. Default: 4 for networks; set by each candidate for auto; 2
+        for dynamic-prandtl-ishlinskii.
     no_deterioration : bool, optional
         Use stops that do not deteriorate. Default: off for networks; chosen by cross-validation for auto and
         random-stops.
     history : bool, optional
-        Add the running peak and the travelled path of the input as inputs. Default: off for networks and
-        random-stops; chosen by cross-validation for auto.
+        Add the running peak and the travelled path of the input as inputs. Default: off for networks and random-stops;
+        chosen by cross-validation for auto.
     companding : float, optional
-        Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as
-        0.1; 0 for off. Default: chosen by cross-validation for auto; otherwise off.
+        Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as 0.1; 0 for
+        off. Default: chosen by cross-validation for auto; otherwise off.
     rate_companding : float, optional
-        Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all
-        rows stay below; 0 for off. Default: off.
+        Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all rows stay
+        below; 0 for off. Default: off.
     warm_up : int, optional
-        Rows at the beginning of each record that drive the memory and are not trained on, for records that do
-        not begin in the virgin state. Default: chosen by cross-validation for auto; otherwise 0.
-    initial_state : str, optional
-        State of the memory at the beginning of each record: without history, after a visit of the upper or the
-        lower end of the input range, demagnetised, periodic (each record is a period of a steady state), or
-        unknown and found for each record. Default: chosen by cross-validation for auto; otherwise virgin.
-    training : str, optional
-        Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic
-        algorithm, or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default:
-        subgradient.
-    effort : str, optional
-        How long `auto` searches: `quick` takes about half the normal time, `thorough` about five times
-        as long. Default: normal.
+        Rows at the beginning of each record that drive the memory and are not trained on, for records that do not begin
+        in the virgin state. Default: chosen by cross-validation for auto; otherwise 0.
+    initial_state : {"virgin", "saturated-up", "saturated-down", "demagnetised", "periodic", "unknown"}, optional
+        State of the memory at the beginning of each record: without history, after a visit of the upper or the lower
+        end of the input range, demagnetised, periodic (each record is a period of a steady state), or unknown and found
+        for each record. Default: chosen by cross-validation for auto; otherwise virgin.
+    training : {"subgradient", "levenberg-marquardt", "hybrid", "genetic"}, optional
+        Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic algorithm,
+        or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default: subgradient.
+    effort : {"quick", "normal", "thorough"}, optional
+        How long `auto` searches: `quick` takes about half the normal time, `thorough` about five times as long.
+        Default: normal.
     starts : int, optional
-        Number of random starts: networks, populations or parameter sets from which the training begins.
-        Default: 2 for subgradient and auto; 8 for levenberg-marquardt, dynamic-prandtl-ishlinskii, bouc-wen,
-        jiles-atherton and lugre; 1 for hybrid and genetic; 32 for generalized-prandtl-ishlinskii; 16 for
-        rate-dependent-prandtl-ishlinskii, neuro-madelung, peak-oriented and menegotto-pinto; 6 for duhem-nn; 4
-        for hysteretic-oscillator and hysteretic-state-space.
+        Number of random starts: networks, populations or parameter sets from which the training begins. Default: 2 for
+        subgradient and auto; 8 for levenberg-marquardt, dynamic-prandtl-ishlinskii, bouc-wen, jiles-atherton and lugre;
+        1 for hybrid and genetic; 32 for generalized-prandtl-ishlinskii; 16 for rate-dependent-prandtl-ishlinskii,
+        neuro-madelung, peak-oriented and menegotto-pinto; 6 for duhem-nn; 4 for hysteretic-oscillator and
+        hysteretic-state-space.
     epochs : int, optional
-        Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
-        iterations of the sub-gradient method; the hybrid uses half of them for each. Default: 400 for
-        subgradient; 2000 for hybrid and genetic; set by each candidate for auto; 60 for
-        generalized-prandtl-ishlinskii and neuro-madelung; 45 for duhem-nn; 200 for hysteretic-oscillator and
-        hysteretic-state-space; otherwise 40.
+        Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm, iterations of the
+        sub-gradient method; the hybrid uses half of them for each. Default: 400 for subgradient; 2000 for hybrid and
+        genetic; set by each candidate for auto; 60 for generalized-prandtl-ishlinskii and neuro-madelung; 45 for
+        duhem-nn; 200 for hysteretic-oscillator and hysteretic-state-space; otherwise 40.
     population : int, optional
         Individuals of the genetic algorithm. Default: 50.
     stall : int, optional
-        Epochs without a noticeable improvement after which the genetic algorithm or the sub-gradient method
-        ends; 0 for never. Default: 50.
+        Epochs without a noticeable improvement after which the genetic algorithm or the sub-gradient method ends; 0 for
+        never. Default: 50.
     seed : int, optional
         Seed of all random numbers; the same data, options and seed give the same model. Default: 1.
     validation : float, optional
-        Share of the data held out to validate a network on, between 0 and 1; the final network is trained on
-        all data. Default: the folds of a cross-validation.
+        Share of the data held out to validate a network on, between 0 and 1; the final network is trained on all data.
+        Default: the folds of a cross-validation.
     ridge : float, optional
-        Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as in
-        the paper. Default: 1e-6 (nearly 0 where that lowers the cross-validation error) for networks; chosen by
-        cross-validation for auto.
+        Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as in the paper.
+        Default: 1e-6 (nearly 0 where that lowers the cross-validation error) for networks; chosen by cross-validation
+        for auto.
     decay : float, optional
         Penalty on the squared weights of stops and tanh neurons. Default: 1e-7 (nearly 0 where that lowers the
         cross-validation error) for networks; chosen by cross-validation for auto.
     operators : int, optional
-        Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of
-        duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none).
-        Default: set by each candidate for auto; 30 for masing, prandtl-ishlinskii and preisach; 20 for
-        modified-prandtl-ishlinskii; 10 for generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii
-        and dynamic-prandtl-ishlinskii; 6 for duhem-nn; 0 (6 with degradation) for hysteretic-oscillator and
-        hysteretic-state-space; 300 for random-stops.
+        Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of duhem-nn
+        (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none). Default: set by each
+        candidate for auto; 30 for masing, prandtl-ishlinskii and preisach; 20 for modified-prandtl-ishlinskii; 10 for
+        generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii and dynamic-prandtl-ishlinskii; 6 for
+        duhem-nn; 0 (6 with degradation) for hysteretic-oscillator and hysteretic-state-space; 300 for random-stops.
     states : int, optional
-        States of duhem-nn, driven by the input and by time (1 to 20), or memory states of each hysteretic
-        element, which change only when its displacement changes (0 to 10; an element without memory states and
-        stops has no hysteresis). Default: 3 for duhem-nn; 2 (0 with degradation) for hysteretic-oscillator and
+        States of duhem-nn, driven by the input and by time (1 to 20), or memory states of each hysteretic element,
+        which change only when its displacement changes (0 to 10; an element without memory states and stops has no
+        hysteresis). Default: 3 for duhem-nn; 2 (0 with degradation) for hysteretic-oscillator and
         hysteretic-state-space.
     modes : int, optional
-        Modes of vibration of hysteretic-oscillator and hysteretic-state-space. Default: set by each candidate
-        for auto; 1 for hysteretic-oscillator; 2 for hysteretic-state-space.
+        Modes of vibration of hysteretic-oscillator and hysteretic-state-space. Default: set by each candidate for auto;
+        1 for hysteretic-oscillator; 2 for hysteretic-state-space.
     thresholds : array of numbers, optional
-        Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of the
-        input. Default: chosen by cross-validation.
-    sign : str, optional
+        Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of the input.
+        Default: chosen by cross-validation.
+    sign : {"any", "non-negative", "non-positive"}, optional
         Sign of the weights of plays, or of the cells of a Preisach plane. Default: chosen by cross-validation.
     dead_zones : int, optional
         Dead zones on each side of modified-prandtl-ishlinskii or dynamic-prandtl-ishlinskii. Default: 6 for
         modified-prandtl-ishlinskii; 2 for dynamic-prandtl-ishlinskii.
     free_weights : bool, optional
-        Give each play of generalized-prandtl-ishlinskii or rate-dependent-prandtl-ishlinskii a weight of its
-        own, in place of an exponential law. Default: true.
+        Give each play of generalized-prandtl-ishlinskii or rate-dependent-prandtl-ishlinskii a weight of its own, in
+        place of an exponential law. Default: true.
     logarithmic_thresholds : bool, optional
-        Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate. Default:
-        off.
+        Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate. Default: off.
     degradation : bool, optional
         Use bouc-wen with the degradation and pinching of Baber and Noori, peak-oriented with softening and
-        deterioration, or hysteretic-oscillator and hysteretic-state-space with stops that deteriorate. Default:
-        off.
+        deterioration, or hysteretic-oscillator and hysteretic-state-space with stops that deteriorate. Default: off.
     asymmetric : bool, optional
         Use peak-oriented or menegotto-pinto with different strengths upwards and downwards. Default: off.
     differential_form : bool, optional
@@ -206,8 +207,8 @@ def fit(
     resonance : bool, optional
         Use dynamic-prandtl-ishlinskii with a resonance behind its plays. Default: off.
     lagged_input : bool, optional
-        Use dynamic-prandtl-ishlinskii with a lag before its plays and the input beside them, for an output that
-        follows the integral of the input, as the voltage of a cell follows its charge. Default: off.
+        Use dynamic-prandtl-ishlinskii with a lag before its plays and the input beside them, for an output that follows
+        the integral of the input, as the voltage of a cell follows its charge. Default: off.
     time_limit : float, optional
         Time in seconds after which to stop and keep the best model so far.
     threads : int, optional
@@ -254,7 +255,7 @@ def fit(
 def identified(
     arranged: Columns,
     rate: str,
-    options: dict[str, Any],
+    options: Mapping[str, Any],
     *,
     time_limit: float | None,
     threads: int | None,
@@ -283,7 +284,7 @@ def fitted(
 
 
 def requested(
-    arranged: Columns, rate: str, options: dict[str, Any], threads: int | None
+    arranged: Columns, rate: str, options: Mapping[str, Any], threads: int | None
 ) -> tuple[_hysid.Dataset, _hysid.FitSpec]:
     """Data and request for the native module; checks them and warns before the work."""
     if rate in ("central", "backward", "savitzky-golay") and arranged.time is None:
@@ -296,7 +297,7 @@ def requested(
     return data, request
 
 
-def as_json(options: dict[str, Any]) -> str:
+def as_json(options: Mapping[str, Any]) -> str:
     """Options for the native module; options that are None have their defaults."""
     given = {name: _plain(value) for name, value in options.items() if value is not None}
     for name, value in given.items():

@@ -4,6 +4,8 @@ from typing import final
 
 import numpy as np
 
+from hysid._options import ModelName
+
 __all__ = [
     "Dataset",
     "Model",
@@ -25,7 +27,6 @@ __all__ = [
     "model_names",
     "name_and_unit",
     "option_names",
-    "option_table",
     "plan",
     "play",
     "relaxation",
@@ -223,9 +224,8 @@ def validate(
     time_limit: float | None,
     progress: Callable[..., object] | None,
 ) -> tuple[str, bool]: ...
-def model_names() -> list[str]: ...
+def model_names() -> list[ModelName]: ...
 def option_names() -> list[str]: ...
-def option_table() -> list[tuple[str, str, str]]: ...
 def specimens() -> list[tuple[str, str | None, str, str, str, str, str]]: ...
 def specimen(name: str, test: bool, noise: float, seed: int) -> Dataset: ...
 def relay(x: _Column, r: float, s: float) -> _Column: ...

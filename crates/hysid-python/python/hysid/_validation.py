@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from hysid import _hysid
 from hysid._arguments import real, whole
@@ -18,8 +18,10 @@ from hysid._results import Errors
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+    from typing_extensions import Unpack
 
     from hysid._data import Values
+    from hysid._options import Options
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,7 @@ def validate(
     time_limit: float | None = None,
     threads: int | None = None,
     progress: Listener = True,
-    **options: Any,
+    **options: Unpack[Options],
 ) -> Validation:
     """Cross-validate a model: fit to a part of the data, evaluate free runs on the rest, fold by fold.
 

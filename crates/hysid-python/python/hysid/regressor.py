@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from sklearn.base import BaseEstimator, RegressorMixin
@@ -15,6 +15,11 @@ from hysid._columns import Column, place_of, without_mask
 from hysid._data import Columns, check_indexes, continued, runs, warn_of_order
 from hysid._fitting import identified
 from hysid._tables import is_frame, with_column
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from hysid import _options
 
 __all__ = ["HysteresisRegressor"]
 
@@ -45,10 +50,10 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     model : str, optional
         As of `hysid.fit`; the default ``"auto"`` is accurate and slow. In a search or a cross-validation, name a
         model, which takes seconds.
-    members, stops, hidden, relaxation, no_deterioration, companding, rate_companding, history : optional
-    warm_up, initial_state, training, effort, starts, epochs, population, stall, validation, ridge, decay : optional
-    operators, states, modes, thresholds, sign, dead_zones, free_weights : optional
-    logarithmic_thresholds, degradation, asymmetric, differential_form, resonance, lagged_input,
+    members, stops, hidden, relaxation, no_deterioration, history, companding, rate_companding, warm_up : optional
+    initial_state, training, effort, starts, epochs, population, stall, validation, ridge, decay, operators : optional
+    states, modes, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds, degradation : optional
+    asymmetric, differential_form, resonance, lagged_input : optional
     time_limit, threads : optional
         As of `hysid.fit`.
     random_state : int, RandomState instance or None, default None
@@ -83,19 +88,19 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         record: str | int | None = None,
         continue_records: bool = False,
         rate: str = "auto",
-        model: str | None = None,
+        model: _options.ModelName | None = None,
         members: int | None = None,
         stops: int | None = None,
         hidden: int | None = None,
         relaxation: int | None = None,
         no_deterioration: bool | None = None,
+        history: bool | None = None,
         companding: float | None = None,
         rate_companding: float | None = None,
-        history: bool | None = None,
         warm_up: int | None = None,
-        initial_state: str | None = None,
-        training: str | None = None,
-        effort: str | None = None,
+        initial_state: _options.InitialStateName | None = None,
+        training: _options.TrainingName | None = None,
+        effort: _options.EffortName | None = None,
         starts: int | None = None,
         epochs: int | None = None,
         population: int | None = None,
@@ -106,8 +111,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         operators: int | None = None,
         states: int | None = None,
         modes: int | None = None,
-        thresholds: Any = None,
-        sign: str | None = None,
+        thresholds: ArrayLike | None = None,
+        sign: _options.SignName | None = None,
         dead_zones: int | None = None,
         free_weights: bool | None = None,
         logarithmic_thresholds: bool | None = None,
@@ -130,9 +135,9 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.hidden = hidden
         self.relaxation = relaxation
         self.no_deterioration = no_deterioration
+        self.history = history
         self.companding = companding
         self.rate_companding = rate_companding
-        self.history = history
         self.warm_up = warm_up
         self.initial_state = initial_state
         self.training = training
