@@ -1,0 +1,12 @@
+//! A step of a hysteretic oscillator.
+
+use hysid_core::law::hysteretic_oscillator::HystereticOscillator;
+
+use crate::description::PartInputs;
+use crate::description::law::hysteretic_dynamics;
+use crate::program::Builder;
+use crate::program::expression::Real;
+
+pub fn step(builder: &mut Builder, name: &str, law: &HystereticOscillator, sample: &PartInputs) -> Real {
+    hysteretic_dynamics::step(builder, name, &law.0, sample)
+}
