@@ -3,7 +3,6 @@
 use hysid::law::facts::Rate;
 use hysid::network::Architecture;
 use hysid::options::ModelName;
-use hysid::options::classical::ClassicalModel;
 use hysid::options::network::Trainer;
 use hysid::options::table::OPTIONS;
 use hysid_document::plain::{aligned, indented};
@@ -54,7 +53,7 @@ impl Listed {
             ModelName::Auto(_) => ("ensemble", "cross-validation"),
             ModelName::Network(_) => ("network", "search"),
             // Its equations are those of the networks.
-            ModelName::Classical(ClassicalModel::RandomStops) => ("network", "least squares"),
+            ModelName::Classical(model) if model.is_network() => ("network", "least squares"),
             ModelName::Classical(law) if law.is_searched() => ("law", "search"),
             ModelName::Classical(_) => ("law", "least squares"),
         };

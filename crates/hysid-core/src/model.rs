@@ -42,7 +42,6 @@ use crate::model::input_transform::InputTransform;
 use crate::model::selection::Selection;
 use crate::network::Network;
 use crate::network::scaling::Scaling;
-use crate::options::classical::ClassicalModel;
 use crate::options::network::Regularisation;
 use crate::options::{FitSpec, ModelName};
 use crate::termination::Termination;
@@ -470,7 +469,7 @@ impl Model {
     pub fn parameters(&self) -> usize {
         match (&self.body, self.name()) {
             // All others are random.
-            (Predictor::Network { network, .. }, ModelName::Classical(ClassicalModel::RandomStops)) => {
+            (Predictor::Network { network, .. }, ModelName::Classical(model)) if model.is_network() => {
                 network.output().len()
             }
             (body, _) => body.parameters(),

@@ -4,6 +4,7 @@
 use serde::{Serialize, Serializer};
 
 use super::{Delay, Finding, Property, Verdict};
+use hysid_core::law::facts::Behaviour;
 use hysid_core::network::Family;
 use hysid_core::options::ModelName;
 use hysid_core::options::classical::ClassicalModel;
@@ -84,7 +85,7 @@ pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>, resonates: boo
         }
         None => reason.to_string(),
     }];
-    statement.extend(law(&found).map(String::from));
+    statement.extend(laws(&found));
     if model.is_some() {
         statement.push(
             "to learn how well a model fits, cross-validate it: the default fit does so with many models, and the command \
@@ -124,12 +125,9 @@ pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>, resonates: boo
 fn simplest(found: &DecidingProperties) -> (Option<ModelName>, &'static str) {
     use Verdict::{No, Yes};
     let network = |family| Some(ModelName::Network(family));
-    let rival = |rival| Some(ModelName::Classical(rival));
+    let law = |behaviour| Some(ModelName::Classical(ClassicalModel::simplest_for(behaviour)));
     if found.resonates {
-        return (
-            rival(ClassicalModel::HystereticOscillator),
-            "the data look like a resonance, which needs a mass",
-        );
+        return (law(Behaviour::Resonance), "the data look like a resonance, which needs a mass");
     }
     if found.is_a_function() {
         return (
@@ -157,7 +155,7 @@ fn simplest(found: &DecidingProperties) -> (Option<ModelName>, &'static str) {
     if found.wiping_out == No {
         return match found.odd_symmetry {
             Yes => (
-                rival(ClassicalModel::BoucWen),
+                law(Behaviour::Traces),
                 "closed excursions leave a trace, without deterioration; xpnn can represent this too",
             ),
             _ => (
@@ -175,9 +173,9 @@ fn simplest(found: &DecidingProperties) -> (Option<ModelName>, &'static str) {
         );
     }
     if found.masing == No || found.odd_symmetry == No {
-        let reason = "branches differ in shape, and minor loops between the same inputs were not found to \
-                      differ; generalized-prandtl-ishlinskii has fewer parameters, if its envelopes fit";
-        return (rival(ClassicalModel::Preisach), reason);
+        let reason =
+            "branches differ in shape, and minor loops between the same inputs were not found to differ";
+        return (law(Behaviour::UnlikeBranches), reason);
     }
     let reason = if found.masing == Yes {
         "all branches are one curve, scaled, so a weighted sum of plays is enough (as a network: pnn)"
@@ -185,27 +183,27 @@ fn simplest(found: &DecidingProperties) -> (Option<ModelName>, &'static str) {
         "these data show no property that a weighted sum of plays cannot represent, but they do not show that it is \
          enough"
     };
-    (rival(ClassicalModel::PrandtlIshlinskii), reason)
+    (law(Behaviour::SumOfPlays), reason)
 }
 
-/// A law with few parameters that holds what only networks hold otherwise. Whether its shape fits, only a fit
-/// tells.
-fn law(found: &DecidingProperties) -> Option<&'static str> {
-    if found.is_a_function() || found.resonates {
-        return None;
-    }
-    if found.degrades() {
-        return Some(
-            "models with fewer parameters: bouc-wen (pinching too) or peak-oriented (members and joints), both with the \
-             option degradation",
-        );
-    }
-    if found.pinching {
-        return Some("a model with fewer parameters: peak-oriented (members and joints, pinched or full)");
-    }
-    (found.rate_dependence == Verdict::Yes).then_some(
-        "models with fewer parameters: rate-dependent-prandtl-ishlinskii, or bouc-wen with the rate",
-    )
+/// Laws with fewer parameters than the simplest model. Whether their shapes fit, only a fit tells.
+fn laws(found: &DecidingProperties) -> Option<String> {
+    let behaviour = match found {
+        _ if found.is_a_function() || found.resonates => return None,
+        _ if found.degrades() => Behaviour::Degradation,
+        _ if found.pinching => Behaviour::Pinching,
+        _ if found.rate_dependence == Verdict::Yes => Behaviour::RateDependence,
+        _ if simplest(found).0
+            == Some(ModelName::Classical(ClassicalModel::simplest_for(Behaviour::UnlikeBranches))) =>
+        {
+            Behaviour::UnlikeBranches
+        }
+        _ => return None,
+    };
+    let laws = ClassicalModel::with_fewer_parameters_for(behaviour);
+    let laws: Vec<String> = laws.map(|(law, remark)| format!("{} ({remark})", law.name())).collect();
+    let models = if laws.len() == 1 { "a model" } else { "models" };
+    Some(format!("{models} with fewer parameters: {}", laws.join(" or ")))
 }
 
 /// Assumptions on properties that were not testable.
@@ -231,7 +229,8 @@ fn assumptions(found: &DecidingProperties) -> Vec<String> {
             && found.congruency != Verdict::No
             && found.odd_symmetry != Verdict::No
         {
-            assume(found.masing, "Masing's rule (assumed: yes; if not: preisach)");
+            let otherwise = ClassicalModel::simplest_for(Behaviour::UnlikeBranches).name();
+            assume(found.masing, &format!("Masing's rule (assumed: yes; if not: {otherwise})"));
         }
     }
     let relies_on_symmetry = found.degrades()
@@ -276,7 +275,7 @@ mod tests {
     #[test]
     fn laws_that_wear_out_or_see_the_rate_are_named() {
         let statement = |verdicts| advise(&findings(verdicts), None, false).statement.concat();
-        assert!(statement([Yes, No, No, No, No, Yes, Yes]).contains("both with the option degradation"));
+        assert!(statement([Yes, No, No, No, No, Yes, Yes]).contains("bouc-wen (option degradation"));
         assert!(statement([Yes, Yes, Yes, Yes, Yes, Yes, No]).contains("rate-dependent-prandtl-ishlinskii"));
         assert!(!statement([Yes, No, Yes, Yes, Yes, Yes, No]).contains("fewer parameters"));
     }

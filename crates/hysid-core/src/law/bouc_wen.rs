@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::elementary::{exp, exp_m1, ln_1p, powf};
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{ErrorsInside, Facts, Rate};
+use crate::law::facts::{Advised, Behaviour, ErrorsInside, Facts, Rate};
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -280,6 +280,11 @@ impl Law for BoucWen {
     const FACTS: Facts = Facts {
         rate: Rate::Optional,
         variants: &["degradation"],
+        advice: &[
+            (Behaviour::Traces, Advised::Simplest),
+            (Behaviour::Degradation, Advised::FewerParameters("option degradation, with pinching")),
+            (Behaviour::RateDependence, Advised::FewerParameters("with the rate")),
+        ],
         ..Facts::searched(
             "bouc-wen",
             "spring and yielding element; option degradation: pinching and degradation",

@@ -30,7 +30,7 @@ use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{ErrorsInside, Facts, Rate};
+use crate::law::facts::{ErrorsInside, Facts, LawKind, Rate};
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 use crate::simd;
@@ -103,6 +103,7 @@ impl Law for DuhemNn {
 
     const FACTS: Facts = Facts {
         rate: Rate::Optional,
+        kind: LawKind::Recurrent,
         limits: &[("hidden", 1, MOST_NEURONS), ("operators", 0, MOST_NEURONS), ("states", 1, MOST_STATES)],
         ..Facts::searched(
             "duhem-nn",

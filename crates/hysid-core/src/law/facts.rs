@@ -7,6 +7,8 @@ pub struct Facts {
     pub name: &'static str,
     /// Summary of the law, in a few words.
     pub summary: &'static str,
+    /// Kind of model, by which `auto` groups its candidates.
+    pub kind: LawKind,
     /// Whether the rate of the input is in its equations.
     pub rate: Rate,
     /// True if it needs the time between samples.
@@ -27,6 +29,53 @@ pub struct Facts {
     pub variants: &'static [&'static str],
     /// For data of one loop: the error to be expected on smaller loops inside it, however well the law fits the loop.
     pub errors_inside: ErrorsInside,
+    /// True for a law of many numbers that `auto` may take by itself, because its equations bind it beyond the data.
+    pub stands_alone: bool,
+    /// True if one with more modes can be one with fewer.
+    pub nests_modes: bool,
+    /// Behaviour of data for which a diagnosis advises it.
+    pub advice: &'static [(Behaviour, Advised)],
+}
+
+/// Kinds of classical models.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LawKind {
+    /// A law without random parts.
+    Law,
+    /// A network whose memory is random: it takes several inputs, and has no law.
+    RandomNetwork,
+    /// A recurrent network.
+    Recurrent,
+    /// Masses on springs, dampers and hysteretic elements.
+    Inertia,
+}
+
+/// Behaviour that a diagnosis finds in data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Behaviour {
+    /// A resonance.
+    Resonance,
+    /// Closed excursions that leave a trace, without deterioration, in loops with odd symmetry.
+    Traces,
+    /// Branches of several shapes, and minor loops between the same inputs that do not differ.
+    UnlikeBranches,
+    /// Nothing that a weighted sum of plays does not have.
+    SumOfPlays,
+    /// Loss of strength by repetition or with the amplitude.
+    Degradation,
+    /// Loops that are narrow in the middle.
+    Pinching,
+    /// Dependence on the rate.
+    RateDependence,
+}
+
+/// How a diagnosis advises a law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Advised {
+    /// As the simplest model that can represent the behaviour.
+    Simplest,
+    /// As a model with fewer parameters than the simplest one that fits all such data; a remark, in a few words.
+    FewerParameters(&'static str),
 }
 
 /// Errors on smaller loops of laws fitted to one loop, as shares of the standard deviation, by branch shape. Designed
@@ -81,6 +130,10 @@ impl Facts {
             defaults_with_degradation: &[],
             variants: &[],
             errors_inside,
+            kind: LawKind::Law,
+            stands_alone: false,
+            nests_modes: false,
+            advice: &[],
         }
     }
 
@@ -109,8 +162,8 @@ pub enum Rate {
 /// The origin from which the inputs of a model are measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
-    /// 0, for laws in which an input of 0 is a special state, as a field of 0 is.
-    Zero,
+    /// 0, for laws in which an input of 0 is this special state, in words.
+    Zero(&'static str),
     /// 0 if it lies within the data; otherwise where the records begin, or the middle of their range.
     OfData,
 }

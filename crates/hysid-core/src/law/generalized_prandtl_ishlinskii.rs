@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::elementary::tanh;
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{ErrorsInside, Facts};
+use crate::law::facts::{Advised, Behaviour, ErrorsInside, Facts};
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -107,13 +107,16 @@ pub struct GeneralizedPrandtlIshlinskii {
 impl Law for GeneralizedPrandtlIshlinskii {
     type State = Vec<f64>;
 
-    const FACTS: Facts = Facts::searched(
-        "generalized-prandtl-ishlinskii",
-        "plays between two tanh envelopes",
-        &["operators", "free_weights", "starts", "epochs"],
-        ErrorsInside { softening: 0.15, sigmoid: 0.06, other: 0.6 },
-    )
-    .with_defaults(&[("operators", 10), ("starts", 32), ("epochs", 60)]);
+    const FACTS: Facts = Facts {
+        advice: &[(Behaviour::UnlikeBranches, Advised::FewerParameters("if its envelopes fit"))],
+        ..Facts::searched(
+            "generalized-prandtl-ishlinskii",
+            "plays between two tanh envelopes",
+            &["operators", "free_weights", "starts", "epochs"],
+            ErrorsInside { softening: 0.15, sigmoid: 0.06, other: 0.6 },
+        )
+        .with_defaults(&[("operators", 10), ("starts", 32), ("epochs", 60)])
+    };
 
     fn virgin(&self) -> Vec<f64> {
         vec![self.initial; self.weights.plays()]

@@ -294,11 +294,14 @@ impl Dynamics {
 /// Makes a law of a type that holds [`Dynamics`]: its form, its default number of modes, its words in errors, its name
 /// and its summary.
 macro_rules! law_of_dynamics {
-    ($law:ident, $form:expr, $modes:literal, $words:literal, $name:literal, $summary:literal) => {
+    ($law:ident, $form:expr, $modes:literal, $words:literal, $name:literal, $summary:literal, $advice:expr) => {
         impl $crate::law::Law for $law {
             type State = $crate::law::hysteretic_dynamics::DynamicsMotion;
 
             const FACTS: $crate::law::facts::Facts = $crate::law::facts::Facts {
+                kind: $crate::law::facts::LawKind::Inertia,
+                nests_modes: matches!($form, $crate::law::hysteretic_dynamics::DynamicsForm::StateSpace),
+                advice: $advice,
                 needs_time: true,
                 limits: $crate::law::hysteretic_dynamics::LIMITS,
                 defaults: &[("modes", $modes), ("states", 2), ("hidden", 8), ("starts", 4), ("epochs", 200)],

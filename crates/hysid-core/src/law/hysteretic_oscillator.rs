@@ -15,6 +15,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::law::facts::{Advised, Behaviour};
 use crate::law::hysteretic_dynamics::{Dynamics, DynamicsForm, law_of_dynamics};
 
 /// A hysteretic oscillator in the user's units.
@@ -24,5 +25,6 @@ pub struct HystereticOscillator(pub Dynamics);
 
 law_of_dynamics! {
     HystereticOscillator, DynamicsForm::Oscillator, 1, "hysteretic oscillator",
-    "hysteretic-oscillator", "masses on springs and dampers with hysteretic elements, for data with a resonance; needs time"
+    "hysteretic-oscillator", "masses on springs and dampers with hysteretic elements, for data with a resonance; needs time",
+    &[(Behaviour::Resonance, Advised::Simplest)]
 }

@@ -21,5 +21,6 @@ pub struct HystereticStateSpace(pub Dynamics);
 
 law_of_dynamics! {
     HystereticStateSpace, DynamicsForm::StateSpace, 2, "hysteretic state space model",
-    "hysteretic-state-space", "linear state space model with hysteretic elements, for data with a resonance; needs time"
+    "hysteretic-state-space", "linear state space model with hysteretic elements, for data with a resonance; needs time",
+    &[]
 }

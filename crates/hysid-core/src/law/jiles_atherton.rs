@@ -166,7 +166,7 @@ impl Law for JilesAtherton {
     type State = JilesAthertonState;
 
     const FACTS: Facts = Facts {
-        origin: Origin::Zero,
+        origin: Origin::Zero("the demagnetised state"),
         variants: &["differential_form"],
         ..Facts::searched(
             "jiles-atherton",

@@ -37,7 +37,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::elementary::powf;
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{ErrorsInside, Facts};
+use crate::law::facts::{Advised, Behaviour, ErrorsInside, Facts};
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -328,6 +328,10 @@ impl Law for PeakOriented {
 
     const FACTS: Facts = Facts {
         variants: &["degradation", "asymmetric"],
+        advice: &[
+            (Behaviour::Degradation, Advised::FewerParameters("members and joints; option degradation")),
+            (Behaviour::Pinching, Advised::FewerParameters("members and joints, pinched or full")),
+        ],
         ..Facts::searched(
             "peak-oriented",
             "members and joints: reloading leads to the largest displacement so far",

@@ -14,7 +14,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{ErrorsInside, Facts};
+use crate::law::facts::{Advised, Behaviour, ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -99,13 +99,16 @@ impl PrandtlIshlinskii {
 impl Law for PrandtlIshlinskii {
     type State = Vec<f64>;
 
-    const FACTS: Facts = Facts::linear(
-        "prandtl-ishlinskii",
-        "weighted plays on a grid of thresholds",
-        &["operators", "thresholds", "sign"],
-        ErrorsInside { softening: 0.04, sigmoid: 0.7, other: 0.6 },
-    )
-    .with_defaults(&[("operators", 30)]);
+    const FACTS: Facts = Facts {
+        advice: &[(Behaviour::SumOfPlays, Advised::Simplest)],
+        ..Facts::linear(
+            "prandtl-ishlinskii",
+            "weighted plays on a grid of thresholds",
+            &["operators", "thresholds", "sign"],
+            ErrorsInside { softening: 0.04, sigmoid: 0.7, other: 0.6 },
+        )
+        .with_defaults(&[("operators", 30)])
+    };
 
     fn virgin(&self) -> Vec<f64> {
         vec![0.0; self.thresholds.len()]

@@ -20,7 +20,7 @@ pub mod plane;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{ErrorsInside, Facts};
+use crate::law::facts::{Advised, Behaviour, ErrorsInside, Facts};
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::thresholds::{check_weights, limited};
 use crate::law::turning_point_stack::{StackBranch, TurningPointStack};
@@ -159,6 +159,8 @@ impl Law for Preisach {
 
     const FACTS: Facts = Facts {
         limits: &[("operators", 1, MOST_INTERVALS)],
+        stands_alone: true,
+        advice: &[(Behaviour::UnlikeBranches, Advised::Simplest)],
         ..Facts::linear(
             "preisach",
             "plane of relays with a smooth density",

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::elementary::{ln, powf};
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{ErrorsInside, Facts, Rate};
+use crate::law::facts::{Advised, Behaviour, ErrorsInside, Facts, Rate};
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -105,6 +105,7 @@ impl Law for RateDependentPrandtlIshlinskii {
     const FACTS: Facts = Facts {
         rate: Rate::Needed,
         variants: &["logarithmic_thresholds"],
+        advice: &[(Behaviour::RateDependence, Advised::FewerParameters("actuators"))],
         ..Facts::searched(
             "rate-dependent-prandtl-ishlinskii",
             "plays whose thresholds grow with the rate",

@@ -58,7 +58,7 @@ impl InputOptions {
         origin: Origin,
     ) -> Result<InputTransform> {
         let origins = match origin {
-            Origin::Zero => Vec::new(),
+            Origin::Zero(_) => Vec::new(),
             Origin::OfData => origins(data),
         };
         let origin = origins.first().copied().unwrap_or_default();

@@ -3,7 +3,7 @@
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, SpeedEvidence};
 use crate::data::warning::Warning;
-use crate::options::classical::ClassicalModel;
+use crate::law::facts::Origin;
 use crate::options::{FitSpec, ModelName};
 use crate::significant::Significant;
 
@@ -48,17 +48,17 @@ impl FitSpec {
     }
 }
 
-/// The Jiles-Atherton law is about a field of 0; all other models measure the input from where the data go about.
+/// Data far from the special state that a law has at an input of 0; other models measure the input from where the data
+/// go about.
 fn far_from_zero(model: ModelName, data: &Dataset) -> Option<String> {
-    if model != ModelName::Classical(ClassicalModel::JilesAtherton) {
-        return None;
-    }
+    let ModelName::Classical(law) = model else { return None };
+    let Origin::Zero(state) = law.facts().origin else { return None };
     let (low, high) = data.input_range(0);
     let (middle, half_range) = (0.5 * (low + high), 0.5 * (high - low));
     (middle.abs() > FAR * half_range).then(|| {
         format!(
-            "{}: {} ranges from {:.4} to {:.4}, but for the law 0 is the demagnetised state (subtract the \
-             offset of the field, or fit another model)",
+            "{}: {} ranges from {:.4} to {:.4}, but for the law 0 is {state} (subtract the offset of the \
+             input, or fit another model)",
             model.name(),
             data.names().inputs[0],
             Significant(low),
@@ -73,6 +73,7 @@ mod tests {
     use crate::data::rate::RateMethod;
     use crate::data::record::{ColumnNames, Record};
     use crate::elementary::sin;
+    use crate::options::classical::ClassicalModel;
 
     fn data(offset: f64) -> Dataset {
         let x: Vec<f64> = (0..100).map(|row| offset + sin(0.1 * f64::from(row))).collect();

@@ -5,12 +5,13 @@ use serde::{Deserialize, Serialize};
 use crate::data::rate::RateMethod;
 use crate::for_each_law;
 use crate::law::Law;
-use crate::law::facts::{ErrorsInside, Facts, Identification, Rate};
+use crate::law::facts::{Advised, Behaviour, ErrorsInside, Facts, Identification, LawKind, Rate};
 use crate::options::input_options::InputOptions;
 use crate::options::network::SEED;
 
 const RANDOM_STOPS: Facts = Facts {
     rate: Rate::Optional,
+    kind: LawKind::RandomNetwork,
     ..Facts::linear(
         "random-stops",
         "random deteriorating stops with a ridge penalty",
@@ -70,19 +71,38 @@ impl ClassicalModel {
         self.facts().needs_time
     }
 
-    /// True if it takes more than one input.
-    pub fn takes_further_inputs(self) -> bool {
-        self == Self::RandomStops
+    /// True for a network, with equations and inputs as of those that are trained.
+    pub fn is_network(self) -> bool {
+        self.facts().kind == LawKind::RandomNetwork
     }
 
     /// True if it is a mass on springs: a model of a resonance.
     pub fn has_inertia(self) -> bool {
-        matches!(self, Self::HystereticOscillator | Self::HystereticStateSpace)
+        self.facts().kind == LawKind::Inertia
     }
 
     /// True if another seed gives another model of much the same error: medians of several are then better.
     pub fn is_random(self) -> bool {
-        matches!(self, Self::RandomStops | Self::DuhemNn) || self.has_inertia()
+        self.facts().kind != LawKind::Law
+    }
+
+    /// The simplest law for data with this behaviour.
+    ///
+    /// # Panics
+    /// No law is advised for it.
+    pub fn simplest_for(behaviour: Behaviour) -> Self {
+        let is_advised = |model: &Self| model.facts().advice.contains(&(behaviour, Advised::Simplest));
+        Self::ALL.iter().copied().find(is_advised).expect("a law that is advised for the behaviour")
+    }
+
+    /// The laws with fewer parameters than the simplest model for data with this behaviour, each with a remark.
+    pub fn with_fewer_parameters_for(behaviour: Behaviour) -> impl Iterator<Item = (Self, &'static str)> {
+        Self::ALL.iter().flat_map(move |model| {
+            model.facts().advice.iter().filter_map(move |(of, advised)| match advised {
+                Advised::FewerParameters(remark) if *of == behaviour => Some((*model, *remark)),
+                _ => None,
+            })
+        })
     }
 
     /// True if its parameters are found by a search from several starts; otherwise by linear least squares.
@@ -182,10 +202,19 @@ impl ClassicalOptions {
         self.relaxation.unwrap_or(default)
     }
 
+    /// Plays: the given thresholds, or operators.
+    pub fn plays(&self) -> usize {
+        self.thresholds.as_ref().map_or(self.operators(), Vec::len)
+    }
+
     /// True for random stops that deteriorate, or are followed by tanh neurons: as flexible as a network.
     pub fn has_random_layer(&self) -> bool {
-        self.model == ClassicalModel::RandomStops
-            && (self.deterioration == Some(true) || self.hidden.is_some_and(|h| h > 0))
+        self.model.is_network() && self.deterioration == Some(true) || self.has_random_tanh_layer()
+    }
+
+    /// True for random stops that are followed by tanh neurons.
+    pub(super) fn has_random_tanh_layer(&self) -> bool {
+        self.model.is_network() && self.hidden.is_some_and(|hidden| hidden > 0)
     }
 
     /// True for a model with inertia whose elements have neither memory states nor stops.

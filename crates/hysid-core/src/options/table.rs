@@ -10,7 +10,7 @@ use crate::law::duhem_nn::MOST_STATES;
 use crate::law::hysteretic_dynamics::MOST_PARTS;
 use crate::network::{Family, Sizes};
 use crate::options::ModelName;
-use crate::options::classical::{ClassicalModel, Sign};
+use crate::options::classical::Sign;
 use crate::options::effort::Effort;
 use crate::options::fit_spec::{AutoOptions, MOST_MEMBERS};
 use crate::options::input_options::SHARES;
@@ -157,7 +157,7 @@ options! {
         group: Model,
         values: NEURONS,
         default: |model, _| match model {
-            ModelName::Classical(ClassicalModel::RandomStops) => Preset::Chosen,
+            ModelName::Classical(model) if model.is_network() => Preset::Chosen,
             ModelName::Auto(_) => Preset::ByCandidate,
             _ => count_of(model, "hidden", Sizes::default().hidden),
         },

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::network::Family;
 use crate::options::FitSpec;
-use crate::options::classical::{ClassicalModel, ClassicalOptions};
+use crate::options::classical::ClassicalOptions;
 use crate::options::fields::{fields_of, with_fields};
 use crate::options::network::ENSEMBLE_PENALTIES;
 use crate::options::table::{FitOption, OptionValues};
@@ -61,7 +61,7 @@ impl FitSpec {
 /// The variants of a law with these options.
 pub fn variants(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
     let rate = options.rate.filter(|_| options.model.uses_rate());
-    let needs_rate = options.model.needs_rate() || options.model == ClassicalModel::RandomStops;
+    let needs_rate = options.model.needs_rate() || options.model.is_network();
     let without_rate = ClassicalOptions { rate: None, ..options.clone() };
     let with_rate = rate.map(|rate| ClassicalOptions { rate: Some(rate), ..options.clone() });
     let by_rate = match with_rate {
@@ -94,12 +94,10 @@ fn of_law(options: &ClassicalOptions) -> Vec<String> {
     };
     let flags = options.model.facts().options.iter().filter(is_flag).map(|name| name.replace('_', " "));
     let has_no_memory = options.has_no_memory();
-    let has_tanh_layer =
-        options.model == ClassicalModel::RandomStops && options.hidden.is_some_and(|hidden| hidden > 0);
     let deterioration = named([("deterioration", options.deterioration == Some(true))]);
     let others = named([
         ("rate", options.rate.is_some() && !options.model.needs_rate()),
-        ("tanh layer", has_tanh_layer),
+        ("tanh layer", options.has_random_tanh_layer()),
         ("no stops", options.operators == Some(0) && !has_no_memory),
         ("no memory", has_no_memory),
     ]);
@@ -118,6 +116,7 @@ mod tests {
     use super::*;
     use crate::data::rate::RateMethod;
     use crate::options::ModelName;
+    use crate::options::classical::ClassicalModel;
 
     fn labels(model: ModelName, rate: Option<RateMethod>) -> Vec<String> {
         FitSpec::of(model, rate, 1).variants().iter().map(FitSpec::variant_label).collect()

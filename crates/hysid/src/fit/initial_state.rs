@@ -71,7 +71,7 @@ pub(crate) fn known(data: &Dataset, state: InitialState, measured_from: Origin) 
         return data.clone().with_periodic_lead_ins();
     }
     let origin = match measured_from {
-        Origin::Zero => 0.0,
+        Origin::Zero(_) => 0.0,
         Origin::OfData => origin(data, 0),
     };
     let lead_in = state.lead_in(data.input_range(0), origin).unwrap_or_default();

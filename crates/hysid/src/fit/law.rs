@@ -1,6 +1,7 @@
 //! Identification of the classical models.
 
 pub mod bouc_wen;
+pub(crate) mod candidates;
 pub mod duhem_nn;
 pub mod dynamic_prandtl_ishlinskii;
 pub mod generalized_prandtl_ishlinskii;
@@ -27,8 +28,10 @@ use hysid_core::for_each_law;
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
+use crate::fit::law::candidates::{CandidateRequest, RankedLaw};
 use crate::fit::law::linearised::{LawFamily, LinearisedLaw};
 use crate::fit::law::search::{IdentifiedLaw, search};
+use crate::fit::memory_need::{LawFitSize, MemoryNeed};
 use crate::fit::progress::SearchObserver;
 use crate::law::series::Series;
 use crate::law::{Classical, Law};
@@ -58,6 +61,18 @@ pub trait Identify: Law {
     fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<LinearisedLaw>> {
         let _ = (data, options);
         Ok(None)
+    }
+
+    /// The peak memory of a fit with these options to data of this size.
+    fn memory_need(data: &Dataset, options: &ClassicalOptions, size: &LawFitSize) -> MemoryNeed {
+        let _ = data;
+        size.of_search(options)
+    }
+
+    /// The candidates of `auto` that are this law, each with its rank among the laws of its kind; by default a searched
+    /// law in all variants, and another as it is, after those that are known to be good.
+    fn candidates(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
+        candidates::by_default(model, request)
     }
 
     /// As [`Identify::identify`], without a check within a round.
@@ -111,6 +126,23 @@ macro_rules! fit {
                         .try_map(|law| Ok(law.into()))
                 })*
                 ClassicalModel::RandomStops => unreachable!("random stops are a network"),
+            }
+        }
+
+        /// As [`Identify::memory_need`], with this number of threads.
+        pub(crate) fn memory_need(data: &Dataset, options: &ClassicalOptions, threads: usize) -> MemoryNeed {
+            let size = LawFitSize::of(data, threads);
+            match options.model {
+                $(ClassicalModel::$law => crate::law::$module::$law::memory_need(data, options, &size),)*
+                ClassicalModel::RandomStops => random_stops::memory_need(data, options, &size),
+            }
+        }
+
+        /// As [`Identify::candidates`].
+        pub(crate) fn candidates_of(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
+            match model {
+                $(ClassicalModel::$law => crate::law::$module::$law::candidates(model, request),)*
+                ClassicalModel::RandomStops => random_stops::candidates(model, request.options),
             }
         }
     };

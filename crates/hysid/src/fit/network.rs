@@ -13,12 +13,15 @@
 //! scaled measured output, `λ` and `κ` the penalties
 //! ([`Regularisation`](crate::options::network::Regularisation)).
 
-pub(crate) mod curvature;
+mod curvature;
 mod encoding;
-pub(crate) mod fitting;
+mod fitting;
+mod memory_need;
 pub mod objective;
 mod run;
 mod soundness;
+
+pub(crate) use memory_need::memory_need;
 
 use crate::data::record::Dataset;
 use crate::error::Result;

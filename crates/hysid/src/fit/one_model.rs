@@ -14,7 +14,7 @@ use crate::model::history::{HistoryPoint, Phase, Run};
 use crate::model::input_transform::TransformedData;
 use crate::model::{Model, Predictor, ProvenanceDraft};
 use crate::options::FitSpec;
-use crate::options::classical::{ClassicalModel, ClassicalOptions};
+use crate::options::classical::ClassicalOptions;
 use crate::options::network::Method;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
@@ -23,9 +23,7 @@ use crate::termination::Termination;
 pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
     match request {
         FitSpec::Network(options) => network::fit(data, options, observer),
-        FitSpec::Classical(options) if options.model == ClassicalModel::RandomStops => {
-            random_stops(data, options, observer)
-        }
+        FitSpec::Classical(options) if options.model.is_network() => random_stops(data, options, observer),
         FitSpec::Classical(options) => of_law(data, options, observer),
         FitSpec::Auto(_) => unreachable!("no candidate of auto is auto"),
     }

@@ -6,20 +6,20 @@ use std::borrow::Cow;
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::diagnosis::resonance::{ComparedSignal, Resonance};
+use crate::diagnosis::resonance::Resonance;
 use crate::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
-use crate::fit::initial_state;
-use crate::law::duhem_nn::MOST_NEURONS;
-use crate::law::hysteretic_dynamics::MOST_NEURONS as MOST_NEURONS_OF_ELEMENT;
+use crate::fit::law::candidates::{
+    COMPANDING, CandidateRequest, RATE_COMPANDING, RankedLaw, companded, with_companded_rate,
+};
+use crate::fit::{initial_state, law};
+use crate::law::facts::LawKind;
 use crate::network::{Family, Sizes};
+use crate::options::FitSpec;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
-use crate::options::effort::Effort;
 use crate::options::fit_spec::AutoOptions;
 use crate::options::input_options::InputOptions;
 use crate::options::network::ENSEMBLE_PENALTIES;
 use crate::options::network::{FitOptions, Regularisation, Trainer};
-use crate::options::variants::variants;
-use crate::options::{FitSpec, ModelName};
 
 /// A kind of candidates. The best of each kind pass the first folds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,11 +44,11 @@ impl CandidateKind {
     fn of(request: &FitSpec) -> Self {
         match request {
             FitSpec::Network(_) => CandidateKind::Networks,
-            FitSpec::Classical(options) => match options.model {
-                ClassicalModel::RandomStops => CandidateKind::RandomStops,
-                ClassicalModel::DuhemNn => CandidateKind::Recurrent,
-                model if model.has_inertia() => CandidateKind::Dynamic,
-                _ => CandidateKind::Classical,
+            FitSpec::Classical(options) => match options.model.facts().kind {
+                LawKind::RandomNetwork => CandidateKind::RandomStops,
+                LawKind::Recurrent => CandidateKind::Recurrent,
+                LawKind::Inertia => CandidateKind::Dynamic,
+                LawKind::Law => CandidateKind::Classical,
             },
             FitSpec::Auto(_) => CandidateKind::Classical,
         }
@@ -71,29 +71,16 @@ pub(super) struct Candidate {
     request: FitSpec,
 }
 
-/// Scale of the companding of the input: for what happens within a tenth or a fiftieth of its range.
-const COMPANDING: [f64; 2] = [0.1, 0.02];
-
-const RATE_COMPANDING: f64 = 0.1;
-
 /// Penalties that the best networks are also tried with: those of a single fit, and near-zero ones for noise-free data.
 const OTHER_PENALTIES: [Regularisation; 2] =
     [Regularisation { ridge: 1e-6, decay: 1e-7 }, Regularisation { ridge: 1e-10, decay: 1e-12 }];
 
-/// Epochs of a network and of a recurrent one. Designed.
+/// Epochs of a network. Designed.
 const EPOCHS: usize = 25;
-const EPOCHS_OF_RECURRENT: usize = 40;
-
-/// Starts of a model with inertia for each start of another candidate; its search drops those with the larger errors.
-const STARTS_OF_DYNAMIC: usize = 2;
 
 /// Starts and epochs of a model with inertia on a fold: fewer, because the folds only rank the candidates.
 const STARTS_ON_A_FOLD: usize = 2;
 const EPOCHS_ON_A_FOLD: usize = 80;
-
-/// Random stops with a linear readout, and with a random tanh layer: stops and tanh neurons. Designed.
-const LINEAR_RANDOM_STOPS: (usize, usize) = (300, 0);
-const LAYERED_RANDOM_STOPS: (usize, usize) = (100, 100);
 
 /// Starts of a search on a fold beside the parameters found on all data, and rows with an output that a search is
 /// fitted to at most.
@@ -198,16 +185,14 @@ impl Candidate {
         self.is_dynamic() && matches!(&self.request, FitSpec::Classical(options) if options.has_no_memory())
     }
 
-    /// True if this has hysteresis or another kind, and the other has inertia only; or for more modes of state space
-    /// models.
+    /// True if this has hysteresis or another kind, and the other has inertia only; or for more modes of models that nest
+    /// them.
     pub fn has_more_parts_than(&self, other: &Self) -> bool {
-        let modes_of_state_space = |candidate: &Self| match &candidate.request {
-            FitSpec::Classical(options) if options.model == ClassicalModel::HystereticStateSpace => {
-                options.modes
-            }
+        let nested_modes = |candidate: &Self| match &candidate.request {
+            FitSpec::Classical(options) if options.model.facts().nests_modes => options.modes,
             _ => None,
         };
-        let modes = modes_of_state_space(self).zip(modes_of_state_space(other));
+        let modes = nested_modes(self).zip(nested_modes(other));
         other.has_no_hysteresis() && !self.has_no_hysteresis()
             || modes.is_some_and(|(of_this, of_other)| of_this > of_other)
     }
@@ -254,17 +239,22 @@ pub(super) fn quick(options: &AutoOptions) -> Candidate {
 
 /// All candidates for data like these: those that are usually good or quick before the others.
 pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
-    if let Some(resonance) = Resonance::of(data).filter(Resonance::is_found) {
-        let all = candidates_with_inertia(data, options, resonance.oscillator.compared);
+    let resonance = Resonance::of(data).filter(Resonance::is_found);
+    let resonance = resonance.map(|resonance| resonance.oscillator.compared);
+    let request = &CandidateRequest { data, options, resonance };
+    if resonance.is_some() {
+        let all = candidates_with_inertia(request);
         if !all.is_empty() {
             return all;
         }
     }
     let most = options.effort.candidates_of_a_kind();
+    let of_kind =
+        |is_wanted: fn(ClassicalModel) -> bool| laws(request, is_wanted).into_iter().map(FitSpec::Classical);
     let mut networks = networks(options).into_iter().take(most).map(FitSpec::Network);
-    let mut random = random_stops(options).into_iter().take(most).map(FitSpec::Classical);
-    let mut linear = linear_laws(options).into_iter().take(most).map(FitSpec::Classical);
-    let mut recurrent = recurrent(data, options).into_iter().take(most).map(FitSpec::Classical);
+    let mut random = of_kind(ClassicalModel::is_network).take(most);
+    let mut linear = of_kind(|model| !model.is_random() && !model.is_searched()).take(most);
+    let mut recurrent = of_kind(is_recurrent).take(most);
     let mut requests = Vec::new();
     // A network and a quick one at a time.
     loop {
@@ -274,9 +264,9 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
         }
         requests.extend(next.into_iter().flatten());
     }
-    requests.extend(searched_laws(options).into_iter().map(FitSpec::Classical));
+    requests.extend(of_kind(|model| !model.is_random() && model.is_searched()));
     let mut all: Vec<Candidate> = requests.iter().map(Candidate::alone).collect();
-    all.retain(|candidate| is_allowed(candidate, data, options));
+    all.retain(|candidate| is_allowed(candidate, request));
     all
 }
 
@@ -300,15 +290,11 @@ fn loses_strength(data: &Dataset) -> bool {
     })
 }
 
-fn companded(share: f64) -> InputOptions {
-    InputOptions { companding: Some(share), ..InputOptions::default() }
-}
-
 fn networks(options: &AutoOptions) -> Vec<FitOptions> {
     use Family::{PreisachNn, Xpnn, XpnnPlus};
     let as_it_is = InputOptions::default();
     let [tenth, fiftieth] = COMPANDING.map(companded);
-    let rate_tenth = InputOptions { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
+    let rate_tenth = with_companded_rate();
     let both = InputOptions { rate_companding: Some(RATE_COMPANDING), ..tenth };
     let history = InputOptions { history: true, ..as_it_is };
     let mut networks = Vec::new();
@@ -347,144 +333,33 @@ fn networks(options: &AutoOptions) -> Vec<FitOptions> {
     networks
 }
 
-fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
-    let as_it_is = InputOptions::default();
-    let tenth = companded(COMPANDING[0]);
-    let rate_tenth = InputOptions { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
-    let (linear, layered) = (LINEAR_RANDOM_STOPS, LAYERED_RANDOM_STOPS);
-    let rate = options.rate;
-    let mut all = vec![(as_it_is, None, false, linear), (tenth, None, false, linear)];
-    all.extend(match rate.is_some() {
-        true => [(rate_tenth, rate, false, linear), (as_it_is, rate, true, layered)],
-        false => [(as_it_is, None, true, linear), (as_it_is, None, true, layered)],
-    });
-    let of = |(shaping, rate, deterioration, (stops, hidden))| ClassicalOptions {
-        rate,
-        shaping,
-        deterioration: Some(deterioration),
-        operators: Some(options.operators.unwrap_or(stops)),
-        hidden: Some(hidden),
-        seed: options.seed,
-        ..ClassicalOptions::of(ClassicalModel::RandomStops)
-    };
-    all.into_iter().map(of).collect()
-}
-
-/// Models with inertia, a network and a recurrent network. With degradation if only changes show the resonance
-/// (yielding).
-fn candidates_with_inertia(
-    data: &Dataset,
-    options: &AutoOptions,
-    compared: ComparedSignal,
-) -> Vec<Candidate> {
-    use ClassicalModel::{HystereticOscillator, HystereticStateSpace};
-    let of = |model: ClassicalModel, modes: usize| ClassicalOptions {
-        modes: Some(options.modes.unwrap_or(modes)),
-        hidden: options.hidden.map(|hidden| hidden.min(MOST_NEURONS_OF_ELEMENT)),
-        operators: options.operators.map(|stops| stops.min(MOST_NEURONS_OF_ELEMENT)),
-        starts: Some(STARTS_OF_DYNAMIC * options.starts),
-        epochs: options.epochs,
-        seed: options.seed,
-        ..ClassicalOptions::of(model)
-    };
-    let degrading = |modes: usize| ClassicalOptions { degradation: true, ..of(HystereticOscillator, modes) };
-    let without_memory =
-        ClassicalOptions { states: Some(0), operators: Some(0), ..of(HystereticStateSpace, 1) };
-    let may_have_no_stops = options.operators.is_none_or(|stops| stops == 0);
-    let wanted = match compared {
-        ComparedSignal::Output => vec![
-            Some(of(HystereticOscillator, 1)),
-            Some(of(HystereticStateSpace, 1)),
-            Some(of(HystereticStateSpace, 2)),
-            may_have_no_stops.then_some(without_memory),
-            (options.deterioration == Some(true)).then(|| degrading(1)),
-        ],
-        ComparedSignal::Changes => {
-            vec![Some(degrading(1)), Some(of(HystereticOscillator, 1)), Some(degrading(2))]
-        }
-    };
+/// Models with inertia, a network and a recurrent network.
+fn candidates_with_inertia(request: &CandidateRequest<'_>) -> Vec<Candidate> {
     let mut models: Vec<ClassicalOptions> = Vec::new();
-    for model in wanted.into_iter().flatten() {
+    for model in laws(request, ClassicalModel::has_inertia) {
         // With a number of modes that the user has decided, some are alike.
         if !models.contains(&model) {
             models.push(model);
         }
     }
-    let recurrent = recurrent(data, options).into_iter().take(1);
+    let recurrent = laws(request, is_recurrent).into_iter().take(1);
     let others = models.into_iter().chain(recurrent).map(FitSpec::Classical);
-    let all = others.chain(networks(options).into_iter().take(1).map(FitSpec::Network));
+    let all = others.chain(networks(request.options).into_iter().take(1).map(FitSpec::Network));
     let mut all: Vec<Candidate> = all.map(|request| Candidate::alone(&request)).collect();
-    all.retain(|candidate| is_allowed(candidate, data, options));
+    all.retain(|candidate| is_allowed(candidate, request));
     if all.iter().any(Candidate::is_dynamic) { all } else { Vec::new() }
 }
 
-fn recurrent(data: &Dataset, options: &AutoOptions) -> Vec<ClassicalOptions> {
-    let rate = options.rate.filter(|_| data.has_time());
-    let as_it_is = InputOptions::default();
-    let rate_tenth = InputOptions { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
-    let (with_stops, plain) = ((3, 6, 8), (5, 0, 10));
-    let of = |(shaping, (states, stops, hidden))| ClassicalOptions {
-        rate,
-        shaping,
-        states: Some(states),
-        operators: Some(stops),
-        hidden: Some(options.hidden.unwrap_or(hidden).min(MOST_NEURONS)),
-        starts: Some(1),
-        epochs: Some(options.epochs.unwrap_or_else(|| options.effort.scaled(EPOCHS_OF_RECURRENT))),
-        seed: options.seed,
-        ..ClassicalOptions::of(ClassicalModel::DuhemNn)
-    };
-    let mut all = vec![(as_it_is, with_stops), (as_it_is, plain)];
-    if rate.is_some() {
-        all.extend([(rate_tenth, with_stops), (rate_tenth, plain)]);
-    }
-    all.into_iter().map(of).collect()
+fn is_recurrent(model: ClassicalModel) -> bool {
+    model.facts().kind == LawKind::Recurrent
 }
 
-/// A law with what the user has decided of laws.
-fn of_law(options: &AutoOptions, model: ClassicalModel) -> ClassicalOptions {
-    ClassicalOptions {
-        operators: options.operators,
-        epochs: options.epochs,
-        seed: options.seed,
-        ..ClassicalOptions::of(model)
-    }
-}
-
-fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
-    let [tenth, fiftieth] = COMPANDING.map(companded);
-    let mut laws = Vec::new();
-    for shaping in [InputOptions::default(), tenth, fiftieth] {
-        for model in [ClassicalModel::Preisach, ClassicalModel::ModifiedPrandtlIshlinskii] {
-            laws.push(ClassicalOptions { shaping, ..of_law(options, model) });
-        }
-    }
-    laws.extend(
-        [ClassicalModel::PrandtlIshlinskii, ClassicalModel::Masing].map(|model| of_law(options, model)),
-    );
-    laws
-}
-
-/// The searched laws in all variants; with a rate, those without it are left out, because its weight may be 0.
-fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
-    let is_searched = |model: &ClassicalModel| model.is_searched() && !model.is_random();
-    let searched = ClassicalModel::ALL.iter().copied().filter(is_searched);
-    let with_rate = |model: ClassicalModel| ClassicalOptions {
-        rate: options.rate.filter(|_| model.uses_rate()),
-        ..of_law(options, model)
-    };
-    let is_timed = |model: &ClassicalModel| model.needs_rate() || model.needs_time() && !model.has_inertia();
-    let wanted = searched.filter(|model| !is_timed(model) || options.rate.is_some());
-    let searched = |law: ClassicalOptions| match options.effort {
-        Effort::Normal => law,
-        effort => ClassicalOptions {
-            starts: Some(effort.scaled(law.starts())),
-            epochs: law.epochs.or_else(|| Some(effort.scaled(law.epochs()))),
-            ..law
-        },
-    };
-    let all = wanted.flat_map(|model| variants(&with_rate(model))).map(searched);
-    all.filter(|law| law.rate.is_some() || options.rate.is_none() || !law.model.uses_rate()).collect()
+/// The candidates of some classical models, in the order of their ranks.
+fn laws(request: &CandidateRequest<'_>, is_wanted: impl Fn(ClassicalModel) -> bool) -> Vec<ClassicalOptions> {
+    let wanted = ClassicalModel::ALL.iter().copied().filter(|model| is_wanted(*model));
+    let mut ranked: Vec<RankedLaw> = wanted.flat_map(|model| law::candidates_of(model, request)).collect();
+    ranked.sort_by_key(|(rank, _)| *rank);
+    ranked.into_iter().map(|(_, law)| law).collect()
 }
 
 fn of_network(
@@ -517,8 +392,8 @@ fn of_network(
 }
 
 /// False for a candidate that does not fit the data or contradicts what the user has decided.
-fn is_allowed(candidate: &Candidate, data: &Dataset, decided: &AutoOptions) -> bool {
-    let request = &candidate.request;
+fn is_allowed(candidate: &Candidate, to: &CandidateRequest<'_>) -> bool {
+    let (request, data, decided) = (&candidate.request, to.data, to.options);
     let (shaping, deteriorates) = match request {
         FitSpec::Network(options) => (options.shaping, !options.no_deterioration),
         FitSpec::Classical(options) => {
@@ -528,14 +403,13 @@ fn is_allowed(candidate: &Candidate, data: &Dataset, decided: &AutoOptions) -> b
     };
     let is_network = matches!(request, FitSpec::Network(_));
     let relaxes = matches!(request, FitSpec::Network(options) if options.sizes.relaxation > 0);
-    let is_random_stops = request.model() == ModelName::Classical(ClassicalModel::RandomStops);
-    let takes_history = request.model().takes_further_inputs();
+    let takes_several = request.model().takes_further_inputs();
     request.model().check_data(data, request.rate()).is_ok()
-        && (!shaping.history || takes_history)
+        && (!shaping.history || takes_several)
         && decided.deterioration.is_none_or(|wanted| wanted == deteriorates)
         && (!decided.always_rate || request.rate().is_some())
         && decided.relaxation.is_none_or(|wanted| !is_network || relaxes == (wanted > 0))
         && decided.companding.is_none_or(|wanted| wanted == shaping.companding.is_some())
         && decided.history.is_none_or(|wanted| wanted == shaping.history)
-        && (data.names().inputs.len() == 1 || is_network || is_random_stops)
+        && (data.names().inputs.len() == 1 || is_network || takes_several)
 }

@@ -1,6 +1,7 @@
-//! A law that is the model by itself: one of few numbers, or a Preisach model, whose errors are about the lowest of all
-//! candidates, on the data and on the folds. Whatever the data do not show, it predicts better than a combination of
-//! networks: its numbers cannot follow the data by chance, and a Preisach plane wipes out and is congruent everywhere.
+//! A law that is the model by itself: one of few numbers, or one of many that stands alone, whose errors are about the
+//! lowest of all candidates, on the data and on the folds. Whatever the data do not show, it predicts better than a
+//! combination of networks: few numbers cannot follow the data by chance, and equations as those of a Preisach plane hold
+//! everywhere.
 
 use super::EnsembleSelection;
 use crate::error::Result;
@@ -8,22 +9,21 @@ use crate::fit::auto::candidates::CandidateKind;
 use crate::fit::auto::trial::Trial;
 use crate::fit::progress::Fitted;
 use crate::model::selection::SingleModel;
-use crate::options::ModelName;
-use crate::options::classical::ClassicalModel;
+use crate::options::FitSpec;
 
 /// Most numbers of such a law. Designed.
 const FEW_NUMBERS: usize = 40;
 
 /// Largest product of its two errors, on the data and on the folds, each relative to the lowest of all candidates: of a
-/// law of few numbers, and of a Preisach model where there is no such law. Designed.
+/// law of few numbers, and where there is none, of one of many numbers. Designed.
 const ABOUT_THE_LOWEST: f64 = 1.4;
-const ABOUT_THE_LOWEST_OF_PREISACH: f64 = 2.0;
+const ABOUT_THE_LOWEST_OF_MANY: f64 = 2.0;
 
-/// Largest training error of such a Preisach model, relative to the standard deviation: data that it leaves more of are
-/// not those of relays. Designed.
-const LEFT_BY_PREISACH: f64 = 0.05;
+/// Largest training error of such a law of many numbers, relative to the standard deviation: data that it leaves more of
+/// are not its own. Designed.
+const LEFT_BY_MANY: f64 = 0.05;
 
-/// Least error of such a Preisach model on the folds, relative to its training error: the folds need more than the data
+/// Least error of such a law of many numbers on the folds, relative to its training error: the folds need more than the data
 /// show. Where they do not, they can distinguish candidates by themselves. Designed.
 const ASKS_FOR_MORE: f64 = 5.0;
 
@@ -34,7 +34,7 @@ const ALIKE: f64 = 1.05;
 struct ScoredCandidate {
     place: usize,
     is_law: bool,
-    is_preisach: bool,
+    stands_alone: bool,
     numbers: usize,
     training: f64,
     score: f64,
@@ -59,9 +59,8 @@ impl EnsembleSelection<'_, '_, '_> {
         let mut laws: Vec<&ScoredCandidate> = few.filter(is_about(ABOUT_THE_LOWEST)).collect();
         if laws.is_empty() {
             let asks_for_more = |one: &&ScoredCandidate| 0.01 * one.score >= ASKS_FOR_MORE * one.training;
-            let preisach = judged.iter().filter(|one| one.is_preisach && one.training <= LEFT_BY_PREISACH);
-            let preisach = preisach.filter(asks_for_more);
-            laws = preisach.filter(is_about(ABOUT_THE_LOWEST_OF_PREISACH)).collect();
+            let many = judged.iter().filter(|one| one.stands_alone && one.training <= LEFT_BY_MANY);
+            laws = many.filter(asks_for_more).filter(is_about(ABOUT_THE_LOWEST_OF_MANY)).collect();
         }
         let best = laws.iter().map(|law| law.score).fold(f64::INFINITY, f64::min);
         let alike = laws.into_iter().filter(|law| law.score <= ALIKE * best);
@@ -72,7 +71,7 @@ impl EnsembleSelection<'_, '_, '_> {
         ScoredCandidate {
             place,
             is_law: trial.candidate.kind == CandidateKind::Classical,
-            is_preisach: trial.candidate.asked().model() == ModelName::Classical(ClassicalModel::Preisach),
+            stands_alone: matches!(trial.candidate.asked(), FitSpec::Classical(options) if options.model.facts().stands_alone),
             numbers: trial.members.values().map(|model| model.parameters()).max().unwrap_or(usize::MAX),
             training: trial.training_error(),
             score: trial.score(self.bench.folds, self.evidence, |_| true).mean_percent(),

@@ -18,12 +18,14 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::fit::law::Identify;
+use crate::fit::law::candidates::{CandidateRequest, RankedLaw, with_companded_rate};
 use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{IdentifiedLaw, MemoryKind, check_effort, measured, spread, thinned_to};
+use crate::fit::memory_need::{LawFitSize, MemoryNeed};
 use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
 use crate::fit::sums::output_weights::{OutputProblem, OutputSolution};
 use crate::law::Law;
-use crate::law::duhem_nn::{CellLayout, CellRun, CellShape, DuhemNn, Input, LARGEST_WEIGHT};
+use crate::law::duhem_nn::{CellLayout, CellRun, CellShape, DuhemNn, Input, LARGEST_WEIGHT, MOST_NEURONS};
 use crate::law::series::Series;
 use crate::linear_algebra::{Gram, Symmetric};
 use crate::model::input_transform::common_magnitude;
@@ -33,7 +35,9 @@ use crate::optimise::levenberg_marquardt::{
 use crate::optimise::multi_start::{MultiStart, RoundPlan, SearchStart};
 use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
+use crate::options::classical::ClassicalModel;
 use crate::options::classical::ClassicalOptions;
+use crate::options::input_options::InputOptions;
 use crate::options::table::check_counts;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
@@ -48,6 +52,9 @@ const RIDGE: f64 = 1e-6;
 
 /// κ: penalty on the other squared parameters that have one.
 const DECAY: f64 = 1e-5;
+
+/// Epochs of a candidate of `auto`. Designed.
+const EPOCHS_OF_CANDIDATE: usize = 40;
 
 /// Rows compared with the measured output at most.
 const MOST_COMPARED: usize = 2000;
@@ -82,6 +89,41 @@ impl Identify for DuhemNn {
         let (kept, held) =
             (DuhemTask::new(&frame, &kept, options, stop)?, DuhemTask::new(&frame, &held, options, stop)?);
         DuhemTraining::new(&kept, Some(&held), options)?.run(&whole, observer)
+    }
+
+    fn memory_need(data: &Dataset, options: &ClassicalOptions, size: &LawFitSize) -> MemoryNeed {
+        let starts = options.starts() as f64;
+        let layout = CellLayout::new(shape_of(options, data.has_time()));
+        let (p, m) = (layout.count() as f64, layout.shape.terms() as f64);
+        let busy = size.threads.min(starts);
+        // Gram matrix, curvature and its damped copy, two at a time, each written below its diagonal only.
+        let derivatives = busy * (1.5 * (m + p) * (m + p) + p * m + 270.0 * (m + p));
+        let all = derivatives + starts * 6.0 * (p + m * m) + 2.0 * size.copies;
+        let taken_by = format!("derivatives by {p} searched parameters");
+        let advice = "choose fewer hidden, states or operators";
+        MemoryNeed::largest_of(all, [(derivatives, taken_by, advice), size.part_of_copies()])
+    }
+
+    /// With and without stops; with a rate also where it is companded.
+    fn candidates(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
+        let CandidateRequest { data, options, .. } = request;
+        let rate = options.rate.filter(|_| data.has_time());
+        let of = |(shaping, (states, stops, hidden))| ClassicalOptions {
+            rate,
+            shaping,
+            states: Some(states),
+            operators: Some(stops),
+            hidden: Some(options.hidden.unwrap_or(hidden).min(MOST_NEURONS)),
+            starts: Some(1),
+            epochs: Some(options.epochs.unwrap_or_else(|| options.effort.scaled(EPOCHS_OF_CANDIDATE))),
+            seed: options.seed,
+            ..ClassicalOptions::of(model)
+        };
+        let shapings = [InputOptions::default(), with_companded_rate()];
+        let shapings = shapings.into_iter().take(if rate.is_some() { 2 } else { 1 });
+        let shapes = [(3, 6, 8), (5, 0, 10)];
+        let all = shapings.flat_map(|shaping| shapes.map(|shape| of((shaping, shape))));
+        all.enumerate().collect()
     }
 }
 
@@ -163,7 +205,7 @@ impl<'a> DuhemTraining<'a> {
 }
 
 /// The requested numbers of parts, for data with or without time stamps.
-pub(crate) fn shape_of(options: &ClassicalOptions, has_time: bool) -> CellShape {
+fn shape_of(options: &ClassicalOptions, has_time: bool) -> CellShape {
     let has_rate = options.rate.is_some();
     CellShape {
         channels: if has_rate { 2 } else { 1 },

@@ -20,27 +20,29 @@ use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
+use crate::diagnosis::resonance::ComparedSignal;
 use crate::error::{Error, OptionError, Result};
+use crate::fit::law::candidates::{CandidateRequest, RankedLaw};
 use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{IdentifiedLaw, check_effort};
+use crate::fit::memory_need::{LawFitSize, MemoryNeed};
 use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
 use crate::law::Classical;
 use crate::law::hysteretic_dynamics::{
-    Dynamics, DynamicsForm, DynamicsLayout, Element, ElementShape, LIMITS,
+    Dynamics, DynamicsForm, DynamicsLayout, Element, ElementShape, LIMITS, MOST_NEURONS,
 };
 use crate::optimise::levenberg_marquardt::LevenbergMarquardt;
 use crate::optimise::multi_start::{MultiStart, RoundPlan, SearchStart};
 use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
-use crate::options::classical::ClassicalOptions;
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::options::table::{check, check_counts};
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use linear_start::LinearStarts;
 pub(crate) use linear_start::first_second_difference;
 use records::Records;
-pub(crate) use task::AT_ONCE;
-use task::{DynamicsTask, DynamicsValue};
+use task::{AT_ONCE, DynamicsTask, DynamicsValue};
 
 /// Epochs after which half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 30;
@@ -90,6 +92,64 @@ const FIRST_THRESHOLDS: (f64, f64) = (0.1, 2.0);
 
 /// First loss of strength of a stop, in the inverse unit of the displacement.
 const FIRST_STRENGTH_LOSS: f64 = 1e-3;
+
+/// Starts of a candidate of `auto` for each start of another: the search drops those with the larger errors.
+const STARTS_OF_CANDIDATE: usize = 2;
+
+/// The peak memory of a fit with these options to data of this size.
+pub(super) fn memory_need(
+    form: DynamicsForm,
+    data: &Dataset,
+    options: &ClassicalOptions,
+    size: &LawFitSize,
+) -> MemoryNeed {
+    // Numbers that no model can have are refused by the fit itself.
+    let parameters = DynamicsSpec::of(form, options).map_or(0, |asked| asked.layout().count());
+    let (p, starts) = (parameters as f64, options.starts() as f64);
+    let at_once = data.records().len().min(AT_ONCE) as f64;
+    let busy = size.threads.min(starts * at_once);
+    // As for a Duhem network. A start keeps the sums of some records until it adds them.
+    let derivatives = busy * (1.5 * p * p + 300.0 * p + starts * at_once * p * p / busy);
+    let taken_by = format!("derivatives by {parameters} searched parameters");
+    let advice = "choose fewer hidden, states, modes or operators";
+    let all = derivatives + starts * 6.0 * p + 2.0 * size.copies;
+    MemoryNeed::largest_of(all, [(derivatives, taken_by, advice), size.part_of_copies()])
+}
+
+/// The candidates of `auto` for data with a resonance. With degradation if only changes show it (yielding).
+pub(super) fn candidates(
+    form: DynamicsForm,
+    model: ClassicalModel,
+    request: &CandidateRequest<'_>,
+) -> Vec<RankedLaw> {
+    let options = request.options;
+    let of = |modes: usize| ClassicalOptions {
+        modes: Some(options.modes.unwrap_or(modes)),
+        hidden: options.hidden.map(|hidden| hidden.min(MOST_NEURONS)),
+        operators: options.operators.map(|stops| stops.min(MOST_NEURONS)),
+        starts: Some(STARTS_OF_CANDIDATE * options.starts),
+        epochs: options.epochs,
+        seed: options.seed,
+        ..ClassicalOptions::of(model)
+    };
+    let degrading = |modes: usize| ClassicalOptions { degradation: true, ..of(modes) };
+    let without_memory = || ClassicalOptions { states: Some(0), operators: Some(0), ..of(1) };
+    let may_have_no_stops = options.operators.is_none_or(|stops| stops == 0);
+    // The ranks are among both forms.
+    let all = match (form, request.resonance) {
+        (_, None) | (DynamicsForm::StateSpace, Some(ComparedSignal::Changes)) => vec![],
+        (DynamicsForm::Oscillator, Some(ComparedSignal::Changes)) => {
+            vec![Some((0, degrading(1))), Some((1, of(1))), Some((2, degrading(2)))]
+        }
+        (DynamicsForm::Oscillator, Some(ComparedSignal::Output)) => {
+            vec![Some((0, of(1))), (options.deterioration == Some(true)).then(|| (4, degrading(1)))]
+        }
+        (DynamicsForm::StateSpace, Some(ComparedSignal::Output)) => {
+            vec![Some((1, of(1))), Some((2, of(2))), may_have_no_stops.then(|| (3, without_memory()))]
+        }
+    };
+    all.into_iter().flatten().collect()
+}
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DynamicsSpec {
@@ -361,6 +421,21 @@ macro_rules! identified_as {
                 let found =
                     identify(data, &asked, options, &|dynamics| Self(dynamics).into(), observer, stop)?;
                 found.try_map(|dynamics| Self(dynamics).validated())
+            }
+
+            fn memory_need(
+                data: &$crate::data::record::Dataset,
+                options: &$crate::options::classical::ClassicalOptions,
+                size: &$crate::fit::memory_need::LawFitSize,
+            ) -> $crate::fit::memory_need::MemoryNeed {
+                $crate::fit::law::hysteretic_dynamics::memory_need($form, data, options, size)
+            }
+
+            fn candidates(
+                model: $crate::options::classical::ClassicalModel,
+                request: &$crate::fit::law::candidates::CandidateRequest<'_>,
+            ) -> Vec<$crate::fit::law::candidates::RankedLaw> {
+                $crate::fit::law::hysteretic_dynamics::candidates($form, model, request)
             }
         }
     };

@@ -13,9 +13,11 @@ use hysid_core::elementary::{ln, square};
 
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
+use crate::fit::law::candidates::{CandidateRequest, RankedLaw, in_all_compandings};
 use crate::fit::law::linearised::{FitVariable, LinearisedLaw, WeightRows, in_stretches, unit_gradient};
 use crate::fit::law::search::IdentifiedLaw;
 use crate::fit::law::{Identify, grids};
+use crate::fit::memory_need::{LawFitSize, MemoryNeed};
 use crate::fit::progress::SearchObserver;
 use crate::fit::sums::{FoldSums, SumGatherer, TrainingRows, logarithmic, lowest};
 use crate::law::modified_prandtl_ishlinskii::{
@@ -30,6 +32,7 @@ use crate::operator::play;
 use crate::optimise::levenberg_marquardt::{self, DescentSettings, LevenbergMarquardt, Slope};
 use crate::optimise::non_negative::{Penalty, Quadratic, WeightBounds};
 use crate::optimise::parallel;
+use crate::options::classical::ClassicalModel;
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
@@ -122,6 +125,21 @@ impl Identify for ModifiedPrandtlIshlinskii {
         let variables = columns.map(|(i, column)| FitVariable::weight(column, at_bound(i))).collect();
         let gradients = point.gradients();
         Ok(Some(LinearisedLaw { records: rows.records, residual, variables, gradients, rows_each }))
+    }
+
+    fn memory_need(_: &Dataset, options: &ClassicalOptions, size: &LawFitSize) -> MemoryNeed {
+        let plays = options.plays();
+        let zones = 2 * options.dead_zones();
+        let sums = size.of_least_squares((plays + zones + 3) as f64, plays).part();
+        // Plays of every row are stored for each grid, and copied for each fold that is under way.
+        let plays_of_rows = (3.0 + 2.0 * size.threads) * size.scored * (plays + 6) as f64;
+        let taken_by = format!("{plays} plays at each of {} rows", size.scored);
+        let advice = "choose fewer operators, or fit to fewer rows";
+        MemoryNeed::largest_of(sums.0 + plays_of_rows, [sums, (plays_of_rows, taken_by, advice)])
+    }
+
+    fn candidates(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
+        in_all_compandings(model, request.options, [1, 3, 5])
     }
 }
 

@@ -2,16 +2,19 @@
 
 use crate::data::record::Dataset;
 use crate::error::Result;
+use crate::fit::law::candidates::{CandidateRequest, RankedLaw, of_law};
 use crate::fit::law::grids::best_on_grids;
 use crate::fit::law::linearised::{LinearisedLaw, WeightRows, in_stretches, unit_gradient};
 use crate::fit::law::search::IdentifiedLaw;
 use crate::fit::law::{Identify, grids};
+use crate::fit::memory_need::{LawFitSize, MemoryNeed};
 use crate::fit::progress::SearchObserver;
 use crate::fit::sums::{FoldSums, SumGatherer, TrainingRows, logarithmic};
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::series::Series;
 use crate::operator::play;
 use crate::optimise::non_negative::Penalty;
+use crate::options::classical::ClassicalModel;
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
@@ -57,6 +60,15 @@ impl Identify for PrandtlIshlinskii {
         let mut gradients = vec![unit_gradient(count, 0), unit_gradient(count, 1)];
         gradients.extend((2..count).flat_map(|play| [Vec::new(), unit_gradient(count, play)]));
         Ok(Some(rows.linearised(&weights, &bounded, gradients, rows_each)))
+    }
+
+    fn memory_need(_: &Dataset, options: &ClassicalOptions, size: &LawFitSize) -> MemoryNeed {
+        let plays = options.plays();
+        size.of_least_squares(plays as f64 + 3.0, plays)
+    }
+
+    fn candidates(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
+        vec![(6, of_law(model, request.options))]
     }
 }
 

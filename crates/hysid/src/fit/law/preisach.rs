@@ -14,8 +14,10 @@ use hysid_core::elementary::{powf, powi, square};
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::Identify;
+use crate::fit::law::candidates::{CandidateRequest, RankedLaw, in_all_compandings};
 use crate::fit::law::grids::check_count;
 use crate::fit::law::search::IdentifiedLaw;
+use crate::fit::memory_need::{FEWER_OPERATORS, FEWER_ROWS, LawFitSize, MemoryNeed};
 use crate::fit::progress::SearchObserver;
 use crate::fit::sums::{FoldSums, PenaltyChoice, SumGatherer, TrainingRows, logarithmic};
 use crate::law::preisach::plane::Plane;
@@ -24,6 +26,7 @@ use crate::law::series::Series;
 use crate::law::turning_point_stack::{StackChange, TurningPointStack};
 use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::Penalty;
+use crate::options::classical::ClassicalModel;
 use crate::options::classical::ClassicalOptions;
 use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
@@ -62,6 +65,22 @@ impl Identify for Preisach {
             }
         }
         coarse.weighted(sums, choice, scaling, stop).map(IdentifiedLaw::by_least_squares)
+    }
+
+    fn memory_need(_: &Dataset, options: &ClassicalOptions, size: &LawFitSize) -> MemoryNeed {
+        let intervals = options.operators() as f64;
+        let cells = 0.5 * intervals * (intervals + 1.0) + intervals + 3.0;
+        let (coarse, taken_by_coarse, _) = size.of_least_squares(233.0, INTERVALS_FOR_CHOICE).part();
+        let fine = 3.0 * cells * cells;
+        let taken_by = format!("sums over the {cells} cells of {intervals} intervals");
+        MemoryNeed::largest_of(
+            coarse + fine,
+            [(coarse, taken_by_coarse, FEWER_ROWS), (fine, taken_by, FEWER_OPERATORS)],
+        )
+    }
+
+    fn candidates(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
+        in_all_compandings(model, request.options, [0, 2, 4])
     }
 }
 

@@ -20,6 +20,8 @@ use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
+use crate::fit::law::candidates::{COMPANDING, RankedLaw, companded, with_companded_rate};
+use crate::fit::memory_need::{LawFitSize, MemoryNeed};
 use crate::fit::random_start::{self, Capacities};
 use crate::fit::sums::{FoldSums, Sums, logarithmic};
 use crate::network::scaling::Scaling;
@@ -27,7 +29,9 @@ use crate::network::{
     Architecture, GramOverRecords, JacobianColumns, Network, NetworkDrive, ParameterLayout, RowsOverRecords,
 };
 use crate::optimise::non_negative::Penalty;
-use crate::options::classical::{ClassicalOptions, Sign};
+use crate::options::classical::{ClassicalModel, ClassicalOptions, Sign};
+use crate::options::fit_spec::AutoOptions;
+use crate::options::input_options::{HISTORY_INPUTS, InputOptions};
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
 
@@ -43,10 +47,45 @@ pub struct RandomStops {
 }
 
 /// Tanh neurons, where cross-validation finds them better than none. Designed.
-pub(crate) const HIDDEN: usize = 100;
+const HIDDEN: usize = 100;
 
 /// From stops that are soon dead to such as hardly wear. Designed.
 const CAPACITIES: Capacities = Capacities { typical: 300.0, spread: 2.0 };
+
+/// Candidates with a linear readout, and with a random tanh layer: stops and tanh neurons. Designed.
+const LINEAR: (usize, usize) = (300, 0);
+const LAYERED: (usize, usize) = (100, 100);
+
+/// The peak memory of a fit with these options to data of this size.
+pub(super) fn memory_need(data: &Dataset, options: &ClassicalOptions, size: &LawFitSize) -> MemoryNeed {
+    let inputs = data.names().inputs.len() + if options.shaping.history { HISTORY_INPUTS } else { 0 };
+    let (stops, hidden) = (options.operators(), options.hidden.unwrap_or(HIDDEN));
+    let features = (stops + hidden + 3) as f64;
+    let weights = (hidden * stops) as f64;
+    let need = size.of_least_squares(features, stops);
+    need.and(600.0 * (features + weights / 10.0) + size.rows * (inputs + 4) as f64)
+}
+
+/// The candidates of `auto`, the quickest first.
+pub(super) fn candidates(model: ClassicalModel, options: &AutoOptions) -> Vec<RankedLaw> {
+    let as_it_is = InputOptions::default();
+    let rate = options.rate;
+    let mut all = vec![(as_it_is, None, false, LINEAR), (companded(COMPANDING[0]), None, false, LINEAR)];
+    all.extend(match rate.is_some() {
+        true => [(with_companded_rate(), rate, false, LINEAR), (as_it_is, rate, true, LAYERED)],
+        false => [(as_it_is, None, true, LINEAR), (as_it_is, None, true, LAYERED)],
+    });
+    let of = |(shaping, rate, deterioration, (stops, hidden))| ClassicalOptions {
+        rate,
+        shaping,
+        deterioration: Some(deterioration),
+        operators: Some(options.operators.unwrap_or(stops)),
+        hidden: Some(hidden),
+        seed: options.seed,
+        ..ClassicalOptions::of(model)
+    };
+    all.into_iter().map(of).enumerate().collect()
+}
 
 /// Fits random stops. Cross-validation chooses whether they deteriorate, and no tanh neurons or 100, where the options
 /// do not say. Asked to stop, it is the best architecture so far, its penalty chosen by fewer folds.
