@@ -29,6 +29,8 @@ pub struct Facts {
     pub variants: &'static [&'static str],
     /// For data of one loop: the error to be expected on smaller loops inside it, however well the law fits the loop.
     pub errors_inside: ErrorsInside,
+    /// False for a law that `auto` does not try.
+    pub is_candidate: bool,
     /// True for a law of many numbers that `auto` may take by itself, because its equations bind it beyond the data.
     pub stands_alone: bool,
     /// True if one with more modes can be one with fewer.
@@ -131,6 +133,7 @@ impl Facts {
             variants: &[],
             errors_inside,
             kind: LawKind::Law,
+            is_candidate: true,
             stands_alone: false,
             nests_modes: false,
             advice: &[],

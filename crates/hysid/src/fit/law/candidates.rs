@@ -59,6 +59,7 @@ pub(crate) fn in_all_compandings(
 /// A searched law in all variants, or another as it is.
 pub(super) fn by_default(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
     let laws = match model.is_searched() {
+        _ if !model.facts().is_candidate => return Vec::new(),
         true => searched(model, request.options),
         false => vec![of_law(model, request.options)],
     };
