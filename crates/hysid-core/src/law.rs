@@ -13,6 +13,7 @@
 //! | [`BoucWen`](bouc_wen::BoucWen) | a spring in parallel with an element that yields, with degradation and pinching | `z`, energy |
 //! | [`PeakOriented`](peak_oriented::PeakOriented) | reloading leads to the largest displacement so far, pinched; softening, deterioration | largest displacements, branch, work |
 //! | [`MenegottoPinto`](menegotto_pinto::MenegottoPinto) | steel: curves between two straight lines, isotropic hardening | branches |
+//! | [`RambergOsgood`](ramberg_osgood::RambergOsgood) | a power curve with Masing's rule | turning points |
 //! | [`JilesAtherton`](jiles_atherton::JilesAtherton) | differential equation of the magnetisation | magnetisation |
 //! | [`Lugre`](lugre::Lugre) | friction of bristles that bend before they slip | deflection |
 //! | [`DuhemNn`](duhem_nn::DuhemNn) | recurrent network whose states move with the input and with time | states, plays |
@@ -43,6 +44,7 @@ pub mod play_weights;
 pub mod prandtl_ishlinskii;
 pub mod preisach;
 pub mod properties;
+pub mod ramberg_osgood;
 pub mod rate_dependent_prandtl_ishlinskii;
 pub mod series;
 mod tanh_layer;
@@ -410,6 +412,7 @@ macro_rules! for_each_law {
             bouc_wen::BoucWen,
             peak_oriented::PeakOriented,
             menegotto_pinto::MenegottoPinto,
+            ramberg_osgood::RambergOsgood,
             jiles_atherton::JilesAtherton,
             lugre::Lugre,
             duhem_nn::DuhemNn,

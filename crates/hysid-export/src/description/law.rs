@@ -16,6 +16,7 @@ mod neuro_madelung;
 mod peak_oriented;
 mod prandtl_ishlinskii;
 mod preisach;
+mod ramberg_osgood;
 mod rate_dependent_prandtl_ishlinskii;
 mod tanh_layer;
 mod turning_points;

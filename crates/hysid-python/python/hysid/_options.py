@@ -25,6 +25,7 @@ ModelName: TypeAlias = Literal[
     "bouc-wen",
     "peak-oriented",
     "menegotto-pinto",
+    "ramberg-osgood",
     "jiles-atherton",
     "lugre",
     "duhem-nn",

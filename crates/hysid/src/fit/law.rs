@@ -19,6 +19,7 @@ pub mod neuro_madelung;
 pub mod peak_oriented;
 pub mod prandtl_ishlinskii;
 pub mod preisach;
+pub mod ramberg_osgood;
 pub mod random_stops;
 pub mod rate_dependent_prandtl_ishlinskii;
 pub mod search;
