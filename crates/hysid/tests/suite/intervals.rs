@@ -237,7 +237,8 @@ fn every_law_is_linearised_about_its_own_fit() {
         run(&bouc_wen().law, &samples_of(&x)).iter().zip(noise(4, 0.0)).map(|(y, e)| y + 0.05 * e).collect();
     let data = timed(time, x, y);
     let names = "masing prandtl-ishlinskii modified-prandtl-ishlinskii generalized-prandtl-ishlinskii \
-                 rate-dependent-prandtl-ishlinskii bouc-wen peak-oriented menegotto-pinto jiles-atherton lugre";
+                 rate-dependent-prandtl-ishlinskii bouc-wen peak-oriented menegotto-pinto ramberg-osgood \
+                 jiles-atherton lugre";
     for name in names.split(' ') {
         let model = hysid::Fit::new().model(name).option("starts", 2).option("epochs", 5).run(&data).unwrap();
         let found = ParameterIntervals::of(&model, &data).unwrap().expect(name);

@@ -3,6 +3,7 @@
 use crate::scaffold::*;
 use hysid::law::menegotto_pinto::{Downwards, MenegottoPinto};
 use hysid::law::peak_oriented::{Degradation, PeakOriented, Side};
+use hysid::law::ramberg_osgood::RambergOsgood;
 use hysid::{Dataset, Fit, Model};
 use serde_json::json;
 
@@ -114,4 +115,17 @@ fn a_steel_is_found_again() {
     let model = fitted(&law, &x, &["asymmetric"]);
     let found = error(&model, &law, &cycles(&[8.0, 4.0, 28.0], 17));
     assert!(found < 1.0, "{found} %");
+}
+
+#[test]
+fn a_power_curve_is_found_again() {
+    for (yield_displacement, exponent) in [(4.0, 5.5), (9.0, 2.2)] {
+        let law = RambergOsgood { offset: 4.0, strength: 120.0, yield_displacement, exponent };
+        let law = Classical::from(law);
+        let x = cycles(&[3.0, 6.0, 12.0, 20.0], 24);
+        let model = fitted(&law, &x, &[]);
+        assert_recovered(&model, &law, 1e-6);
+        let found = error(&model, &law, &cycles(&[8.0, 4.0, 28.0], 17));
+        assert!(found < 1e-6, "{found} %");
+    }
 }

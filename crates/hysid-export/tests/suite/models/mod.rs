@@ -100,6 +100,7 @@ pub fn laws() -> Vec<(String, Model)> {
         fitted("duhem-nn", 1, &with(&[("operators", json!(3)), ("hidden", json!(10))])),
         fitted("menegotto-pinto", 1, &starts()),
         fitted("menegotto-pinto", 1, &with(&[("asymmetric", json!(true))])),
+        fitted("ramberg-osgood", 1, &starts()),
         fitted("peak-oriented", 1, &starts()),
         fitted("peak-oriented", 1, &with(&[("degradation", json!(true)), ("asymmetric", json!(true))])),
     ]
