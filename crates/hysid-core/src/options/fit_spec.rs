@@ -60,9 +60,6 @@ pub struct AutoOptions {
     pub companding: Option<bool>,
     /// Whether running peak and travelled path are inputs.
     pub history: Option<bool>,
-    /// True if no candidate is a recurrent network.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub no_recurrent: bool,
     /// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training.
     pub warm_up: Option<usize>,
     /// Initial state of every record.
@@ -97,7 +94,6 @@ impl Default for AutoOptions {
             epochs: None,
             companding: None,
             history: None,
-            no_recurrent: false,
             warm_up: None,
             initial_state: None,
             ridge: None,

@@ -207,13 +207,6 @@ options! {
         default: |_, _| Preset::Off,
         used_by: |model, _| matches!(model, ModelName::Network(family) if family.uses_rate()),
     }
-    no_recurrent: bool {
-        meaning: "Leave recurrent networks out of the candidates",
-        group: Model,
-        values: OptionValues::Flag,
-        default: |_, _| Preset::Off,
-        used_by: of_auto,
-    }
     warm_up: usize {
         meaning: "Rows at the beginning of each record that drive the memory and are not trained on, for records that \
                   do not begin in the virgin state",

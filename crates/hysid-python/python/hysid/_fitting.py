@@ -41,7 +41,6 @@ def fit(
     history: bool | None = None,
     companding: float | None = None,
     rate_companding: float | None = None,
-    no_recurrent: bool | None = None,
     # Training
     warm_up: int | None = None,
     initial_state: _options.InitialStateName | None = None,
@@ -130,8 +129,6 @@ def fit(
     rate_companding : float, optional
         Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all rows stay
         below; 0 for off. Default: off.
-    no_recurrent : bool, optional
-        Leave recurrent networks out of the candidates. Default: off.
     warm_up : int, optional
         Rows at the beginning of each record that drive the memory and are not trained on, for records that do not begin
         in the virgin state. Default: chosen by cross-validation for auto; otherwise 0.

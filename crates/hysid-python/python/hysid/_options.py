@@ -72,7 +72,6 @@ class Options(TypedDict, total=False):
     history: bool | None
     companding: float | None
     rate_companding: float | None
-    no_recurrent: bool | None
 
     # Training
     warm_up: int | None

@@ -50,10 +50,10 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     model : str, optional
         As of `hysid.fit`; the default ``"auto"`` is accurate and slow. In a search or a cross-validation, name a
         model, which takes seconds.
-    members, stops, hidden, relaxation, no_deterioration, history, companding, rate_companding : optional
-    no_recurrent, warm_up, initial_state, training, effort, starts, epochs, population, stall, validation : optional
-    ridge, decay, operators, states, modes, thresholds, sign, dead_zones, free_weights : optional
-    logarithmic_thresholds, degradation, asymmetric, differential_form, resonance, lagged_input : optional
+    members, stops, hidden, relaxation, no_deterioration, history, companding, rate_companding, warm_up : optional
+    initial_state, training, effort, starts, epochs, population, stall, validation, ridge, decay, operators : optional
+    states, modes, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds, degradation : optional
+    asymmetric, differential_form, resonance, lagged_input : optional
     time_limit, threads : optional
         As of `hysid.fit`.
     random_state : int, RandomState instance or None, default None
@@ -97,7 +97,6 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         history: bool | None = None,
         companding: float | None = None,
         rate_companding: float | None = None,
-        no_recurrent: bool | None = None,
         warm_up: int | None = None,
         initial_state: _options.InitialStateName | None = None,
         training: _options.TrainingName | None = None,
@@ -139,7 +138,6 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.history = history
         self.companding = companding
         self.rate_companding = rate_companding
-        self.no_recurrent = no_recurrent
         self.warm_up = warm_up
         self.initial_state = initial_state
         self.training = training

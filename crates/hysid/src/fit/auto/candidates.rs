@@ -411,6 +411,5 @@ fn is_allowed(candidate: &Candidate, to: &CandidateRequest<'_>) -> bool {
         && decided.relaxation.is_none_or(|wanted| !is_network || relaxes == (wanted > 0))
         && decided.companding.is_none_or(|wanted| wanted == shaping.companding.is_some())
         && decided.history.is_none_or(|wanted| wanted == shaping.history)
-        && !(decided.no_recurrent && candidate.kind == CandidateKind::Recurrent)
         && (data.names().inputs.len() == 1 || is_network || takes_several)
 }
