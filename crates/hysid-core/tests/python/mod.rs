@@ -4,8 +4,11 @@ use std::fmt::Write as _;
 
 use hysid_core::options::table::{FitOption, OPTIONS, OptionGroup, OptionValues};
 
-/// Files with generated parts, and each as a function of its present text.
-pub const GENERATED: [(&str, fn(&str) -> String); 3] =
+/// The text of a file as a function of its present text.
+type Generator = fn(&str) -> String;
+
+/// Files with generated parts.
+pub const GENERATED: [(&str, Generator); 3] =
     [("_options.py", |_| types()), ("_fitting.py", fitting), ("regressor.py", regressor)];
 
 const HEAD: &str = "\
