@@ -31,6 +31,7 @@ __all__ = [
     "peak_oriented",
     "prandtl_ishlinskii",
     "preisach",
+    "ramberg_osgood",
     "rate_dependent_prandtl_ishlinskii",
 ]
 
@@ -693,3 +694,39 @@ def menegotto_pinto(
         "down": None if down is None else _symbols("down", down, ("ratio", "isotropic")),
     }
     return _run("menegotto-pinto", parts, x)
+
+
+def ramberg_osgood(
+    x: Values, strength: float, yield_displacement: float, exponent: float, offset: float = 0.0
+) -> np.ndarray:
+    """Simulate a Ramberg-Osgood law: a power curve with Masing's rules.
+
+    Parameters
+    ----------
+    x : array of shape (n,)
+        The strain or displacement.
+    strength : float
+        Output at which the secant stiffness is half the initial one, in the unit of the output (``F``). The form with a
+        factor ``alpha`` and a yield output has ``F = yield_output * alpha ** (-1 / (exponent - 1))``.
+    yield_displacement : float
+        Elastic part of the input there, in its unit; above 0. The initial stiffness is ``strength / yield_displacement``.
+    exponent : float
+        Exponent of the power curve, 1 (linear) to 100 (``r``).
+    offset : float
+        Constant added to the output, in its unit.
+
+    Returns
+    -------
+    array of shape (n,)
+        The stress or force.
+
+    Examples
+    --------
+    >>> force = hysid.classical.ramberg_osgood([0.0, 4.0, 0.0], strength=100.0, yield_displacement=2.0, exponent=5.0)
+    >>> bool(np.allclose(force[:2], [0.0, 100.0])), bool(force[2] < -50.0)
+    (True, True)
+    """
+    parts = _numbers(
+        offset=offset, strength=strength, yield_displacement=yield_displacement, exponent=exponent
+    )
+    return _run("ramberg-osgood", parts, x)
