@@ -13,14 +13,13 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, anyhow};
 use hysid::Model;
 use hysid::data::record::Dataset;
 use hysid::diagnosis::cycles::{Correction, CycleOptions, CycleTable, FIGURES, Figure, corrected};
 use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
 use hysid_document::visible::clipped;
-use hysid_document::{count, object};
+use hysid_document::{Problem, Result, count, object};
 
 use crate::quantities::Quantities;
 
@@ -83,8 +82,8 @@ impl<'a> Cycles<'a> {
         smoothing_factor: Option<usize>,
     ) -> Result<Cycles<'static>> {
         let file = path.display().to_string();
-        let driven =
-            ModelCycles::of(model, options, smoothing_factor).map_err(|error| anyhow!("{file}: {error}"))?;
+        let driven = ModelCycles::of(model, options, smoothing_factor)
+            .map_err(|error| Problem::in_file(&file, error.to_string()))?;
         let understood = understood(&file, model, &driven);
         Ok(Cycles {
             file,

@@ -38,7 +38,6 @@ mod timing;
 pub mod tracks;
 mod usage;
 
-use anyhow::{Context, Result};
 use hysid::data::initial_state::in_words;
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
@@ -46,7 +45,7 @@ use hysid::diagnosis::frequency_response::{ModelResponses, NoResponse};
 use hysid::diagnosis::residuals::Residuals;
 use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::{Model, Prediction};
-use hysid_document::{Page, html, number, unit};
+use hysid_document::{Page, Problem, Result, html, number, unit};
 use hysid_files::{PAGE_MARK, with_page_sum};
 
 pub use band_coverage::BandCoverage;
@@ -110,7 +109,8 @@ impl<'a> ReportSet<'a> {
         };
         let mut sums = ErrorSums::default();
         data.records().iter().zip(&simulated).for_each(|(record, output)| sums.add(record.output(), output));
-        let errors = sums.errors(&data.names().output).context("there is nothing to score")?;
+        let errors = sums.errors(&data.names().output);
+        let errors = errors.ok_or_else(|| Problem::from("there is nothing to score".to_string()))?;
         let tracks = Tracks::of(name, data);
         Ok(Self { name: name.into(), data, simulated, predicted, errors, tracks })
     }

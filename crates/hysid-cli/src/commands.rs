@@ -63,7 +63,7 @@ impl Given {
             None => {
                 let reading = reading.reading();
                 let table = |(path, content): (&PathBuf, Vec<u8>)| Table::from_bytes(path, content, &reading);
-                Ok(Self::Tables(files.iter().zip(contents).map(table).collect::<Result<_>>()?))
+                Ok(Self::Tables(files.iter().zip(contents).map(table).collect::<Result<_, _>>()?))
             }
         }
     }

@@ -11,6 +11,7 @@ use hysid::fit::progress::{Checkpoint, Progress};
 use hysid::model::Provenance;
 use hysid::options::FitSpec;
 use hysid_app::{Beforehand, Identified, check_memory};
+use hysid_document::Face;
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_files::Destination;
 use hysid_records::Data;
@@ -46,7 +47,7 @@ impl<'a> FitTask<'a> {
 /// Prints the reading of data and request, and warnings. From now on Ctrl-C stops the fit at its next step, and prints
 /// this text.
 pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -> Result<Beforehand> {
-    let beforehand = Beforehand::of(data, request)?;
+    let beforehand = Beforehand::of(data, request, Face::Terminal)?;
     // Looking at long data takes its time, and Ctrl-C ends it at once: there is nothing to lose yet.
     interrupt::listen(to_ctrl_c)?;
     note_labelled(&beforehand.understood);

@@ -8,11 +8,12 @@ mod units;
 
 use std::ops::Range;
 
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use hysid::error::{DataProblem, MotionColumn, MotionError};
 use hysid::restoring_force::{Acceleration, Motion, RestoringForce, restoring_force};
+use hysid_document::Problem;
 use hysid_document::visible::clipped;
-use hysid_records::{Usage, column_of, equal_stamps, offset_of, places_of};
+use hysid_records::{column_of, data_words, equal_stamps, offset_of, places_of};
 use hysid_tables::{CellReader, DecimalSign, Table, spread_equal};
 
 pub use columns::MotionColumns;
@@ -57,7 +58,8 @@ impl MeasuredMotion {
         let units = MotionUnits::of(&table.file, &names, &arguments.mass, arguments.columns.same_units)?;
         let mut cells = CellReader::new(table.numbers());
         let mut read = |column: MotionColumn| -> Result<Option<Vec<f64>>> {
-            names.name_of(column).map(|name| column_of(table, name, kind(column), &mut cells)).transpose()
+            let column = names.name_of(column).map(|name| column_of(table, name, kind(column), &mut cells));
+            Ok(column.transpose()?)
         };
         let mut columns: Vec<Option<Vec<f64>>> = Vec::with_capacity(COLUMNS.len());
         for column in COLUMNS {
@@ -139,7 +141,7 @@ impl MeasuredMotion {
     }
 
     /// An error of the library in the user's words: file, line, column.
-    fn explained(&self, error: hysid::Error) -> anyhow::Error {
+    fn explained(&self, error: hysid::Error) -> Problem {
         let file = &self.file;
         match error {
             hysid::Error::Motion(MotionError { record, row, column, problem }) => {
@@ -149,16 +151,19 @@ impl MeasuredMotion {
                 match row {
                     Some(row) => {
                         let line = self.lines[record.rows.start + row];
-                        anyhow!("{file}, line {line}, column \"{name}\": {problem}")
+                        Problem::in_cell(file, line, &name, data_words(&problem))
                     }
                     None if self.records.len() > 1 => {
-                        anyhow!("{file}, record \"{}\": column \"{name}\" {problem}", clipped(&record.name))
+                        hysid_document::problem!(
+                            "{file}, record \"{}\": column \"{name}\" {problem}",
+                            clipped(&record.name)
+                        )
                     }
-                    None => anyhow!("{file}: column \"{name}\" {problem}"),
+                    None => Problem::in_file(file, format!("column \"{name}\" {problem}")),
                 }
             }
-            hysid::Error::Option(error) => Usage(error.to_string()).into(),
-            other => anyhow!("{file}: {other}"),
+            hysid::Error::Option(error) => Problem::request(error.to_string()),
+            other => Problem::in_file(file, other.to_string()),
         }
     }
 }

@@ -3,11 +3,12 @@
 use std::mem;
 use std::ops::ControlFlow;
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::Result;
 use hysid::data::likeness::Likeness;
 use hysid::data::record::{Fingerprint, Record};
 use hysid::data::warning::Warning;
 use hysid::model::{BandLevel, Model, Prediction, Simulation};
+use hysid_document::Problem;
 use hysid_records::{
     CellNeed, MOST_ROWS_OF_ZERO, RecordNames, Roles, UnitFactors, checked, equal_stamps, explained,
     offset_of, place_of,
@@ -15,7 +16,6 @@ use hysid_records::{
 use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, spread_equal, starts_again};
 
 use crate::messages::warning;
-use crate::terminal::clipped;
 
 /// Rows that are simulated together.
 const BLOCK: usize = MOST_ROWS_OF_ZERO;
@@ -114,7 +114,7 @@ pub fn run(
         run.push(head, &row)?;
     }
     if !run.is_begun {
-        bail!(rows.head.no_rows());
+        return Err(rows.head.no_rows().into());
     }
     run.check_thousands(&rows.head)?;
     let end = run.simulate(true, take)?;
@@ -249,8 +249,8 @@ impl<'r, 'm> TableRun<'r, 'm> {
             let Clock { first, previous, now, .. } = self.clock;
             return Ok(!self.is_begun || self.columns.time.is_some() && starts_again(first, previous, now));
         };
-        let at = || format!("{}, line {}, column \"{}\"", self.file, row.line, clipped(column));
-        self.names.begins(row.cell(place), at)
+        let at = |words| Problem::in_cell(&self.file, row.line, column, words);
+        Ok(self.names.begins(row.cell(place), at)?)
     }
 
     /// True if the block is to be simulated before the present row: rows with one time stamp stay together, so that
@@ -267,8 +267,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         match all.find_map(|column| Some((column.place(), column.problem(&self.numbers)?))) {
             None => Ok(()),
             Some((place, (line, problem))) => {
-                let name = clipped(&head.header[place]);
-                bail!("{}, line {line}, column \"{name}\": {problem}", self.file)
+                Err(Problem::in_cell(&self.file, line, &head.header[place], problem).into())
             }
         }
     }
@@ -387,7 +386,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
     }
 
     /// An error of rows that wait from `first` on.
-    fn explain(&self, error: hysid::Error, first: usize) -> anyhow::Error {
+    fn explain(&self, error: hysid::Error, first: usize) -> Problem {
         let row = match &error {
             hysid::Error::Data(defect) => defect.row,
             _ => None,
@@ -397,7 +396,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
     }
 
     /// An error with its row in the present record.
-    fn explain_in_record(&self, mut error: hysid::Error) -> anyhow::Error {
+    fn explain_in_record(&self, mut error: hysid::Error) -> Problem {
         if let hysid::Error::Data(defect) = &mut error {
             defect.row = defect.row.map(|row| row.saturating_sub(self.simulated));
         }
@@ -416,9 +415,8 @@ fn read(
     let (name, kind, is_first) = what;
     let cell = row.cell(column.place());
     let number = column.number(head, numbers, cell, row.line);
-    checked(number, cell, kind, is_first).map_err(|problem| {
-        anyhow!("{}, line {}, column \"{}\": {problem}", head.file, row.line, clipped(name))
-    })
+    let at = |words| Problem::in_cell(&head.file, row.line, name, words).into();
+    checked(number, cell, kind, is_first).map_err(at)
 }
 
 impl RowBlock {

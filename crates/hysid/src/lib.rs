@@ -56,7 +56,7 @@ pub use hysid_core::options::ModelName;
 pub use hysid_core::{Error, Result};
 pub use hysid_core::{
     data, elementary, error, law, model, network, operator, options, property, significant, simd, stop_check,
-    termination,
+    termination, words,
 };
 pub use hysid_diagnosis as diagnosis;
 pub use hysid_diagnosis::Diagnosis;

@@ -59,7 +59,7 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     let Some(errors) = sums.errors(output) else {
         let (channel, problem) = (Some(Channel::Output), DataProblem::NothingToScore);
         let defect = DataError { record: String::new(), row: None, channel, problem };
-        return Err(explained(&rows.head.file, None, defect.into(), &roles));
+        return Err(explained(&rows.head.file, None, defect.into(), &roles).into());
     };
     let warnings = warnings.context("the run was ended early")?;
     summarised(&warnings).iter().for_each(warning);

@@ -30,7 +30,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     let table = Table::read(&arguments.reference, &arguments.columns.reading.reading())?;
     let names = Names::of(&model, &table, arguments.band.is_some())?;
     let header =
-        header_line(delimiter_of(&table), table.header.iter().chain(names.all()).map(String::as_str))?;
+        header_line(delimiter_of(&table), table.header.iter().chain(names.all()).map(String::as_str));
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     files::check_stdout(out.is_none(), arguments.json)?;
     let force = arguments.overwriting.force;

@@ -15,7 +15,7 @@ use crate::commands::{check_band, model_from_bytes};
 use crate::data::{data_of, factors, read_tables};
 use crate::files::{self, check_outputs};
 use crate::gathered::{Gathered, Gatherer};
-use crate::messages::{Usage, summarised, warning};
+use crate::messages::{Usage, is_usage, summarised, warning};
 use crate::plotting::{self, Format, PlotData, Style};
 use crate::table_run::{self, KeptColumns};
 
@@ -39,7 +39,7 @@ pub fn run(arguments: &Plot) -> Result<Outcome> {
         dots_per_inch: arguments.dpi,
     };
     let in_file = |error: anyhow::Error| {
-        if error.is::<Usage>() { error } else { error.context(files::shown(&tables[0])) }
+        if is_usage(&error) { error } else { error.context(files::shown(&tables[0])) }
     };
     let subject = subject.only(&arguments.only).map_err(in_file)?;
     let charts = plotting::charts(&subject, kind, &arguments.options(), style.pixels()).map_err(in_file)?;

@@ -20,7 +20,7 @@ pub fn run(arguments: &RestoringForce) -> Result<Outcome> {
     let table = table(arguments)?;
     let motion = MeasuredMotion::of(&table, arguments)?;
     let written = Written::of(&table, &motion)?;
-    let header = written.header()?;
+    let header = written.header();
     let out = (!to_stdout)
         .then(|| Destination::new(path, Kind::Beginning(header.clone()), arguments.overwriting.force));
     check_outputs(&out, &[&arguments.data])?;
@@ -47,6 +47,6 @@ fn table(arguments: &RestoringForce) -> Result<Table> {
     let table = Table::read(data, &reading.reading());
     match help::hint_of_force().filter(|_| !data.exists()) {
         Some(hint) => table.map_err(|error| anyhow!("{error:#} ({hint})")),
-        None => table,
+        None => Ok(table?),
     }
 }

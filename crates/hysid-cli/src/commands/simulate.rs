@@ -41,7 +41,7 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     }
     let delimiter = rows.head.delimiter().in_a_copy(rows.head.numbers().decimal);
     let all = rows.head.header.iter().chain(&names).map(String::as_str);
-    let header = header_line(delimiter, all)?;
+    let header = header_line(delimiter, all);
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     let kind = Kind::Beginning(header.clone());
     let out = out.map(|out| Destination::new(out, kind, arguments.overwriting.force));

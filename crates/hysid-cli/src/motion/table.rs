@@ -60,7 +60,7 @@ impl Written {
     }
 
     /// The line of the header.
-    pub fn header(&self) -> Result<Vec<u8>> {
+    pub fn header(&self) -> Vec<u8> {
         header_line(self.delimiter, self.all().map(String::as_str))
     }
 

@@ -6,8 +6,8 @@ use hysid::data::unit;
 use hysid::error::MotionColumn;
 use hysid::restoring_force::{Filter, RestoringForce};
 use hysid::significant::Significant;
-use hysid_document::count;
 use hysid_document::visible::{clipped, listed};
+use hysid_document::{Face, count};
 use hysid_tables::Table;
 use serde::Serialize;
 
@@ -50,7 +50,8 @@ pub fn understood(
     lines.push(("r", format!("u - m {inertia}: of a spring, positive where y is positive")));
     lines.push(units(motion));
     if !names.guessed.is_empty() {
-        lines.push(("guessed", names.guessed.join("; ")));
+        let told = names.guessed.iter().map(|words| Face::Terminal.told(words));
+        lines.push(("guessed", told.collect::<Vec<String>>().join("; ")));
     }
     if !names.unused_accelerations.is_empty() {
         let advice = "name it with --acceleration (relative to the base) or --absolute-acceleration (as accelerometers \
