@@ -16,7 +16,6 @@ use hysid_core::words::{Hint, Words};
 
 use self::guess::Guess;
 use self::values::{TimeCheck, ValueStatistics, numbers};
-use crate::data::time_or_no_rate;
 use hysid_core::data::unit::{self, Conversion};
 use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
@@ -383,6 +382,12 @@ fn with_full_names(options: &ColumnChoice, table: &Head) -> ColumnChoice {
             other => other.clone(),
         },
     }
+}
+
+/// Advice on a rate that has no time stamps to be computed from.
+pub fn time_or_no_rate() -> Words {
+    let none = Hint::Value("rate", "none".into());
+    Words::from("name it with ") + Hint::Option("time") + ", or use " + none
 }
 
 /// Refuses a table without a column that an option names.

@@ -16,7 +16,7 @@ use hysid_tables::{
 };
 
 use crate::columns::values::{changes, numbers};
-use crate::columns::{ColumnChoice, Roles};
+use crate::columns::{ColumnChoice, Roles, time_or_no_rate};
 use crate::record_names::RecordNames;
 use crate::units::UnitFactors;
 use hysid_document::visible::{clipped, listed};
@@ -226,12 +226,6 @@ pub fn data_words(problem: &DataProblem) -> Words {
         // The others say what helps.
         _ => words.helpful(),
     }
-}
-
-/// Advice on a rate that has no time stamps to be computed from.
-pub fn time_or_no_rate() -> Words {
-    let none = Hint::Value("rate", "none".into());
-    Words::from("name it with ") + Hint::Option("time") + ", or use " + none
 }
 
 /// True for problems of the data set as a whole, which the library reports with its first record.

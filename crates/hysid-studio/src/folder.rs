@@ -215,7 +215,7 @@ pub fn cannot_read(path: &Path, error: &std::io::Error) -> Problem {
 fn check_folder(folder: &Path) -> Result<()> {
     match fs::symlink_metadata(folder) {
         Ok(found) if found.is_dir() => Ok(()),
-        Ok(_) => return Err(problem!("{}: is no folder, and a project holds no links", folder.display())),
+        Ok(_) => Err(problem!("{}: is no folder, and a project holds no links", folder.display())),
         Err(error) => Err(cannot_read(folder, &error)),
     }
 }
