@@ -14,8 +14,8 @@ use hysid::fit::identify;
 use hysid::fit::progress::Progress;
 use hysid::model::Model;
 use hysid::options::FitSpec;
-use hysid::significant::Significant;
-use hysid::termination::Termination;
+use hysid_core::significant::Significant;
+use hysid_core::termination::Termination;
 use hysid_document::{Problem, Result, visible};
 
 use crate::models::parts;

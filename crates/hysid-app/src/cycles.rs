@@ -152,7 +152,7 @@ fn understood(file: &str, model: &Model, driven: &ModelCycles) -> Vec<(String, S
     let input = &model.names().inputs[0];
     let value = |value: f64, name: &str| {
         let unit = hysid::data::unit::suffix(hysid::data::unit::of_column(name).as_deref());
-        format!("{:.4}{unit}", hysid::significant::Significant(value))
+        format!("{:.4}{unit}", hysid_core::significant::Significant(value))
     };
     let mut lines = vec![
         ("file".to_string(), file.to_string()),
@@ -161,7 +161,7 @@ fn understood(file: &str, model: &Model, driven: &ModelCycles) -> Vec<(String, S
             "driven".to_string(),
             format!(
                 "{input} from {:.4} to {}, the trained range",
-                hysid::significant::Significant(low),
+                hysid_core::significant::Significant(low),
                 value(high, input)
             ),
         ),
@@ -170,7 +170,7 @@ fn understood(file: &str, model: &Model, driven: &ModelCycles) -> Vec<(String, S
     if !speeds.is_empty() {
         let unit = hysid::data::unit::of_column(&Quantities::of(model.names()).as_speed("speed"));
         let unit = hysid::data::unit::suffix(unit.as_deref());
-        let number = |speed: f64| format!("{:.3}", hysid::significant::Significant(speed));
+        let number = |speed: f64| format!("{:.3}", hysid_core::significant::Significant(speed));
         let others: Vec<String> = speeds.iter().map(|&speed| number(speed)).collect();
         let slow = number(driven.probing.vanishing_speed);
         lines.push((

@@ -1,7 +1,7 @@
 //! Errors as a small table, in the user's units.
 
 use hysid::data::metrics::Errors;
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::plain::aligned;
 
 use hysid::data::unit;

@@ -73,7 +73,7 @@ fn look_at(problem: &Problem, typed: impl IntoIterator<Item = String>) -> Option
 
 #[cfg(test)]
 mod tests {
-    use hysid::words::Words;
+    use hysid_core::words::Words;
 
     use super::*;
 

@@ -54,7 +54,7 @@ pub fn run() -> ExitCode {
     quieten_readers();
     interrupt::survive_limits_of_files();
     if let Some(set) = std::env::var_os("HYSID_INSTRUCTIONS")
-        && !set.to_str().is_some_and(hysid::simd::narrow_to)
+        && !set.to_str().is_some_and(hysid_core::simd::narrow_to)
     {
         insist(format_args!(
             "error: HYSID_INSTRUCTIONS={}: this machine has no such instruction set (AVX2 or baseline)",

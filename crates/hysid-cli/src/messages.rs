@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Result;
-use hysid::words::Words;
+use hysid_core::words::Words;
 use hysid_document::{Face, Problem};
 pub use hysid_records::summarised;
 use hysid_records::understanding::labelled;

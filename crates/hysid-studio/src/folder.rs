@@ -7,7 +7,7 @@ use std::fs::{self, DirBuilder};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use hysid::words::{Hint, Words};
+use hysid_core::words::{Hint, Words};
 use hysid_document::visible::is_hidden;
 use hysid_document::{Problem, Result, problem};
 use hysid_files::{Destination, Failure, Kind, Lock};

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use hysid::words::{Hint, Words};
+use hysid_core::words::{Hint, Words};
 use hysid_document::{Problem, Result, problem};
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use hysid::model::Model;
 use hysid::options::table::{OPTIONS, OptionValues};
-use hysid::termination::Termination;
+use hysid_core::termination::Termination;
 use hysid_document::shell::{flag, option, shown};
 use hysid_document::{Problem, Result, problem};
 use hysid_export::{Options, Target};

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use hysid::words::{Phrase, Words};
+use hysid_core::words::{Phrase, Words};
 use hysid_document::shell::flag;
 use hysid_document::{Face, Problem};
 use serde::{Serialize, Serializer};

@@ -1,7 +1,7 @@
 //! The page of a comparison: table, error against size, loops of every model.
 
 use hysid::data::record::Dataset;
-use hysid::elementary::ln;
+use hysid_core::elementary::ln;
 use hysid_document::chart::thin::thin;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Result, Table, unit};
 

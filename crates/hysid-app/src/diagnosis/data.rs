@@ -1,7 +1,7 @@
 //! Diagnosis of measured data.
 
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::{Face, Page, Part, Result, count, object};
 use hysid_records::Data;
 

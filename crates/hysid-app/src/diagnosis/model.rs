@@ -6,7 +6,7 @@ use hysid::data::unit;
 use hysid::diagnosis::Finding;
 use hysid::diagnosis::model::{ModelDiagnosis, TimeScale, WidthAtSpeed};
 use hysid::model::Model;
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::plain::columns;
 use hysid_document::unit::label as unit_label;
 use hysid_document::{Cell, Page, Part, Problem, Result, Table, object};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hysid::Reference;
+use hysid::model::Reference;
 use hysid_records::{CellNeed, Roles, UnitFactors, column_of, places_of};
 
 use hysid_tables::{CellReader, DecimalSign, Result, Table};

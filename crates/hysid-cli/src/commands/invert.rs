@@ -6,7 +6,7 @@ use anyhow::{Result, ensure};
 use hysid::Model;
 use hysid::data::metrics::Errors;
 use hysid::data::unit;
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::{count, object};
 use hysid_files::{Destination, Kind};
 use hysid_records::Roles;

@@ -4,7 +4,7 @@
 use hysid::data::unit;
 use hysid::data::usual_role::{Domain, UsualRole};
 use hysid::error::MotionColumn;
-use hysid::words::{Hint, Words};
+use hysid_core::words::{Hint, Words};
 use hysid_document::visible::{clipped, listed};
 use hysid_records::{CellNeed, Roles, require};
 use hysid_tables::{Problem, Result, Table, is_record};

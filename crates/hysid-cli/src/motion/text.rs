@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use hysid::data::unit;
 use hysid::error::MotionColumn;
 use hysid::restoring_force::{Filter, RestoringForce};
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::visible::{clipped, listed};
 use hysid_document::{Face, count};
 use hysid_tables::Table;

@@ -13,7 +13,7 @@ use axum::response::Response;
 use futures_util::StreamExt;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Record;
-use hysid::words::{Hint, Words};
+use hysid_core::words::{Hint, Words};
 use hysid_document::Problem;
 use hysid_records::{Data, ReadingChoice};
 use serde::Deserialize;
