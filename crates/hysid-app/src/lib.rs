@@ -1,6 +1,6 @@
 //! The use cases of Hysid, one for all faces: program, studio and Python collect requests and show outcomes.
 //!
-//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`plan`], [`inversion`], the [`diagnosis`] of
+//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`plan`], [`inversion`], [`restoring_force`], the [`diagnosis`] of
 //! data and of models, and how a page was made ([`origin`]).
 
 // Only the crates of Hysid use this one: what a name says needs no comment.
@@ -34,6 +34,8 @@ pub mod provenance;
 pub mod quantities;
 pub mod residual_words;
 mod residuals;
+#[cfg(feature = "tables")]
+pub mod restoring_force;
 mod timing;
 pub mod tracks;
 mod usage;

@@ -15,7 +15,6 @@ mod identification;
 mod inspection;
 mod interrupt;
 mod messages;
-mod motion;
 mod plotting;
 mod progress;
 mod reproduction;

@@ -10,7 +10,6 @@ use hysid_records::{CellNeed, Roles, require};
 use hysid_tables::{Problem, Result, Table, is_record};
 
 use super::acceleration::of_acceleration;
-use crate::arguments::MotionOptions;
 
 /// All columns of a motion, in the order in which records keep them.
 pub const COLUMNS: [MotionColumn; 6] = [
@@ -47,6 +46,20 @@ const ACCELERATION: [&str; 6] = ["acc", "beschl", "accél", "aceler", "уско�
 /// The value of `--applied-force` for none.
 const NONE: &str = "none";
 
+/// Columns that the user named, by the options of their names; all others are found.
+#[derive(Debug, Clone, Default)]
+pub struct MotionChoice {
+    pub record: Option<String>,
+    pub time: Option<String>,
+    pub displacement: Option<String>,
+    pub velocity: Option<String>,
+    pub acceleration: Option<String>,
+    pub absolute_acceleration: Option<String>,
+    pub base_acceleration: Option<String>,
+    pub applied_force: Option<String>,
+    pub keep: Vec<String>,
+}
+
 #[derive(Debug, Clone)]
 pub struct MotionColumns {
     /// Column with the name of each row's record.
@@ -71,7 +84,7 @@ pub struct MotionColumns {
 
 impl MotionColumns {
     /// The columns that options name, and those that are found.
-    pub fn find(table: &Table, options: &MotionOptions) -> Result<Self> {
+    pub fn find(table: &Table, options: &MotionChoice) -> Result<Self> {
         table.require_columns()?;
         let named = NamedColumns::of(table, options)?;
         let mut guessed = Vec::new();
@@ -157,7 +170,7 @@ impl MotionColumns {
 struct NamedColumns(Vec<(&'static str, String)>);
 
 impl NamedColumns {
-    fn of(table: &Table, options: &MotionOptions) -> Result<Self> {
+    fn of(table: &Table, options: &MotionChoice) -> Result<Self> {
         let applied_force = options.applied_force.as_ref().filter(|name| *name != NONE);
         let all = [
             ("record", options.record.as_ref()),
