@@ -1,6 +1,6 @@
 //! The use cases of Hysid, one for all faces: program, studio and Python collect requests and show outcomes.
 //!
-//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`plan`], [`inversion`], [`restoring_force`], the [`diagnosis`] of
+//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`evaluation`], [`plan`], [`inversion`], [`restoring_force`], the [`diagnosis`] of
 //! data and of models, and how a page was made ([`origin`]).
 
 // Only the crates of Hysid use this one: what a name says needs no comment.
@@ -19,8 +19,13 @@ pub mod date;
 pub mod diagnosis;
 mod ensemble;
 mod errors;
+pub mod errors_table;
+#[cfg(feature = "tables")]
+pub mod evaluation;
 mod figures;
 mod frequency_response;
+#[cfg(feature = "tables")]
+pub mod gathered;
 pub mod histories;
 mod identified;
 #[cfg(feature = "tables")]
@@ -32,10 +37,14 @@ pub mod parameters;
 pub mod plan;
 pub mod provenance;
 pub mod quantities;
+#[cfg(feature = "tables")]
+mod residual_tests;
 pub mod residual_words;
 mod residuals;
 #[cfg(feature = "tables")]
 pub mod restoring_force;
+#[cfg(feature = "tables")]
+pub mod table_run;
 mod timing;
 pub mod tracks;
 mod usage;

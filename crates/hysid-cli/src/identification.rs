@@ -10,7 +10,7 @@ use hysid::fit::network::resume;
 use hysid::fit::progress::{Checkpoint, Progress};
 use hysid::model::Provenance;
 use hysid::options::FitSpec;
-use hysid_app::{Beforehand, Identified, check_memory};
+use hysid_app::{Beforehand, Identified, check_memory, errors_table};
 use hysid_document::Face;
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_files::Destination;
@@ -22,7 +22,7 @@ use crate::files::write_page;
 use crate::inspection::stored_errors;
 use crate::messages::{insist, note_labelled, warning};
 use crate::progress::Follower;
-use crate::{errors_table, files, interrupt};
+use crate::{files, interrupt};
 
 /// Fit to run: request, start, and where to store its state.
 pub struct FitTask<'a> {

@@ -13,7 +13,7 @@ use hysid_document::plain::rendered;
 use hysid_document::{Cell, Part, Table, count, object};
 use serde::{Deserialize, Serialize};
 
-use crate::errors_table::{AFTER_WARM_UP, errors_table};
+use hysid_app::errors_table::{AFTER_WARM_UP, errors_table};
 
 /// A model and its file.
 pub struct Inspected<'m> {

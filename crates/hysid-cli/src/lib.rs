@@ -7,9 +7,7 @@ mod arguments;
 mod checkpoint;
 mod commands;
 mod data;
-mod errors_table;
 mod files;
-mod gathered;
 mod help;
 mod identification;
 mod inspection;
@@ -18,8 +16,6 @@ mod messages;
 mod plotting;
 mod progress;
 mod reproduction;
-mod residual_tests;
-mod table_run;
 mod terminal;
 
 use std::process::ExitCode;

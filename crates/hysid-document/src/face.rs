@@ -30,7 +30,7 @@ impl Face {
 
     /// A hint as a part of a sentence.
     pub fn hint(self, hint: &Hint) -> String {
-        let is_number = |word: &str| word.parse::<f64>().is_ok();
+        let is_number = |word: &str| word.parse().is_ok_and(f64::is_finite);
         let (name, value) = match hint {
             Hint::Option(name) => (*name, None),
             Hint::Value(name, value) => (*name, Some(value)),

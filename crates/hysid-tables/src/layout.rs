@@ -96,11 +96,11 @@ impl Layout {
         };
         layout.name_units();
         if let Some(name) = layout.names.iter().find(|name| name.len() > LONGEST_NAME) {
-            let (line, letters) = (layout.line, name.chars().count());
-            let words = format!(
-                "the name of a column above line {line} has {letters} characters, and {LONGEST_NAME} are allowed"
-            );
-            return Err(Problem::in_file(file, words));
+            let line = layout.header_lines.last().unwrap_or(&layout.line);
+            let letters = name.chars().count();
+            let words =
+                format!("the name of a column has {letters} characters, and {LONGEST_NAME} are allowed");
+            return Err(Problem::at(file, *line, Words::from(words).helpful()));
         }
         Ok(layout)
     }
@@ -229,7 +229,7 @@ mod tests {
         assert_eq!(names(&text(LONGEST_NAME))[0].len(), LONGEST_NAME);
         let error =
             Layout::find("f", &text(LONGEST_NAME + 1), true, &Reading::default()).unwrap_err().to_string();
-        assert!(error.starts_with("f: the name of a column above line 2 has 10001 characters"), "{error}");
+        assert!(error.starts_with("f, line 1: the name of a column has 10001 characters"), "{error}");
     }
 
     #[test]

@@ -18,10 +18,10 @@ use crate::Outcome;
 use crate::arguments::Invert;
 use crate::commands::{check_band, read_model};
 use crate::data::factors;
-use crate::errors_table::errors_table;
 use crate::files::{self, check_outputs};
 use crate::messages::{note_labelled, raw_results, told, warning};
 use crate::terminal::clipped;
+use hysid_app::errors_table::errors_table;
 use hysid_app::inversion::{self, InputBounds, Inverted, Preview, ReferenceOutputs};
 
 pub fn run(arguments: &Invert) -> Result<Outcome> {

@@ -6,7 +6,7 @@ use hysid_document::plain::aligned;
 
 use hysid::data::unit;
 
-use crate::terminal::clipped;
+use hysid_document::visible::clipped;
 
 /// Heading of errors without the rows of a warm-up.
 pub const AFTER_WARM_UP: &str = "after warm-up";
