@@ -1,9 +1,9 @@
 //! A Bouc-Wen damper with known parameters, and the same parameters found again from its data.
 
-use hysid::elementary::sin;
 use hysid::law::bouc_wen::BoucWen;
 use hysid::law::series::{run, samples_of};
 use hysid::{Dataset, Fit, Result};
+use hysid_core::elementary::sin;
 
 /// What the example prints.
 pub fn report() -> Result<String> {

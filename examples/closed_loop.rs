@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use hysid::elementary::{exp, sin};
 use hysid::specimens::{Specimen, terfenol_actuator};
 use hysid::{Fit, Model, Result};
+use hysid_core::elementary::{exp, sin};
 
 const ROWS: u32 = 1000;
 /// Sampling interval in s.

@@ -1,8 +1,8 @@
 //! A model sample by sample, as in the loop of a controller: the same outputs, to the last bit, as a free run.
 
-use hysid::elementary::sin;
 use hysid::operator::{Operator, Stop};
 use hysid::{Dataset, Fit, Result};
+use hysid_core::elementary::sin;
 
 /// What the example prints.
 pub fn report() -> Result<String> {

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use hysid::data::rate::RateMethod;
 use hysid::fit::network::{fit, resume};
 use hysid::fit::progress::Checkpoint;
-use hysid::network::{Family, Sizes};
 use hysid::options::network::{FitOptions, Trainer};
+use hysid_core::network::{Family, Sizes};
 
 use crate::{assert_is_one_line, fixtures};
 

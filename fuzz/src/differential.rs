@@ -7,8 +7,8 @@ use hysid::data::record::Record;
 use hysid::fit::network::{fit, resume};
 use hysid::fit::progress::Checkpoint;
 use hysid::model::Model;
-use hysid::network::{Architecture, Family, Network, NetworkDrive, ParameterLayout, Sizes};
 use hysid::options::network::{FitOptions, Trainer};
+use hysid_core::network::{Architecture, Family, Network, NetworkDrive, ParameterLayout, Sizes};
 
 use crate::bytes::Bytes;
 use crate::{fixtures, scalar};

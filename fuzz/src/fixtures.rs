@@ -5,11 +5,11 @@ use std::sync::OnceLock;
 
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::elementary::sin;
 use hysid::fit::identify;
 use hysid::model::Model;
 use hysid::options::ModelName;
 use hysid::options::chosen::NamedOptions;
+use hysid_core::elementary::sin;
 use serde_json::json;
 
 /// A lagging output under two hundred rows of a growing oscillation.

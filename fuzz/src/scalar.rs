@@ -1,8 +1,8 @@
 //! The networks as theory.md has them, (2.2) to (2.6): one sample and one neuron at a time, from the operators alone.
 
-use hysid::elementary::{exp, tanh};
-use hysid::network::{Network, NetworkDrive, ParameterLayout};
 use hysid::operator::{DeterioratingStop, Operator, Relaxation};
+use hysid_core::elementary::{exp, tanh};
+use hysid_core::network::{Network, NetworkDrive, ParameterLayout};
 
 /// The scaled outputs of a network, from the virgin state.
 pub fn outputs(network: &Network, drive: &NetworkDrive) -> Vec<f64> {

@@ -16,12 +16,12 @@ use hysid::fit::network::fit;
 use hysid::fit::network::objective::Objective;
 use hysid::fit::progress::Fitted;
 use hysid::model::Model;
-use hysid::network::scaling::Scaling;
-use hysid::network::{Family, Network, Sizes};
 use hysid::operator::{Operator, Stop};
 use hysid::options::network::{FitOptions, Method, Trainer};
-use hysid::significant::Significant;
 use hysid_core::elementary::{powi, sin};
+use hysid_core::network::scaling::Scaling;
+use hysid_core::network::{Family, Network, Sizes};
+use hysid_core::significant::Significant;
 use hysid_document::plain::indented;
 
 use spread::Spread;
@@ -78,9 +78,9 @@ pub struct Request {
 /// Runs the command.
 pub fn run(request: &Request) -> Result<()> {
     if let Some(set) = &request.instructions {
-        ensure!(hysid::simd::narrow_to(set), "no instruction set {set} on this machine");
+        ensure!(hysid_core::simd::narrow_to(set), "no instruction set {set} on this machine");
     }
-    let instructions = hysid::simd::instruction_set();
+    let instructions = hysid_core::simd::instruction_set();
     if !request.json {
         eprintln!("measuring, a minute or two (instruction set: {instructions})\n");
     }

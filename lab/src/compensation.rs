@@ -8,12 +8,13 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use anyhow::Result;
+use hysid::Model;
 use hysid::data::record::{Dataset, Record};
 use hysid::fit::{cross_validate, identify};
+use hysid::model::Reference;
 use hysid::options::chosen::RateChoice;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::options::{FitSpec, ModelName};
-use hysid::{Model, Reference};
 use hysid_core::elementary::square;
 
 use crate::cases::{aligned, row};
@@ -200,7 +201,7 @@ fn inverted(model: &Model, reference: &Reference<'_>) -> Result<Drive> {
     let inverse = model.inverse();
     let preview = inverse.best_preview(reference)?;
     let found = inverse.preview(preview)?.run(reference)?;
-    let reached = found.count(hysid::Reach::Reached) as f64 / found.input.len() as f64;
+    let reached = found.count(hysid::model::Reach::Reached) as f64 / found.input.len() as f64;
     let of_model = Some((rms(&found.output[ROWS..], &reference.wanted[ROWS..]), reached));
     Ok(Drive { input: found.input, of_model, preview })
 }

@@ -18,12 +18,12 @@ use hysid::fit::network::fit;
 use hysid::fit::network::objective::Objective;
 use hysid::model::input_transform::InputTransform;
 use hysid::model::{Ensemble, Group, Model, Node, NodeKind, Predictor, ProvenanceDraft, Weights};
-use hysid::network::scaling::Scaling;
 use hysid::options::FitSpec;
 use hysid::options::fit_spec::AutoOptions;
 use hysid::options::network::FitOptions;
-use hysid::termination::Termination;
 use hysid_core::elementary::{ln, square};
+use hysid_core::network::scaling::Scaling;
+use hysid_core::termination::Termination;
 use hysid_document::chart::{self, Appearance, Axis, Chart, Colour, Curve};
 use hysid_document::{Cell, Page, Part, Table, markdown};
 

@@ -226,7 +226,7 @@ fn the_deviations_of_the_stage_are_those_of_its_page() {
 }
 
 /// Records as a table with a column `record`.
-fn table(names: &hysid::ColumnNames, records: Vec<Record>, seed: u64, noise: f64) -> String {
+fn table(names: &hysid::data::record::ColumnNames, records: Vec<Record>, seed: u64, noise: f64) -> String {
     let data = with_noise(&Dataset::new(names.clone(), records).unwrap(), noise, seed).unwrap();
     let mut text =
         format!("record,{},{},{}\n", names.time.as_deref().unwrap(), names.inputs[0], names.output);

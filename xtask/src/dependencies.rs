@@ -27,11 +27,12 @@ const SOURCE: &str = "registry+https://github.com/rust-lang/crates.io-index";
 /// Crates, and what they must not need: what runs a model has neither threads nor random numbers nor checkpoints, what
 /// renders a document or reads columns identifies nothing, the studio is no program, and experiments have no files and no
 /// terminal.
-const NOT_NEEDED: [(&str, &[&str]); 5] = [
+const NOT_NEEDED: [(&str, &[&str]); 6] = [
     ("hysid-core", &["rayon", "rand", "rand_xoshiro", "rmp-serde", "rmp"]),
     ("hysid-document", &["hysid", "hysid-files", "rayon", "rand", "clap"]),
     ("hysid-records", &["hysid", "hysid-cli", "rayon", "rand", "clap"]),
     ("hysid-studio", &["hysid-cli", "clap", "indicatif", "resvg"]),
+    ("hysid-app", &["hysid-cli", "clap", "anyhow"]),
     ("hysid-paper", &["hysid-cli", "hysid-files", "clap", "indicatif", "anyhow"]),
 ];
 

@@ -2,7 +2,7 @@
 
 use hysid::data::record::Dataset;
 use hysid::model::{BAND_OF_TEN, BandLevel, Prediction};
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 
 /// Share of the measured outputs that lie within a band.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

@@ -1,9 +1,9 @@
 //! Checks of training tables before the fit.
 
-use anyhow::Result;
 use hysid::data::summary::Summary;
-use hysid::diagnosis::{DataIssueKind, before_a_fit};
+use hysid::diagnosis::before_a_fit;
 use hysid::options::FitSpec;
+use hysid_document::{Face, Problem};
 use hysid_records::{Data, summarised, understanding};
 
 use crate::Beforehand;
@@ -12,7 +12,7 @@ use crate::models::parts;
 impl Beforehand {
     /// # Errors
     /// Data that the model cannot be fitted to.
-    pub fn of(data: &Data, request: &FitSpec) -> Result<Self> {
+    pub fn of(data: &Data, request: &FitSpec, face: Face) -> Result<Self, Problem> {
         let model = match request {
             FitSpec::Network(options) => {
                 let architecture = options.architecture(&data.set).map_err(|error| data.explain(error))?;
@@ -23,23 +23,17 @@ impl Beforehand {
         };
         request.model().check_data(&data.set, request.rate()).map_err(|error| data.explain(error))?;
         let summary = Summary::of(&data.set);
-        let understood = understanding::understanding(data, &summary, request, &model);
-        let mut warnings = data_warnings(data, &summary);
-        warnings.extend(request.cautions(&data.set));
+        let understood = understanding::understanding(data, &summary, request, &model, face);
+        let mut warnings = data_warnings(data, &summary, face);
+        warnings.extend(request.cautions(&data.set).iter().map(|caution| face.told(caution)));
         Ok(Self { understood, warnings })
     }
 }
 
 /// Warnings on training data.
-pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
+pub fn data_warnings(data: &Data, summary: &Summary, face: Face) -> Vec<String> {
     // Data that cannot be looked at cannot be fitted to either: the fit says why.
     let doubtful = before_a_fit(&data.set).unwrap_or_default();
-    let output = format!("\"{}\" ", data.roles.output);
-    let statements = doubtful.into_iter().map(|issue| match (issue.kind, issue.value) {
-        (DataIssueKind::MissingValueMark, Some(value)) if issue.statement.starts_with(&output) => {
-            format!("{} (--missing {value})", issue.statement)
-        }
-        _ => issue.statement,
-    });
+    let statements = doubtful.iter().map(|issue| face.told(&issue.words()));
     summarised(&summary.warnings(&data.set)).into_iter().chain(statements).collect()
 }

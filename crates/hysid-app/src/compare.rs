@@ -7,7 +7,6 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result};
 use hysid::Error;
 use hysid::data::metrics::Errors;
 use hysid::data::record::Dataset;
@@ -15,9 +14,9 @@ use hysid::fit::identify;
 use hysid::fit::progress::Progress;
 use hysid::model::Model;
 use hysid::options::FitSpec;
-use hysid::significant::Significant;
-use hysid::termination::Termination;
-use hysid_document::visible;
+use hysid_core::significant::Significant;
+use hysid_core::termination::Termination;
+use hysid_document::{Problem, Result, visible};
 
 use crate::models::parts;
 use crate::{check_memory, ns_per_sample};
@@ -153,7 +152,8 @@ pub fn compare(request: &CompareRequest<'_>, observer: &dyn CompareObserver) -> 
     let ended: Mutex<Vec<CompareRow>> = Mutex::new(Vec::new());
     std::thread::scope(|scope| -> Result<()> {
         let work = || -> Result<()> {
-            let pool = hysid::thread_pool(Some(threads)).context("cannot start a thread")?;
+            let pool = hysid::thread_pool(Some(threads));
+            let pool = pool.map_err(|error| Problem::from(format!("cannot start a thread: {error}")))?;
             loop {
                 let next = queue.lock().expect("no thread panics with the lock").pop_front();
                 let Some((place, spec)) = next else { return Ok(()) };

@@ -13,14 +13,13 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, anyhow};
 use hysid::Model;
 use hysid::data::record::Dataset;
 use hysid::diagnosis::cycles::{Correction, CycleOptions, CycleTable, FIGURES, Figure, corrected};
 use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
 use hysid_document::visible::clipped;
-use hysid_document::{count, object};
+use hysid_document::{Problem, Result, count, object};
 
 use crate::quantities::Quantities;
 
@@ -83,8 +82,8 @@ impl<'a> Cycles<'a> {
         smoothing_factor: Option<usize>,
     ) -> Result<Cycles<'static>> {
         let file = path.display().to_string();
-        let driven =
-            ModelCycles::of(model, options, smoothing_factor).map_err(|error| anyhow!("{file}: {error}"))?;
+        let driven = ModelCycles::of(model, options, smoothing_factor)
+            .map_err(|error| Problem::in_file(&file, error.to_string()))?;
         let understood = understood(&file, model, &driven);
         Ok(Cycles {
             file,
@@ -153,7 +152,7 @@ fn understood(file: &str, model: &Model, driven: &ModelCycles) -> Vec<(String, S
     let input = &model.names().inputs[0];
     let value = |value: f64, name: &str| {
         let unit = hysid::data::unit::suffix(hysid::data::unit::of_column(name).as_deref());
-        format!("{:.4}{unit}", hysid::significant::Significant(value))
+        format!("{:.4}{unit}", hysid_core::significant::Significant(value))
     };
     let mut lines = vec![
         ("file".to_string(), file.to_string()),
@@ -162,7 +161,7 @@ fn understood(file: &str, model: &Model, driven: &ModelCycles) -> Vec<(String, S
             "driven".to_string(),
             format!(
                 "{input} from {:.4} to {}, the trained range",
-                hysid::significant::Significant(low),
+                hysid_core::significant::Significant(low),
                 value(high, input)
             ),
         ),
@@ -171,7 +170,7 @@ fn understood(file: &str, model: &Model, driven: &ModelCycles) -> Vec<(String, S
     if !speeds.is_empty() {
         let unit = hysid::data::unit::of_column(&Quantities::of(model.names()).as_speed("speed"));
         let unit = hysid::data::unit::suffix(unit.as_deref());
-        let number = |speed: f64| format!("{:.3}", hysid::significant::Significant(speed));
+        let number = |speed: f64| format!("{:.3}", hysid_core::significant::Significant(speed));
         let others: Vec<String> = speeds.iter().map(|&speed| number(speed)).collect();
         let slow = number(driven.probing.vanishing_speed);
         lines.push((

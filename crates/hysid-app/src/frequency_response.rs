@@ -5,7 +5,7 @@ use hysid::diagnosis::frequency_response::{
     AtAmplitude, FrequencyResponse, ModelResponses, ResponsePoint, Segments, Window,
 };
 use hysid::diagnosis::resonance::{ComparedSignal, LinearOscillator};
-use hysid::elementary::{log10, powf};
+use hysid_core::elementary::{log10, powf};
 use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number, unit};

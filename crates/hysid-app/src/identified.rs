@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
-use anyhow::Result;
 use hysid::data::record::Dataset;
 use hysid::diagnosis::frequency_response::ModelResponses;
 use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
 use hysid::fit::progress::HeldOutRows;
 use hysid::model::Model;
-use hysid_document::Page;
+use hysid_document::{Page, Result};
 use hysid_files::GENERATOR;
 
 use crate::{Report, ReportSet, loops, page};

@@ -5,10 +5,10 @@ mod reference;
 
 use std::collections::BTreeMap;
 
-use anyhow::{Result, anyhow};
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::error::InverseError;
 use hysid::model::{BandLevel, Inverse, Inversion, Model, Reach};
+use hysid_document::{Problem, Result};
 
 pub use page::page;
 pub use reference::{ReferenceOutputs, WantedRecord};
@@ -73,7 +73,9 @@ impl Inverted {
             records.push(inversion);
             previews.push(preview);
         }
-        let errors = sums.errors(&model.names().output).ok_or_else(|| anyhow!("there are no rows"))?;
+        let errors = sums
+            .errors(&model.names().output)
+            .ok_or_else(|| Problem::from("there are no rows".to_string()))?;
         Ok(Self { records, previews, errors })
     }
 
@@ -137,11 +139,11 @@ fn inverse<'m>(model: &'m Model, bounds: &InputBounds) -> Result<Inverse<'m>> {
 }
 
 /// An error of a row with its line.
-fn explained(error: hysid::Error, wanted: &ReferenceOutputs, record: &WantedRecord) -> anyhow::Error {
+fn explained(error: hysid::Error, wanted: &ReferenceOutputs, record: &WantedRecord) -> Problem {
     match error {
         hysid::Error::Inverse(InverseError::Row { row, problem }) => {
-            anyhow!("{}, line {}: {problem}", wanted.file, wanted.lines[record.rows.start + row])
+            Problem::at(&wanted.file, wanted.lines[record.rows.start + row], problem.to_string())
         }
-        other => anyhow!("{}: {other}", wanted.file),
+        other => Problem::in_file(&wanted.file, other.to_string()),
     }
 }

@@ -1,6 +1,6 @@
 //! The use cases of Hysid, one for all faces: program, studio and Python collect requests and show outcomes.
 //!
-//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`plan`], [`inversion`], the [`diagnosis`] of
+//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`evaluation`], [`plan`], [`inversion`], [`restoring_force`], the [`diagnosis`] of
 //! data and of models, and how a page was made ([`origin`]).
 
 // Only the crates of Hysid use this one: what a name says needs no comment.
@@ -19,8 +19,13 @@ pub mod date;
 pub mod diagnosis;
 mod ensemble;
 mod errors;
+pub mod errors_table;
+#[cfg(feature = "tables")]
+pub mod evaluation;
 mod figures;
 mod frequency_response;
+#[cfg(feature = "tables")]
+pub mod gathered;
 pub mod histories;
 mod identified;
 #[cfg(feature = "tables")]
@@ -32,13 +37,18 @@ pub mod parameters;
 pub mod plan;
 pub mod provenance;
 pub mod quantities;
+#[cfg(feature = "tables")]
+mod residual_tests;
 pub mod residual_words;
 mod residuals;
+#[cfg(feature = "tables")]
+pub mod restoring_force;
+#[cfg(feature = "tables")]
+pub mod table_run;
 mod timing;
 pub mod tracks;
 mod usage;
 
-use anyhow::{Context, Result};
 use hysid::data::initial_state::in_words;
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
@@ -46,7 +56,7 @@ use hysid::diagnosis::frequency_response::{ModelResponses, NoResponse};
 use hysid::diagnosis::residuals::Residuals;
 use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::{Model, Prediction};
-use hysid_document::{Page, html, number, unit};
+use hysid_document::{Page, Problem, Result, html, number, unit};
 use hysid_files::{PAGE_MARK, with_page_sum};
 
 pub use band_coverage::BandCoverage;
@@ -110,7 +120,8 @@ impl<'a> ReportSet<'a> {
         };
         let mut sums = ErrorSums::default();
         data.records().iter().zip(&simulated).for_each(|(record, output)| sums.add(record.output(), output));
-        let errors = sums.errors(&data.names().output).context("there is nothing to score")?;
+        let errors = sums.errors(&data.names().output);
+        let errors = errors.ok_or_else(|| Problem::from("there is nothing to score".to_string()))?;
         let tracks = Tracks::of(name, data);
         Ok(Self { name: name.into(), data, simulated, predicted, errors, tracks })
     }

@@ -1,10 +1,10 @@
 //! All models that a fit can use, each with what it is.
 
 use hysid::law::facts::Rate;
-use hysid::network::Architecture;
 use hysid::options::ModelName;
 use hysid::options::network::Trainer;
 use hysid::options::table::OPTIONS;
+use hysid_core::network::Architecture;
 use hysid_document::plain::{aligned, indented};
 use serde::Serialize;
 

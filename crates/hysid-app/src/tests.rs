@@ -3,10 +3,10 @@ use std::ops::ControlFlow;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Record};
 use hysid::diagnosis::resonance::ComparedSignal;
-use hysid::elementary::sin;
 use hysid::fit::network::fit;
-use hysid::network::Sizes;
 use hysid::options::network::FitOptions;
+use hysid_core::elementary::sin;
+use hysid_core::network::Sizes;
 
 use super::*;
 

@@ -68,7 +68,7 @@ fn cycles(data: &Dataset) -> HashMap<String, Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use hysid::data::record::ColumnNames;
-    use hysid::elementary::sin;
+    use hysid_core::elementary::sin;
 
     use super::*;
 

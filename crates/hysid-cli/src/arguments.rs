@@ -3,7 +3,6 @@
 mod cycles;
 mod examples;
 mod limits;
-mod mass;
 mod model_options;
 mod plan;
 mod plot;
@@ -32,13 +31,12 @@ pub use hysid_records::RateOption;
 use crate::reproduction::Experiment;
 pub use cycles::Cycles;
 use examples::*;
-pub use mass::Mass;
 pub use model_options::ModelOptions;
 pub use plan::Plan;
 pub use plot::{Plot, PlotKind};
 pub use program::{Completions, Man, Models};
 pub use reading::ReadingOptions;
-pub use restoring_force::{MotionOptions, RestoringForce};
+pub use restoring_force::RestoringForce;
 pub use studio::Studio;
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.

@@ -25,11 +25,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, ensure};
 use hysid::model::Model;
+use hysid_document::Problem;
 use hysid_tables::{Table, is_json};
 
 use crate::arguments::ReadingOptions;
 use crate::files;
-use crate::messages::Usage;
 
 /// Refuses a model without a band.
 fn check_band(model: &Model, path: &Path) -> Result<()> {
@@ -58,12 +58,13 @@ impl Given {
             }
             Some(place) => {
                 let model = files[place].display();
-                Err(Usage(format!("{model} is a model: {alone} alone, without further files")).into())
+                Err(Problem::request(format!("{model} is a model: {alone} alone, without further files"))
+                    .into())
             }
             None => {
                 let reading = reading.reading();
                 let table = |(path, content): (&PathBuf, Vec<u8>)| Table::from_bytes(path, content, &reading);
-                Ok(Self::Tables(files.iter().zip(contents).map(table).collect::<Result<_>>()?))
+                Ok(Self::Tables(files.iter().zip(contents).map(table).collect::<Result<_, _>>()?))
             }
         }
     }

@@ -8,11 +8,11 @@ use hysid_records::{Data, Roles, UnitFactors};
 use hysid_tables::Table;
 
 use crate::arguments::{ColumnOptions, ReadingOptions};
-use crate::messages::{note, warning};
+use crate::messages::{note, warning_words};
 
 pub fn read_tables(paths: &[PathBuf], options: &ReadingOptions) -> Result<Vec<Table>> {
     let reading = options.reading();
-    paths.iter().map(|path| Table::read(path, &reading)).collect()
+    Ok(paths.iter().map(|path| Table::read(path, &reading)).collect::<Result<_, _>>()?)
 }
 
 /// The data in tables whose roles are found by options and names.
@@ -24,7 +24,7 @@ pub fn data_of(tables: Vec<Table>, options: &ColumnOptions) -> Result<Data> {
 /// The data in tables whose roles are known; `zero` is as in [`Data::new`].
 pub fn data_with(tables: Vec<Table>, roles: Roles, zero: Option<usize>) -> Result<Data> {
     let data = Data::new(tables, roles, zero)?;
-    data.warnings.iter().for_each(warning);
+    data.warnings.iter().for_each(warning_words);
     Ok(data)
 }
 

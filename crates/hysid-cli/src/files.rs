@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{self, Path, PathBuf};
 
 use anyhow::{Error, Result, anyhow};
-use hysid_document::Page;
 use hysid_document::shell::quoted;
 pub use hysid_document::shell::shown;
+use hysid_document::{Page, Problem};
 pub use hysid_files::reason;
 use hysid_files::{Destination, Failure, Kind};
 
@@ -138,7 +138,9 @@ pub const NO_INPUTS: [&Path; 0] = [];
 /// Makes a folder for results, if it is not there.
 pub fn make_folder(folder: &Path) -> Result<()> {
     if folder == Path::new("-") {
-        return Err(Usage("-o -: the files need a folder, which stdout cannot be: name one".into()).into());
+        return Err(
+            Problem::request("-o -: the files need a folder, which stdout cannot be: name one").into()
+        );
     }
     fs::create_dir_all(folder)
         .map_err(|error| anyhow!("{}: cannot be made: {}", folder.display(), reason(&error)))

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use clap::CommandFactory;
+use hysid_document::Problem;
 use hysid_document::shell::option;
 
 use crate::arguments::Arguments;
 use crate::files::shown;
-use crate::messages::Usage;
 
 /// The help of the command that was typed, or of the program if no command is recognised.
 pub fn of_typed_command() -> String {
@@ -50,43 +50,42 @@ fn applied_force(column: &str) -> String {
     format!("--force replaces files; a column with the applied force is named by {option}")
 }
 
-/// Hint after an error that names neither an option nor a command that helps: where the options are described, for a
-/// wrong command line; the command that shows how a table is read, for a wrong line of a table; otherwise
-/// empty.
+/// Hint after an error that does not say what helps: where the options are described, for an invalid request; the command
+/// that shows how a table is read, for a wrong line of a table; otherwise empty.
 pub fn pointer(error: &anyhow::Error) -> String {
-    let text = format!("{error:#}");
-    if text.contains("hysid ") || text.contains("--") {
-        return String::new();
-    }
-    match error.downcast_ref::<Usage>() {
-        Some(_) => format!(" (see `{}`)", of_typed_command()),
-        // In parentheses, the error says itself what helps.
-        None if text.ends_with(')') => String::new(),
-        None => look_at(&text, typed()).map_or_else(String::new, |look| format!(" (see `{look}`)")),
-    }
+    let helps = match error.downcast_ref() {
+        Some(Problem::Request(words)) if !words.helps() => Some(of_typed_command()),
+        Some(problem) => look_at(problem, typed()),
+        None => None,
+    };
+    helps.map_or_else(String::new, |command| format!(" (see `{command}`)"))
 }
 
-/// The command that shows how the table of an error is read: one of those that were typed, with a line that is wrong.
-fn look_at(error: &str, typed: impl IntoIterator<Item = String>) -> Option<String> {
+/// The command that shows how the table of a problem is read: one of those that were typed, with a line that is wrong.
+fn look_at(problem: &Problem, typed: impl IntoIterator<Item = String>) -> Option<String> {
+    let wrong = problem.file_to_look_at()?;
     let mut typed = typed.into_iter().peekable();
-    let is_of = |file: &String| error.starts_with(&format!("{file}, line "));
     match typed.peek().map(String::as_str) {
         Some("look") => None,
-        _ => typed.find(is_of).map(|file| format!("hysid look {}", shown(Path::new(&file)))),
+        _ => typed.find(|file| file == wrong).map(|file| format!("hysid look {}", shown(Path::new(&file)))),
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use hysid_core::words::Words;
+
     use super::*;
 
     #[test]
     fn a_wrong_line_of_a_typed_table_points_to_look() {
-        let look = |error: &str, line: &str| look_at(error, line.split(' ').map(String::from));
-        let wrong = "a.csv, line 3: has 2 cells where the header has 3";
-        assert_eq!(look(wrong, "fit b.csv a.csv"), Some("hysid look a.csv".into()));
-        assert_eq!(look(wrong, "look a.csv"), None);
-        assert_eq!(look(wrong, "fit b.csv"), None);
-        assert_eq!(look("a.csv: there is nothing to score", "fit a.csv"), None);
+        let look = |problem: &Problem, line: &str| look_at(problem, line.split(' ').map(String::from));
+        let wrong = Problem::at("a.csv", 3, "has 2 cells where the header has 3");
+        assert_eq!(look(&wrong, "fit b.csv a.csv"), Some("hysid look a.csv".into()));
+        assert_eq!(look(&wrong, "look a.csv"), None);
+        assert_eq!(look(&wrong, "fit b.csv"), None);
+        let advised = Problem::at("a.csv", 3, Words::from("is no text").advised("save it as UTF-8"));
+        assert_eq!(look(&advised, "fit a.csv"), None);
+        assert_eq!(look(&Problem::in_file("a.csv", "there is nothing to score"), "fit a.csv"), None);
     }
 }

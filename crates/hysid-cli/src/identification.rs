@@ -10,7 +10,8 @@ use hysid::fit::network::resume;
 use hysid::fit::progress::{Checkpoint, Progress};
 use hysid::model::Provenance;
 use hysid::options::FitSpec;
-use hysid_app::{Beforehand, Identified, check_memory};
+use hysid_app::{Beforehand, Identified, check_memory, errors_table};
+use hysid_document::Face;
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_files::Destination;
 use hysid_records::Data;
@@ -21,7 +22,7 @@ use crate::files::write_page;
 use crate::inspection::stored_errors;
 use crate::messages::{insist, note_labelled, warning};
 use crate::progress::Follower;
-use crate::{errors_table, files, interrupt};
+use crate::{files, interrupt};
 
 /// Fit to run: request, start, and where to store its state.
 pub struct FitTask<'a> {
@@ -46,7 +47,7 @@ impl<'a> FitTask<'a> {
 /// Prints the reading of data and request, and warnings. From now on Ctrl-C stops the fit at its next step, and prints
 /// this text.
 pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -> Result<Beforehand> {
-    let beforehand = Beforehand::of(data, request)?;
+    let beforehand = Beforehand::of(data, request, Face::Terminal)?;
     // Looking at long data takes its time, and Ctrl-C ends it at once: there is nothing to lose yet.
     interrupt::listen(to_ctrl_c)?;
     note_labelled(&beforehand.understood);

@@ -7,13 +7,13 @@ use hysid::data::metrics::Errors;
 use hysid::data::unit;
 use hysid::law::Parameter;
 use hysid::model::{Model, ParameterInUnits, Predictor, Provenance, Weights};
-use hysid::significant::Significant;
 use hysid_app::{initial_state, parameters, provenance};
+use hysid_core::significant::Significant;
 use hysid_document::plain::rendered;
 use hysid_document::{Cell, Part, Table, count, object};
 use serde::{Deserialize, Serialize};
 
-use crate::errors_table::{AFTER_WARM_UP, errors_table};
+use hysid_app::errors_table::{AFTER_WARM_UP, errors_table};
 
 /// A model and its file.
 pub struct Inspected<'m> {

@@ -7,20 +7,15 @@ mod arguments;
 mod checkpoint;
 mod commands;
 mod data;
-mod errors_table;
 mod files;
-mod gathered;
 mod help;
 mod identification;
 mod inspection;
 mod interrupt;
 mod messages;
-mod motion;
 mod plotting;
 mod progress;
 mod reproduction;
-mod residual_tests;
-mod table_run;
 mod terminal;
 
 use std::process::ExitCode;
@@ -28,7 +23,8 @@ use std::process::ExitCode;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use arguments::{Arguments, Command};
-use messages::{StdoutClosed, Usage, insist};
+use hysid_document::Problem;
+use messages::{StdoutClosed, insist, is_usage};
 
 /// How a command ended when nothing went wrong.
 enum Outcome {
@@ -53,7 +49,7 @@ pub fn run() -> ExitCode {
     quieten_readers();
     interrupt::survive_limits_of_files();
     if let Some(set) = std::env::var_os("HYSID_INSTRUCTIONS")
-        && !set.to_str().is_some_and(hysid::simd::narrow_to)
+        && !set.to_str().is_some_and(hysid_core::simd::narrow_to)
     {
         insist(format_args!(
             "error: HYSID_INSTRUCTIONS={}: this machine has no such instruction set (AVX2 or baseline)",
@@ -97,12 +93,21 @@ pub fn run() -> ExitCode {
         Err(error) if error.is::<StdoutClosed>() => ExitCode::SUCCESS,
         Err(error) => {
             insist(format_args!("error: {error:#}{}", help::pointer(&error)));
-            if interrupt::requested() && matches!(error.downcast_ref(), Some(hysid::Error::Stopped)) {
+            if interrupt::requested() && is_stopped(&error) {
                 return ExitCode::from(interrupt::exit_status());
             }
-            ExitCode::from(if error.is::<Usage>() { 2 } else { 1 })
+            ExitCode::from(if is_usage(&error) { 2 } else { 1 })
         }
     }
+}
+
+/// True for a fit that ended before there was a first model.
+fn is_stopped(error: &anyhow::Error) -> bool {
+    let library = match error.downcast_ref() {
+        Some(Problem::Library(library)) => Some(library),
+        _ => error.downcast_ref(),
+    };
+    matches!(library, Some(hysid::Error::Stopped))
 }
 
 /// Shows help or version where these were asked for, otherwise what is wrong with the command line,

@@ -7,11 +7,30 @@ use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Result;
+use hysid_core::words::Words;
+use hysid_document::{Face, Problem};
+pub use hysid_records::summarised;
 use hysid_records::understanding::labelled;
-pub use hysid_records::{Usage, summarised};
 use serde::Serialize;
 
 use crate::terminal;
+
+/// A wrong command line, with what helps.
+#[derive(Debug)]
+pub struct Usage(pub String);
+
+impl fmt::Display for Usage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Usage {}
+
+/// True for an error that is invalid whatever the data.
+pub fn is_usage(error: &anyhow::Error) -> bool {
+    error.is::<Usage>() || matches!(error.downcast_ref(), Some(Problem::Request(_)))
+}
 
 /// Stdout's reader went away, as `head` does.
 #[derive(Debug)]
@@ -97,4 +116,9 @@ pub fn insist(text: fmt::Arguments) {
 
 pub fn warning(text: impl fmt::Display) {
     insist(format_args!("warning: {text}"));
+}
+
+/// A warning with options that help.
+pub fn warning_words(words: &Words) {
+    warning(Face::Terminal.told(words));
 }

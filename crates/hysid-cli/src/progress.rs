@@ -6,8 +6,8 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use hysid::fit::progress::Progress;
-use hysid::significant::Significant;
 use hysid_app::ProgressText;
+use hysid_core::significant::Significant;
 use hysid_document::plain::WIDTH;
 use hysid_document::progress::{Line, Remaining, in_words, share_done};
 use indicatif::{ProgressBar, ProgressStyle};

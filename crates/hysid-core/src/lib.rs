@@ -28,5 +28,6 @@ pub mod significant;
 pub mod simd;
 pub mod stop_check;
 pub mod termination;
+pub mod words;
 
 pub use error::{Error, Result};

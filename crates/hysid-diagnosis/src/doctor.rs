@@ -30,6 +30,7 @@ use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::unit;
 use hysid_core::error::Result;
 use hysid_core::significant::Significant;
+use hysid_core::words::Words;
 
 /// Most issues of one kind that are listed one by one.
 const TOLD: usize = 2;
@@ -113,11 +114,21 @@ pub struct DataIssue {
     pub unit: Option<String>,
     /// The rows that show it.
     pub evidence: Vec<Piece>,
+    /// Options that help.
+    #[serde(skip)]
+    pub advice: Option<Words>,
 }
 
 impl DataIssue {
+    /// The statement and the advice.
+    pub fn words(&self) -> Words {
+        let statement = Words::from(self.statement.as_str());
+        self.advice.iter().fold(statement, |words, advice| words.advised(advice.clone()))
+    }
+
     fn of_all(kind: DataIssueKind, severity: Severity, statement: String) -> Self {
-        Self { kind, record: None, severity, statement, value: None, unit: None, evidence: Vec::new() }
+        let (record, value, unit, evidence, advice) = (None, None, None, Vec::new(), None);
+        Self { kind, record, severity, statement, value, unit, evidence, advice }
     }
 
     fn of_rows(kind: DataIssueKind, severity: Severity, statement: String, rows: Vec<Piece>) -> Self {

@@ -21,12 +21,14 @@
 pub mod chart;
 pub mod convergence;
 mod escape;
+mod face;
 pub mod html;
 mod json;
 pub mod markdown;
 pub mod number;
 mod part;
 pub mod plain;
+mod problem;
 pub mod progress;
 pub mod shell;
 mod table;
@@ -38,8 +40,10 @@ pub mod visible;
 mod balance;
 
 pub use chart::{Axis, Chart, Colour, Curve, Label};
+pub use face::Face;
 pub use json::{is_nothing, json};
 pub use number::{capitalised, count, number, span};
 pub use part::{Card, Item, Page, Part};
+pub use problem::{Problem, Result, TablePlace};
 pub use table::{Cell, Table};
 pub use text::{Badge, Piece, Text};

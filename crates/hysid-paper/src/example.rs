@@ -9,10 +9,10 @@ use hysid::Result;
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
 use hysid::model::{Model, history};
-use hysid::network::Family;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::options::{FitSpec, ModelName};
 use hysid::specimens::Specimen;
+use hysid_core::network::Family;
 use hysid_document::{Part, capitalised, convergence, number};
 
 use crate::chapter::{Chapter, ChapterTarget, TargetVerdict};

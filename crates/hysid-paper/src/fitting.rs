@@ -9,10 +9,10 @@ use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
 use hysid::fit::identify;
 use hysid::model::Model;
-use hysid::network::{Family, Sizes};
 use hysid::options::FitSpec;
 use hysid::options::network::{FitOptions, Regularisation, Trainer};
 use hysid::{Error, Result};
+use hysid_core::network::{Family, Sizes};
 use hysid_document::{Piece, Text};
 use rayon::prelude::*;
 

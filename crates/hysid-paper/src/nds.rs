@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use hysid::elementary::{cos, sin};
 use hysid::operator::{DeterioratingStop, Operator};
+use hysid_core::elementary::{cos, sin};
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, number};
 
 use crate::chapter::{Chapter, ChapterTarget, TargetSource, TargetVerdict};
@@ -241,7 +241,7 @@ fn loops(index: usize, neuron: Neuron) -> Chart {
 
 #[cfg(test)]
 mod tests {
-    use hysid::elementary::{acos, asin, atan2, hypot};
+    use hysid_core::elementary::{acos, asin, atan2, hypot};
 
     use super::*;
 

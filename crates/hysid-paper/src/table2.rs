@@ -6,8 +6,8 @@ mod specimens;
 use hysid::Result;
 use hysid::data::record::Record;
 use hysid::model::Model;
-use hysid::network::Family;
 use hysid::options::network::Regularisation;
+use hysid_core::network::Family;
 use hysid_document::{Cell, Part, Table, number};
 
 use crate::chapter::{Chapter, ChapterTarget, TargetSource, TargetVerdict};

@@ -9,10 +9,10 @@ use hysid::data::metrics::Errors;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
 use hysid::fit::network::fit;
-use hysid::network::Family;
 use hysid::options::network::{FitOptions, Trainer};
 use hysid::specimens::Specimen;
 use hysid::{Error, Result};
+use hysid_core::network::Family;
 
 use crate::chapter::Chapter;
 use crate::conditions::{Observer, Settings};

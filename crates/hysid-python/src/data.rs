@@ -6,6 +6,7 @@ use hysid::data::record::{self, ColumnNames, Record};
 use hysid::data::summary::Summary;
 use hysid::data::unit::Conversion;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions, before_a_fit};
+use hysid_document::Face;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -63,7 +64,7 @@ impl Dataset {
         let summary = Summary::of(&self.set);
         // Data that cannot be looked at cannot be fitted to either: the fit says why.
         let doubtful = before_a_fit(&self.set).unwrap_or_default();
-        let statements = doubtful.into_iter().map(|complaint| complaint.statement);
+        let statements = doubtful.iter().map(|issue| Face::Python.told(&issue.words()));
         summary.warnings(&self.set).iter().map(ToString::to_string).chain(statements).collect()
     }
 

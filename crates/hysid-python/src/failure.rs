@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 
+use hysid_document::{Face, Problem};
 use hysid_files::Failure;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyFileExistsError, PyOSError, PyValueError};
@@ -9,6 +10,11 @@ use pyo3::exceptions::{PyFileExistsError, PyOSError, PyValueError};
 /// Error for an invalid argument of the caller: a `ValueError` with the library's text.
 pub fn refused<E: Display>(error: E) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// A problem of a use case, with the arguments that help.
+pub fn explained(problem: &Problem) -> PyErr {
+    refused(Face::Python.told(&problem.words()))
 }
 
 /// A file could not be written: a `FileExistsError` for one that is not Hysid's own, otherwise the `OSError` of the

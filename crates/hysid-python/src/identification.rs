@@ -15,6 +15,7 @@ use hysid::options::table::OPTIONS;
 use hysid::options::{self, ModelName};
 use hysid_app::check_memory;
 use hysid_app::compare::{CompareObserver, CompareRequest, CompareRow};
+use hysid_document::Face;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 
@@ -66,7 +67,7 @@ impl FitSpec {
         let ignored = self.chosen.ignored().into_iter();
         let mut warnings: Vec<String> =
             ignored.map(|Ignored { option, by }| format!("{by} ignores {option}")).collect();
-        warnings.extend(self.request.cautions(&data.set));
+        warnings.extend(self.request.cautions(&data.set).iter().map(|caution| Face::Python.told(caution)));
         warnings
     }
 }
@@ -198,7 +199,7 @@ pub fn compare(
         Ok(hysid_app::compare::compare(&request, &CompareProgress { exchange, done }))
     };
     let (outcome, interrupted) = attended(py, None, None, progress, work)?;
-    let outcome = outcome.map_err(|error| PyRuntimeError::new_err(format!("{error:#}")))?;
+    let outcome = outcome.map_err(|problem| PyRuntimeError::new_err(problem.to_string()))?;
     let row = |row: CompareRow| {
         let label = row.label();
         Ok(match row.fit {

@@ -1,7 +1,7 @@
 //! The inverse of a model.
 
 use hysid::model::{self, BandLevel};
-use hysid::{Reach, Reference};
+use hysid::model::{Reach, Reference};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 

@@ -20,7 +20,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::data::{Column, Dataset, NewColumn, values};
-use crate::failure::{not_written, refused};
+use crate::failure::{explained, not_written, refused};
 use crate::interruption::{interruptible, interruptible_if_long};
 use crate::inverse::{Bounds, Inverse};
 
@@ -83,7 +83,7 @@ impl Model {
                 page_text(&page)
             }))
         })?;
-        let text = page.map_err(|error| refused(format!("{error:#}")))?;
+        let text = page.map_err(|problem| explained(&problem))?;
         destination.write(text.as_bytes()).map(drop).map_err(not_written)
     }
 

@@ -1,6 +1,6 @@
 //! The line of progress: its words, its width and the remaining time.
 
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::progress::{Line, Remaining, in_words, share_done};
 use pyo3::prelude::*;
 

@@ -160,12 +160,20 @@ def test_copies_and_marks_are_warned_of(spring_and_slider):
     assert validation.unseen == alone.unseen
     marked = y.copy()
     marked[[50, 51, 300]] = -999.0
-    with pytest.warns(hysid.HysidWarning, match='"y" is -999 in 3 rows'):
-        hysid.fit(x, marked, model="masing")
+    told = warned(lambda: hysid.fit(x, marked, model="masing"))
+    assert any('"y" is -999 in 3 rows' in text and text.endswith("(put NaN in the place of -999)") for text in told)
     told = warned(lambda: hysid.fit(x[100:120], y[100:120], **{**SMALL, "stops": 20}))
     assert any("parameters are fitted to 20 rows" in text for text in told)
     told = warned(lambda: hysid.compare(x, y, test=(x[100:400], y[100:400]), models=["masing"]))
     assert any("is a part of what the model was trained on" in text for text in told)
+
+
+def test_a_warning_names_the_argument_that_helps_and_not_an_option_of_the_program():
+    x = np.concatenate([np.linspace(a, b, 50, endpoint=False) for a, b in [(0, 1), (1, -1), (-1, 1)]])
+    time = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(x)))])
+    told = warned(lambda: hysid.fit(x, np.tanh(x), np.round(time, 6), rate="backward", **SMALL))
+    assert any(text.endswith("(rate='none' leaves the rate out)") for text in told), told
+    assert not any("--" in text for text in told)
 
 
 @pytest.mark.parametrize("options", [{"companding": np.nan}, {"thresholds": [0.1, np.inf]}, {"ridge": -np.inf}])

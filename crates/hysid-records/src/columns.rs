@@ -7,20 +7,19 @@ pub mod values;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use anyhow::{Result, bail, ensure};
 use hysid_core::data::rate::RateMethod;
 use hysid_core::data::record::{ColumnNames, Dataset};
 use hysid_core::model::Model;
 use hysid_core::options::chosen::{NamedOptions, RateChoice};
 use hysid_core::options::{FitSpec, ModelName};
+use hysid_core::words::{Hint, Words};
 
 use self::guess::Guess;
 use self::values::{TimeCheck, ValueStatistics, numbers};
-use crate::usage::Usage;
 use hysid_core::data::unit::{self, Conversion};
 use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
-use hysid_tables::{Head, Table, is_record};
+use hysid_tables::{Head, Problem, Result, Table, is_record};
 
 /// Value of the choice of a time column for a table without one.
 pub const NO_TIME: &str = "none";
@@ -78,10 +77,8 @@ impl RateOption {
         Ok(match self {
             Self::Column(_) => Some(RateMethod::Given),
             Self::Choice(RateChoice::Method(_)) if !data.has_time() => {
-                bail!(
-                    "there is no time column to compute the rate from (name it with --time, or use --rate \
-                     none)"
-                )
+                let words = Words::from("there is no time column to compute the rate from");
+                return Err(Problem::Other(words.advised(time_or_no_rate())));
             }
             Self::Choice(choice) => choice.method(model, data),
         })
@@ -105,13 +102,13 @@ pub struct Roles {
     pub rate: Option<String>,
     pub output: String,
     /// Roles that no option decided, in words; `None` if there are none.
-    pub guessed: Option<&'static str>,
+    pub guessed: Option<Words>,
     /// Columns that have no role although no option excludes them, each with the reason.
-    pub set_aside: Vec<(String, String)>,
+    pub set_aside: Vec<(String, Words)>,
     /// A condition of the test with few values, which divide the rows of each table into records.
     pub condition: Option<String>,
     /// Roles that contradict the names of the columns, in a sentence.
-    pub note: Option<String>,
+    pub note: Option<Words>,
 }
 
 impl Roles {
@@ -125,22 +122,15 @@ impl Roles {
             RateOption::Column(name) => Some(name.clone()),
             _ => None,
         };
-        let mut taken: HashMap<&str, &str> = HashMap::new();
-        let named = [
-            ("--record", &options.record),
-            ("--time", &time),
-            ("--rate", &rate),
-            ("--output", &options.output),
-        ];
+        let mut taken: HashMap<&str, &'static str> = HashMap::new();
+        let named =
+            [("record", &options.record), ("time", &time), ("rate", &rate), ("output", &options.output)];
         let named = named.into_iter().filter_map(|(option, name)| name.as_ref().map(|name| (option, name)));
-        for (option, name) in named.chain(options.input.iter().map(|name| ("--input", name))) {
+        for (option, name) in named.chain(options.input.iter().map(|name| ("input", name))) {
             require(table, name, option)?;
             if let Some(other) = taken.insert(name, option) {
-                return Err(Usage(format!(
-                    "column \"{}\" is named twice, by {other} and {option}",
-                    clipped(name)
-                ))
-                .into());
+                let words = Words::from(format!("column \"{}\" is named twice, by ", clipped(name)));
+                return Err(Problem::Request(words + Hint::Option(other) + " and " + Hint::Option(option)));
             }
         }
         let mut free: Vec<&String> =
@@ -177,22 +167,29 @@ impl Roles {
         } else {
             options.input.clone()
         };
+        let from_names = |what: &str, change: Words| {
+            let words = Words::from(format!("{what}, from names and values"));
+            words.advised(Words::from("change: ") + change)
+        };
+        let (input, output_hint) = (Words::from(Hint::Option("input")), Hint::Option("output"));
         let guessed = match (options.input.is_empty(), options.output.is_none()) {
-            (true, true) => Some("input and output, from names and values (change: --input, --output)"),
-            (true, false) => Some("input, from names and values (change: --input)"),
-            (false, true) => Some("output, from names and values (change: --output)"),
+            (true, true) => Some(from_names("input and output", input + ", " + output_hint)),
+            (true, false) => Some(from_names("input", input)),
+            (false, true) => Some(from_names("output", output_hint.into())),
             (false, false) => None,
         };
         match output {
             Some(output) if !inputs.is_empty() => {
                 Ok(Self { record, time, inputs, rate, output, guessed, set_aside, condition, note })
             }
-            output => bail!(
-                "{}: no column is left for the input besides output \"{}\" (columns: {})",
-                table.file,
-                clipped(&output.unwrap_or_default()),
-                listed(&table.header)
-            ),
+            output => Err(Problem::in_file(
+                &table.file,
+                format!(
+                    "no column is left for the input besides output \"{}\" (columns: {})",
+                    clipped(&output.unwrap_or_default()),
+                    listed(&table.header)
+                ),
+            )),
         }
     }
 
@@ -207,7 +204,7 @@ impl Roles {
         let time = match (&self.time, &options.time) {
             (Some(_), _) => return Ok(self),
             (None, Some(_)) if options.has_no_time(table) => None,
-            (None, Some(name)) => require(table, name, "--time").map(|()| Some(full_name(table, name)))?,
+            (None, Some(name)) => require(table, name, "time").map(|()| Some(full_name(table, name)))?,
             (None, None) => table.header.iter().find(|name| unit::is_time(name)).cloned(),
         };
         let is_used = |name: &String| self.inputs.contains(name) || *name == self.output;
@@ -228,75 +225,75 @@ impl Roles {
         scored: bool,
     ) -> Result<Self> {
         let names = model.names();
-        let find = |given: &Option<String>, trained: &str, what: &str, option: &str| match given {
+        let find = |given: &Option<String>, trained: &str, what: &str, option: &'static str| match given {
             Some(name) => require(table, name, option).map(|()| full_name(table, name)),
             None if table.column(trained).is_some() => Ok(full_name(table, trained)),
             None if let Some(name) = in_another_unit(table, trained) => Ok(name.clone()),
             None => {
                 table.require_columns()?;
-                bail!(
-                    "{}: there is no column \"{}\", the model's {what} (columns: {}; name another with {option})",
-                    table.file,
-                    clipped(trained),
-                    listed(&table.header)
-                )
+                let words =
+                    Words::from(format!("there is no column \"{}\", the model's {what}", clipped(trained)));
+                let columns = Words::from(format!("columns: {}; name another with ", listed(&table.header)));
+                Err(Problem::in_file(&table.file, words.advised(columns + Hint::Option(option))))
             }
         };
         let given_rate = rate_of_model(model, options)?;
         let inputs: Vec<String> = if options.input.is_empty() {
-            let find = |name: &String| find(&None, name, "input", "--input");
+            let find = |name: &String| find(&None, name, "input", "input");
             needed.iter().map(find).collect::<Result<_>>()?
         } else {
             let (expected, found) = (needed.len(), options.input.len());
             if expected != found {
                 if expected == 0 {
-                    let advice = "leave --input away: the drive is named after the model's input";
-                    return Err(Usage(format!("the model has no further inputs; {advice}")).into());
+                    let words =
+                        Words::from("the model has no further inputs; leave ") + Hint::Option("input");
+                    return Err(Problem::Request(
+                        words + " away: the drive is named after the model's input",
+                    ));
                 }
                 let what = if expected < names.inputs.len() { "further inputs" } else { "inputs" };
                 let inputs = listed(needed);
-                return Err(Usage(format!(
-                    "--input names {found} columns, but the model's {what} are {expected}: {inputs}"
-                ))
-                .into());
+                let words =
+                    format!(" names {found} columns, but the model's {what} are {expected}: {inputs}");
+                return Err(Problem::Request(Words::from(Hint::Option("input")) + words));
             }
             options
                 .input
                 .iter()
-                .map(|name| require(table, name, "--input").map(|()| full_name(table, name)))
+                .map(|name| require(table, name, "input").map(|()| full_name(table, name)))
                 .collect::<Result<_>>()?
         };
         let time = match (needs_time, &names.time) {
             (false, _) => None,
-            (true, Some(trained)) => Some(find(&options.time, trained, "time", "--time")?),
-            (true, None) if options.time.is_some() => Some(find(&options.time, "t", "time", "--time")?),
+            (true, Some(trained)) => Some(find(&options.time, trained, "time", "time")?),
+            (true, None) if options.time.is_some() => Some(find(&options.time, "t", "time", "time")?),
             // Trained without time: a slew limit or a preview needs it.
             (true, None) => match table.header.iter().find(|name| unit::is_time(name)) {
                 Some(name) => Some(name.clone()),
-                None => bail!(
-                    "{}: there is no column of time, which the rate, a slew limit or a preview needs (columns: {}; name one with \
-                     --time)",
-                    table.file,
-                    listed(&table.header)
-                ),
+                None => {
+                    let words = "there is no column of time, which the rate, a slew limit or a preview needs";
+                    let columns = Words::from(format!("columns: {}; name one with ", listed(&table.header)));
+                    let words = Words::from(words).advised(columns + Hint::Option("time"));
+                    return Err(Problem::in_file(&table.file, words));
+                }
             },
         };
         // The inverse forms the rate from the inputs that it finds.
         let is_inverse = needed.len() < names.inputs.len();
         let rate = match &names.rate {
             Some(trained) if model.rate() == Some(RateMethod::Given) && !is_inverse => {
-                Some(find(&given_rate, trained, "rate", "--rate")?)
+                Some(find(&given_rate, trained, "rate", "rate")?)
             }
             _ => None,
         };
         let output = match scored {
-            true => find(&options.output, &names.output, "output", "--output")?,
+            true => find(&options.output, &names.output, "output", "output")?,
             false => options.output.clone().unwrap_or_else(|| names.output.clone()),
         };
         let used =
             |name: &str| inputs.iter().chain(&time).chain(&rate).any(|used| used == name) || output == name;
         let record = match &options.record {
-            Some(name) => require(table, name, "--record").map(|()| Some(full_name(table, name)))?,
+            Some(name) => require(table, name, "record").map(|()| Some(full_name(table, name)))?,
             None => table.header.iter().find(|name| is_record(name) && !used(name)).cloned(),
         };
         Ok(Self {
@@ -325,14 +322,12 @@ impl Roles {
     pub fn check_against(&self, table: &Head, first: &str) -> Result<()> {
         let all = self.record.iter().chain(&self.time).chain(&self.inputs).chain(&self.rate);
         for name in all.chain([&self.output]) {
-            ensure!(
-                table.column(name).is_some(),
-                "{}: there is no column \"{}\", as in {} (columns: {})",
-                table.file,
-                clipped(name),
-                first,
-                listed(&table.header)
-            );
+            if table.column(name).is_none() {
+                let columns = listed(&table.header);
+                let words =
+                    format!("there is no column \"{}\", as in {first} (columns: {columns})", clipped(name));
+                return Err(Problem::in_file(&table.file, words));
+            }
         }
         Ok(())
     }
@@ -348,12 +343,12 @@ fn time_by_name(table: &Table, free: &[&String], records: &[Range<usize>]) -> Re
         if is_temperature {
             continue;
         }
-        ensure!(
-            running != Some(TimeCheck::Falls),
-            "{}: column \"{}\" falls, as no time does: name another with --time, or use --time none",
-            table.file,
-            clipped(name)
-        );
+        if running == Some(TimeCheck::Falls) {
+            let words = format!("column \"{}\" falls, as no time does: name another with ", clipped(name));
+            let none = Hint::Value("time", NO_TIME.into());
+            let words = Words::from(words) + Hint::Option("time") + ", or use " + none;
+            return Err(Problem::in_file(&table.file, words));
+        }
         return Ok(Some((*name).clone()));
     }
     Ok(None)
@@ -389,15 +384,20 @@ fn with_full_names(options: &ColumnChoice, table: &Head) -> ColumnChoice {
     }
 }
 
-fn require(table: &Head, name: &str, option: &str) -> Result<()> {
-    ensure!(
-        table.column(name).is_some(),
-        "{}: there is no column \"{}\" for {option} (columns: {})",
-        table.file,
-        clipped(name),
-        listed(&table.header)
-    );
-    Ok(())
+/// Advice on a rate that has no time stamps to be computed from.
+pub fn time_or_no_rate() -> Words {
+    let none = Hint::Value("rate", "none".into());
+    Words::from("name it with ") + Hint::Option("time") + ", or use " + none
+}
+
+/// Refuses a table without a column that an option names.
+pub fn require(table: &Head, name: &str, option: &'static str) -> Result<()> {
+    if table.column(name).is_some() {
+        return Ok(());
+    }
+    let words = Words::from(format!("there is no column \"{}\" for ", clipped(name))) + Hint::Option(option);
+    let columns = format!("columns: {}", listed(&table.header));
+    Err(Problem::in_file(&table.file, words.advised(columns)))
 }
 
 /// The one column of the same quantity in another unit that can be converted, such as `x_m` for `x_mm`.
@@ -418,8 +418,8 @@ fn rate_of_model(model: &Model, options: &ColumnChoice) -> Result<Option<String>
         (RateOption::Column(name), Some(RateMethod::Given)) => Ok(Some(name.clone())),
         (RateOption::Choice(RateChoice::Method(asked)), Some(trained)) if *asked == trained => Ok(None),
         _ => {
-            Err(Usage("the rate is part of the model and cannot be changed here: leave out --rate".into())
-                .into())
+            let words = Words::from("the rate is part of the model and cannot be changed here: leave out ");
+            Err(Problem::Request(words + Hint::Option("rate")))
         }
     }
 }

@@ -1,15 +1,17 @@
 //! A data set as CSV, which reads back as the same records without any option.
 
-use anyhow::Result;
 use csv::QuoteStyle;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::unit;
 
 use hysid_tables::{Delimiter, shortest};
 
+/// Why writing rows of equal length cannot fail.
+pub const IN_MEMORY: &str = "memory takes every row";
+
 /// The data with a header line. Column `record` distinguishes several records, a blank output is an empty
 /// cell, and every number reads back as the same number.
-pub fn csv_text(data: &Dataset) -> Result<String> {
+pub fn csv_text(data: &Dataset) -> String {
     let names = data.names();
     let several = data.records().len() > 1;
     let time = data.has_time().then(|| names.time.as_deref().unwrap_or("t"));
@@ -17,20 +19,20 @@ pub fn csv_text(data: &Dataset) -> Result<String> {
     let inputs = names.inputs.iter().map(String::as_str);
     let header = several.then_some("record").into_iter().chain(time).chain(inputs).chain(rate);
 
-    let header = header_line(b',', header.chain([names.output.as_str()]))?;
+    let header = header_line(b',', header.chain([names.output.as_str()]));
     let mut writer = csv::Writer::from_writer(header);
     for record in data.records() {
         for row in 0..record.len() {
             let name = several.then(|| record.name().to_string());
-            writer.write_record(name.into_iter().chain(numbers(record, row)))?;
+            writer.write_record(name.into_iter().chain(numbers(record, row))).expect(IN_MEMORY);
         }
     }
-    Ok(String::from_utf8(writer.into_inner()?)?)
+    String::from_utf8(writer.into_inner().expect(IN_MEMORY)).expect("names and numbers are text")
 }
 
 /// A header line that reads back as these names. All are quoted where the line would be taken for a comment, or another
 /// character for the delimiter.
-pub fn header_line<'n>(delimiter: u8, names: impl Iterator<Item = &'n str> + Clone) -> Result<Vec<u8>> {
+pub fn header_line<'n>(delimiter: u8, names: impl Iterator<Item = &'n str> + Clone) -> Vec<u8> {
     let is_comment = names.clone().next().is_some_and(|name| name.trim_start().starts_with('#'));
     let divides = |letter: char| {
         let other = u8::try_from(letter).ok().filter(|&byte| byte != delimiter);
@@ -42,8 +44,8 @@ pub fn header_line<'n>(delimiter: u8, names: impl Iterator<Item = &'n str> + Clo
     };
     let mut builder = csv::WriterBuilder::new();
     let mut writer = builder.delimiter(delimiter).quote_style(style).from_writer(Vec::new());
-    writer.write_record(names)?;
-    Ok(writer.into_inner()?)
+    writer.write_record(names).expect(IN_MEMORY);
+    writer.into_inner().expect(IN_MEMORY)
 }
 
 /// The numbers of a row in the order of the columns.
@@ -79,7 +81,7 @@ mod tests {
 
     /// The data as they are read from a file.
     fn read_back(data: &Dataset, columns: &ColumnChoice) -> Dataset {
-        let text = csv_text(data).unwrap().into_bytes();
+        let text = csv_text(data).into_bytes();
         let table = Table::from_bytes(Path::new("only.csv"), text, &Reading::default()).unwrap();
         Data::of_tables(vec![table], columns, None).unwrap().set
     }
@@ -129,14 +131,14 @@ mod tests {
     fn every_header_line_reads_back() {
         for names in [["# t", "x", "y"], [" #t", "x\n", "\"y\""], ["a;b", "c\td", "e,f"], ["t", "x", "y"]] {
             for delimiter in ['\t', ';', ',', '|'] {
-                let header = header_line(delimiter as u8, names.into_iter()).unwrap();
+                let header = header_line(delimiter as u8, names.into_iter());
                 let rows = format!("\"1;2\"{delimiter}3{delimiter}4\n").repeat(4).into_bytes();
                 let table =
                     Table::from_bytes(Path::new("f"), [header, rows].concat(), &Reading::default()).unwrap();
                 assert_eq!(table.header, names.map(str::trim), "{delimiter:?}");
             }
         }
-        let plain = header_line(b',', ["t", "x"].into_iter()).unwrap();
+        let plain = header_line(b',', ["t", "x"].into_iter());
         assert_eq!(plain, b"t,x\n");
     }
 

@@ -5,19 +5,20 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::Path;
 
-use anyhow::{Result, anyhow};
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::error::{Channel, DataError, DataProblem};
 use hysid_core::model::Model;
+use hysid_core::words::{Hint, Words};
 
-use hysid_tables::{CellReader, ColumnReader, Head, Reading, Table, TableOrigin, spread_equal, starts_again};
+use hysid_tables::{
+    CellProblem, CellReader, ColumnReader, Head, Problem, Reading, Result, Table, TableOrigin, spread_equal,
+    starts_again,
+};
 
 use crate::columns::values::{changes, numbers};
-use crate::columns::{ColumnChoice, Roles};
+use crate::columns::{ColumnChoice, Roles, time_or_no_rate};
 use crate::record_names::RecordNames;
 use crate::units::UnitFactors;
-use crate::usage::Usage;
-use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
 
 /// Measured data and the tables they come from.
@@ -28,7 +29,7 @@ pub struct Data {
     /// Where each record stands.
     pub source: DataSource,
     /// Changes made to the data while reading, in words.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Words>,
 }
 
 /// The tables, and which record is where.
@@ -85,7 +86,7 @@ impl Data {
         let (mut records, mut warnings) = (Vec::new(), Vec::from_iter(roles.note.clone()));
         for (mut columns, places) in of_tables {
             let places = &source.places[places];
-            warnings.extend(columns.spread_equal_stamps(places, &source));
+            warnings.extend(columns.spread_equal_stamps(places, &source).map(Words::from));
             zero.iter().for_each(|&rows| columns.remove_offsets(places, rows));
             for place in places {
                 records.push(columns.record(place).map_err(|error| source.explain(error, &roles))?);
@@ -106,32 +107,32 @@ impl Data {
         let factors = UnitFactors::of(model, &roles, &tables[0].file, true, false)?;
         let names = factors.names(model, &roles);
         let data = Self::converted(tables, roles, names, Some(&factors), zero)?;
-        let warnings = data.warnings.into_iter().chain(factors.conversions).collect();
+        let warnings =
+            data.warnings.into_iter().chain(factors.conversions.into_iter().map(Words::from)).collect();
         Ok(Self { warnings, ..data })
     }
 
     /// A warning of inputs after the first, which something does not use; `None` if there are none. `what` is what it does
     /// with the output, `used` what it does with inputs.
-    pub fn unused_inputs(&self, what: &str, used: &str) -> Option<String> {
+    pub fn unused_inputs(&self, what: &str, used: &str) -> Option<Words> {
         let [first, further @ ..] = self.roles.inputs.as_slice() else { return None };
         (!further.is_empty()).then(|| {
-            format!(
-                "{what} {} over {}; {} {} not {used} (choose with --input)",
+            let words = Words::from(format!(
+                "{what} {} over {}; {} {} not {used}",
                 clipped(&self.roles.output),
                 clipped(first),
                 listed(further),
                 if further.len() == 1 { "is" } else { "are" },
-            )
+            ));
+            words.advised(Words::from("choose with ") + Hint::Option("input"))
         })
     }
 
     /// The data with the first input and the output exchanged. A rate that a column gives is that of the input.
     pub fn exchanged(mut self) -> Result<Self> {
         if self.roles.rate.is_some() {
-            return Err(Usage(
-                "--inverse: the rate would be that of the output: use a method, not a column".into(),
-            )
-            .into());
+            let needed = "the rate would be that of the output: use a method, not a column";
+            return Err(Problem::option("inverse", needed));
         }
         let exchanged = self.set.exchanged().map_err(|error| self.explain(error))?;
         for (place, record) in self.source.places.iter_mut().zip(self.set.records()) {
@@ -145,7 +146,7 @@ impl Data {
     }
 
     /// Puts an error of the library in the user's words: file, line, column.
-    pub fn explain(&self, error: hysid_core::Error) -> anyhow::Error {
+    pub fn explain(&self, error: hysid_core::Error) -> Problem {
         self.source.explain(error, &self.roles)
     }
 }
@@ -156,13 +157,13 @@ impl DataSource {
         &self.places
     }
 
-    fn explain(&self, error: hysid_core::Error, roles: &Roles) -> anyhow::Error {
+    fn explain(&self, error: hysid_core::Error, roles: &Roles) -> Problem {
         let error = match error {
             hysid_core::Error::Data(error) => error,
             other => return of_options(other),
         };
         let Some(place) = self.places.iter().find(|place| place.record == error.record) else {
-            return error.into();
+            return Problem::Library(error.into());
         };
         let table = &self.tables[place.table];
         let line = error.row.map(|row| table.lines[place.rows.start + row]);
@@ -177,51 +178,53 @@ impl DataSource {
 }
 
 /// An error of the library in the user's words: file, line, column.
-pub fn explained(file: &str, line: Option<u64>, error: hysid_core::Error, roles: &Roles) -> anyhow::Error {
+pub fn explained(file: &str, line: Option<u64>, error: hysid_core::Error, roles: &Roles) -> Problem {
     let error = match error {
         hysid_core::Error::Data(error) => error,
         other => return of_options(other),
     };
     let column = error.channel.and_then(|channel| column(channel, roles));
-    match (&error.problem, line, column) {
+    let words: Words = match (&error.problem, line, column) {
         (problem, Some(line), Some(column)) => {
-            anyhow!("{file}, line {line}, column \"{}\": {problem}", clipped(column))
-        }
-        (DataProblem::TooFewRows { found: 1, needed }, ..) => {
-            anyhow!("{file}: only 1 row has an output: at least {needed} are needed")
+            return Problem::in_cell(file, line, column, data_words(problem));
         }
         (DataProblem::TooFewRows { found, needed }, ..) => {
-            anyhow!("{file}: only {found} rows have an output: at least {needed} are needed")
+            let rows = if *found == 1 { "1 row has".into() } else { format!("{found} rows have") };
+            format!("only {rows} an output: at least {needed} are needed").into()
         }
-        (problem @ DataProblem::TooFewForTests { .. }, ..) => anyhow!("{file}: {problem}"),
         (problem, _, Some(column)) if problem.is_of_whole_column() => {
-            anyhow!("{file}: column \"{}\" {problem}", clipped(column))
+            format!("column \"{}\" {problem}", clipped(column)).into()
         }
-        (problem, ..) => anyhow!("{file}: {problem}{}", advice(problem)),
-    }
+        (problem, ..) => data_words(problem),
+    };
+    Problem::in_file(file, words)
 }
 
 /// An error that is about no row: a wrong use of the command line, or another.
-fn of_options(error: hysid_core::Error) -> anyhow::Error {
+fn of_options(error: hysid_core::Error) -> Problem {
+    let words = Words::from(error.to_string());
     match error {
-        hysid_core::Error::SeveralInputs { .. } => Usage(format!("{error} with --input")).into(),
+        hysid_core::Error::SeveralInputs { .. } => Problem::Request(words + " with " + Hint::Option("input")),
         hysid_core::Error::RateNeeded(_) | hysid_core::Error::TimeNeeded(_) => {
-            Usage(format!("{error} (name a time column with --time)")).into()
+            Problem::Request(words.advised(Words::from("name a time column with ") + Hint::Option("time")))
         }
         hysid_core::Error::Option(_)
         | hysid_core::Error::Parts(_)
         | hysid_core::Error::UnknownName { .. }
-        | hysid_core::Error::Probability { .. } => Usage(error.to_string()).into(),
-        other => other.into(),
+        | hysid_core::Error::Probability { .. } => Problem::Request(words),
+        other => Problem::Library(other),
     }
 }
 
-/// Advice for the command line.
-fn advice(problem: &DataProblem) -> &'static str {
+/// A problem of the data, with the options that help.
+pub fn data_words(problem: &DataProblem) -> Words {
+    let words = Words::from(problem.to_string());
     match problem {
-        DataProblem::NoTime => " (name one with --time, or use --rate none)",
-        DataProblem::NoTimeForModel => " (name it with --time)",
-        _ => "",
+        DataProblem::NoTime => words.advised(time_or_no_rate()),
+        DataProblem::NoTimeForModel => words.advised(Words::from("name it with ") + Hint::Option("time")),
+        DataProblem::NotFinite(_) | DataProblem::BlankWithin => words,
+        // The others say what helps.
+        _ => words.helpful(),
     }
 }
 
@@ -307,7 +310,7 @@ fn places(
     let mut places: Vec<RecordPlace> = Vec::new();
     let mut names = RecordNames::default();
     for row in 0..table.rows() {
-        let at = || format!("{}, line {}, column \"{}\"", table.file, table.lines[row], clipped(column));
+        let at = |words| Problem::in_cell(&table.file, table.lines[row], column, words);
         let name = table.cell(row, cell);
         if !names.begins(name, at)? {
             places.last_mut().expect("a record has begun").rows.end = row + 1;
@@ -341,7 +344,8 @@ fn ends_by_time(time: &[f64], rows: usize) -> Vec<usize> {
 }
 
 pub fn place_of(table: &Head, name: &str) -> Result<usize> {
-    table.column(name).ok_or_else(|| anyhow!("{}: there is no column \"{}\"", table.file, clipped(name)))
+    let words = || format!("there is no column \"{}\"", clipped(name));
+    table.column(name).ok_or_else(|| Problem::in_file(&table.file, words()))
 }
 
 /// The numbers of a table, column by column.
@@ -413,66 +417,68 @@ pub enum CellNeed {
     Optional,
     /// Every row needs a number.
     Required {
-        /// Advice where a cell is blank.
-        if_blank: &'static str,
-        /// Advice where the first cell is no number, so that the column may be the wrong one.
-        if_no_number: Option<&'static str>,
+        /// Advice where a cell is blank, and an option at its end.
+        if_blank: (&'static str, Option<&'static str>),
+        /// Advice where the first cell is no number, so that the column may be the wrong one, and the option at its end.
+        if_no_number: Option<(&'static str, &'static str)>,
     },
 }
 
 impl CellNeed {
     /// Time, an input or its rate.
     pub const INPUT: Self = Self::Required {
-        if_blank: "only the output may be blank; choose rows with --rows",
-        if_no_number: Some("not an input? name the inputs with --input"),
+        if_blank: ("only the output may be blank; choose rows with ", Some("rows")),
+        if_no_number: Some(("not an input? name the inputs with ", "input")),
     };
     pub const OUTPUT: Self = Self::Optional;
     pub const WANTED: Self =
-        Self::Required { if_blank: "every row needs a wanted output", if_no_number: None };
+        Self::Required { if_blank: ("every row needs a wanted output", None), if_no_number: None };
 }
 
 /// The numbers of a column; a cell that is blank and may be is NaN.
 pub fn column_of(table: &Table, name: &str, kind: CellNeed, cells: &mut CellReader) -> Result<Vec<f64>> {
     let place = place_of(table, name)?;
-    let at = |line: u64, problem: &str| {
-        anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
-    };
+    let at = |line: u64, words: Words| Problem::in_cell(&table.file, line, name, words);
     let mut column = ColumnReader::new(table, place);
     let mut numbers = Vec::with_capacity(table.rows());
     for (row, &line) in table.lines.iter().enumerate() {
         let number = column.number(table, cells, table.cell(row, place), line);
-        numbers.push(
-            checked(number, table.cell(row, place), kind, row == 0).map_err(|problem| at(line, &problem))?,
-        );
+        numbers
+            .push(checked(number, table.cell(row, place), kind, row == 0).map_err(|words| at(line, words))?);
     }
-    column.problem(cells).map_or(Ok(numbers), |(line, problem)| Err(at(line, &problem)))
+    column.problem(cells).map_or(Ok(numbers), |(line, problem)| Err(at(line, problem)))
 }
 
 /// The number of a cell, NaN for one that is blank and may be; or what is wrong with it and what helps.
 pub fn checked(
-    number: Result<f64, String>,
+    number: Result<f64, CellProblem>,
     cell: &str,
     kind: CellNeed,
     is_first: bool,
-) -> Result<f64, String> {
+) -> Result<f64, Words> {
     match number {
         Ok(number) if number.is_nan() => match kind {
             CellNeed::Optional => Ok(f64::NAN),
-            CellNeed::Required { if_blank, .. } => Err(format!("{} ({if_blank})", missing(cell))),
+            CellNeed::Required { if_blank: (advice, option), .. } => {
+                let advice = Words::from(advice);
+                let advice = option.into_iter().fold(advice, |advice, name| advice + Hint::Option(name));
+                Err(missing(cell).advised(advice))
+            }
         },
         Ok(number) => Ok(number),
-        Err(problem) => {
-            let hint = match (kind, problem.ends_with("number")) {
-                (CellNeed::Optional, true) if cell.trim().len() <= LONGEST_WORD => {
-                    let cell = cell.trim();
-                    format!(" (if it stands for a missing value: {})", option("missing", cell))
+        Err(CellProblem::Other(words)) => Err(words),
+        Err(CellProblem::NoNumber(text)) => {
+            let words = Words::from(text);
+            Err(match kind {
+                CellNeed::Optional if cell.trim().len() <= LONGEST_WORD => {
+                    let hint = Hint::MissingWord(cell.trim().into());
+                    words.advised(Words::from("if it stands for a missing value: ") + hint)
                 }
-                (CellNeed::Required { if_no_number: Some(hint), .. }, true) if is_first => {
-                    format!(" ({hint})")
+                CellNeed::Required { if_no_number: Some((advice, option)), .. } if is_first => {
+                    words.advised(Words::from(advice) + Hint::Option(option))
                 }
-                _ => String::new(),
-            };
-            Err(problem + &hint)
+                _ => words,
+            })
         }
     }
 }
@@ -480,10 +486,10 @@ pub fn checked(
 /// Longest word that may stand for a missing value.
 const LONGEST_WORD: usize = 20;
 
-fn missing(cell: &str) -> String {
+fn missing(cell: &str) -> Words {
     match cell.trim() {
         "" => "the cell is empty".into(),
-        cell => format!("\"{}\" is a missing value", clipped(cell)),
+        cell => format!("\"{}\" is a missing value", clipped(cell)).into(),
     }
 }
 

@@ -1,5 +1,5 @@
 //! From tables to data: which column is what, where records begin, which units columns have, and what the tables
-//! were understood as. Errors name file, line and column, and the option that helps, by its name on the command line.
+//! were understood as. Problems name file, line and column, and the option that helps.
 
 // Only the crates of Hysid use this one: what a name says needs no comment.
 #![allow(missing_docs)]
@@ -12,18 +12,16 @@ mod record_names;
 mod table_overview;
 pub mod understanding;
 mod units;
-mod usage;
 mod warnings;
 
-pub use columns::{ColumnChoice, NO_TIME, RateOption, Roles};
-pub use csv_text::{csv_text, header_line, named_after};
+pub use columns::{ColumnChoice, NO_TIME, RateOption, Roles, require};
+pub use csv_text::{IN_MEMORY, csv_text, header_line, named_after};
 pub use data::{
-    CellNeed, Data, DataSource, RecordPlace, checked, column_of, data_of_text, equal_stamps, explained,
-    offset_of, place_of, places_of,
+    CellNeed, Data, DataSource, RecordPlace, checked, column_of, data_of_text, data_words, equal_stamps,
+    explained, offset_of, place_of, places_of,
 };
 pub use reading::{MOST_ROWS_OF_ZERO, READING_OPTIONS, ReadingChoice, ReadingOption, ReadingValues};
 pub use record_names::RecordNames;
 pub use table_overview::{ColumnSummary, TableOverview};
 pub use units::UnitFactors;
-pub use usage::Usage;
 pub use warnings::summarised;

@@ -1,9 +1,8 @@
 //! How tables are read, as options by name: the same on the command line and in the studio.
 
-use hysid_tables::{Delimiter, Reading, RowSelection};
+use hysid_core::words::{Hint, Words};
+use hysid_tables::{Delimiter, Problem, Reading, Result, RowSelection};
 use serde::{Deserialize, Serialize};
-
-use crate::usage::Usage;
 
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct ReadingOption {
@@ -97,17 +96,18 @@ impl ReadingChoice {
     ///
     /// # Errors
     /// A value that is not valid, or two options that contradict each other.
-    pub fn reading(&self) -> Result<Reading, Usage> {
+    pub fn reading(&self) -> Result<Reading> {
         if self.no_header && self.units_row {
-            return Err(Usage(
-                "--units-row: a table without a header (--no-header) has no line of units".into(),
-            ));
+            let header = Words::from("a table without a header (") + Hint::Option("no_header");
+            let words = Words::from(Hint::Option("units_row")) + ": " + header;
+            return Err(Problem::Request(words + ") has no line of units"));
         }
         if self.every == Some(0) {
-            return Err(Usage("--every: a whole number from 1 is needed".into()));
+            return Err(Problem::option("every", "a whole number from 1 is needed"));
         }
         if self.zero.is_some_and(|rows| !(1..=MOST_ROWS_OF_ZERO).contains(&rows)) {
-            return Err(Usage(format!("--zero: a whole number from 1 to {MOST_ROWS_OF_ZERO} is needed")));
+            let needed = format!("a whole number from 1 to {MOST_ROWS_OF_ZERO} is needed");
+            return Err(Problem::option("zero", needed));
         }
         let rows = parsed::<RowSelection>("rows", &self.rows)?.unwrap_or_default();
         Ok(Reading {
@@ -125,10 +125,10 @@ impl ReadingChoice {
 }
 
 fn parsed<T: std::str::FromStr<Err = String>>(
-    name: &str,
+    name: &'static str,
     value: &Option<String>,
-) -> Result<Option<T>, Usage> {
-    let parse = |text: &String| text.parse().map_err(|error| Usage(format!("--{name}: {error}")));
+) -> Result<Option<T>> {
+    let parse = |text: &String| text.parse().map_err(|error| Problem::option(name, error));
     value.as_ref().map(parse).transpose()
 }
 

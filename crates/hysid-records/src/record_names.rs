@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
-use anyhow::{Result, bail};
-
+use hysid_core::words::Words;
 use hysid_document::visible::clipped;
+use hysid_tables::{Problem, Result};
 
 #[derive(Debug, Default)]
 pub struct RecordNames {
@@ -13,21 +13,22 @@ pub struct RecordNames {
 }
 
 impl RecordNames {
-    /// Takes the name in the next row; true if another record begins. `place` is its place in the file.
+    /// Takes the name in the next row; true if another record begins. `problem` adds its place in the file.
     ///
     /// # Errors
     /// No name, or that of a record that ended before.
-    pub fn begins(&mut self, cell: &str, place: impl Fn() -> String) -> Result<bool> {
+    pub fn begins(&mut self, cell: &str, problem: impl Fn(Words) -> Problem) -> Result<bool> {
         let name = cell.trim();
         if self.present.as_deref() == Some(name) {
             return Ok(false);
         }
         if name.is_empty() {
-            bail!("{}: the cell is empty (every row needs the name of its record)", place());
+            let words = Words::from("the cell is empty");
+            return Err(problem(words.advised("every row needs the name of its record")));
         }
         if !self.begun.insert(name.to_string()) {
-            let name = clipped(name);
-            bail!("{}: record \"{name}\" continues after another record (keep its rows together)", place());
+            let words = format!("record \"{}\" continues after another record", clipped(name));
+            return Err(problem(Words::from(words).advised("keep its rows together")));
         }
         self.present = Some(name.to_string());
         Ok(true)

@@ -2,6 +2,8 @@
 
 use hysid_core::data::unit;
 use hysid_core::significant::Significant;
+use hysid_core::words::Words;
+use hysid_document::Face;
 use hysid_document::plain::aligned;
 use hysid_tables::{CellReader, ColumnReader, DecimalSign, Table};
 use serde::Serialize;
@@ -58,7 +60,7 @@ pub struct ColumnSummary {
 
 impl TableOverview {
     /// Of a table whose columns have these roles, if they are known.
-    pub fn of(table: &Table, roles: Option<&Roles>) -> Self {
+    pub fn of(table: &Table, roles: Option<&Roles>, face: Face) -> Self {
         let layout = &table.layout;
         Self {
             file: table.file.clone(),
@@ -76,7 +78,9 @@ impl TableOverview {
             last_line: table.lines.last().copied().unwrap_or_default(),
             left_out: table.left_out.described(),
             read_as: table.described(),
-            columns: (0..table.header.len()).map(|place| ColumnSummary::of(table, place, roles)).collect(),
+            columns: (0..table.header.len())
+                .map(|place| ColumnSummary::of(table, place, roles, face))
+                .collect(),
         }
     }
 
@@ -102,7 +106,7 @@ impl TableOverview {
 }
 
 impl ColumnSummary {
-    fn of(table: &Table, place: usize, roles: Option<&Roles>) -> Self {
+    fn of(table: &Table, place: usize, roles: Option<&Roles>, face: Face) -> Self {
         let name = table.header[place].clone();
         let mut cells = CellReader::new(table.numbers());
         let mut reader = ColumnReader::new(table, place);
@@ -112,7 +116,7 @@ impl ColumnSummary {
             minimum: None,
             maximum: None,
             missing: 0,
-            note: roles.and_then(|roles| reason(roles, &name)),
+            note: roles.and_then(|roles| reason(roles, &name)).map(|reason| face.told(reason)),
             name,
         };
         let mut others = 0;
@@ -165,7 +169,6 @@ fn role(roles: &Roles, name: &String) -> &'static str {
     }
 }
 
-fn reason(roles: &Roles, name: &String) -> Option<String> {
-    let (_, reason) = roles.set_aside.iter().find(|(other, _)| other == name)?;
-    Some(reason.clone())
+fn reason<'r>(roles: &'r Roles, name: &String) -> Option<&'r Words> {
+    roles.set_aside.iter().find(|(other, _)| other == name).map(|(_, reason)| reason)
 }

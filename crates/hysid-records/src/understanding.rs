@@ -6,6 +6,8 @@ use hysid_core::data::summary::Summary;
 use hysid_core::options::FitSpec;
 use hysid_core::options::fit_spec::AutoOptions;
 use hysid_core::significant::Significant;
+use hysid_core::words::{Hint, Words};
+use hysid_document::Face;
 
 use crate::data::Data;
 use hysid_core::data::unit;
@@ -27,23 +29,27 @@ pub fn understanding(
     summary: &Summary,
     request: &FitSpec,
     model: &str,
+    face: Face,
 ) -> Vec<(String, String)> {
     let used = request.rate().filter(|_| request.model().uses_rate());
     let rate = match used {
-        None if request.model().uses_rate() && data.set.has_time() && data.set.speeds() == SpeedEvidence::One => {
-            "none: each input value was passed at one speed only, so the data cannot show a rate dependence (to use the \
-             rate anyway: --rate backward)"
-                .into()
+        None if request.model().uses_rate()
+            && data.set.has_time()
+            && data.set.speeds() == SpeedEvidence::One =>
+        {
+            let words = "none: each input value was passed at one speed only, so the data cannot show a rate dependence";
+            let backward = Hint::Value("rate", "backward".into());
+            face.told(&Words::from(words).advised(Words::from("to use the rate anyway: ") + backward))
         }
         used => rate(&data.roles.inputs[0], data.roles.rate.as_deref(), used),
     };
     let model = format!("{}{model}", request.model().name());
-    let mut lines = of_data(data, summary);
+    let mut lines = of_data(data, summary, face);
     lines.extend([("rate".to_string(), rate), ("model".to_string(), model)]);
     lines
 }
 
-pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
+pub fn of_data(data: &Data, summary: &Summary, face: Face) -> Vec<(String, String)> {
     let mut lines: Vec<(String, String)> = Vec::new();
     let mut say = |label: &str, text: String| lines.push((label.to_string(), text));
     let files: Vec<&str> = data.source.tables.iter().map(|table| table.file.as_str()).collect();
@@ -86,10 +92,10 @@ pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
     };
     say("output", ranged(&data.roles.output, summary.output) + &missing);
     for (name, reason) in data.roles.set_aside.iter().take(MOST_INPUTS) {
-        say("ignored", format!("{}: {reason}", clipped(name)));
+        say("ignored", format!("{}: {}", clipped(name), face.told(reason)));
     }
-    if let Some(guessed) = data.roles.guessed {
-        say("guessed", guessed.into());
+    if let Some(guessed) = &data.roles.guessed {
+        say("guessed", face.told(guessed));
     }
     let first = &data.roles.inputs[0];
     let turning = summary.turning_points();

@@ -1,10 +1,11 @@
 //! The columns of a table for a model that was trained on other units: factors, or why there are none.
 
-use anyhow::{Result, bail};
 use hysid_core::data::record::ColumnNames;
 use hysid_core::data::unit::{self, Conversion};
 use hysid_core::model::Model;
 use hysid_core::significant::Significant;
+use hysid_core::words::{Hint, Words};
+use hysid_tables::{Problem, Result};
 
 use crate::columns::Roles;
 use hysid_document::visible::clipped;
@@ -84,13 +85,13 @@ fn factor(file: &str, found: &str, trained: &str) -> Result<Option<f64>> {
         Conversion::Impossible => {
             let (here, there) = (unit_of(found), unit_of(trained));
             let (found, trained) = (clipped(found), clipped(trained));
-            bail!(
-                "{file}: column \"{found}\" is in {}, the model's \"{trained}\" in {}: no conversion between \
-                 them is known (name another column, convert the numbers, or use them unchanged with \
-                 --same-units)",
+            let words = Words::from(format!(
+                "column \"{found}\" is in {}, the model's \"{trained}\" in {}: no conversion between them is known",
                 clipped(&here),
                 clipped(&there),
-            )
+            ));
+            let advice = "name another column, convert the numbers, or use them unchanged with ";
+            Err(Problem::in_file(file, words.advised(Words::from(advice) + Hint::Option("same_units"))))
         }
     }
 }

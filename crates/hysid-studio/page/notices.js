@@ -1,4 +1,4 @@
-// Problems in the server's words. A word such as --delimiter becomes a link to the control with that name.
+// Problems in the server's words. Options that help are links to their controls.
 
 import { button, element } from "./elements.js";
 import { project } from "./project.js";
@@ -23,22 +23,23 @@ function focusOption(flag) {
 
 const isControl = (flag) => OF_COLUMNS.includes(flag) || [...project.choices.options, ...project.choices.reading].some((option) => option.flag === flag);
 
-/** Words with links to the controls that they name. */
+/** Words with links to controls: a text, or a list of texts and controls. */
 export function linked(words) {
-  const parts = words.split(/(--[a-z][a-z-]*[a-z])/);
-  return element("span", {}, ...parts.map((part) => {
-    return isControl(part) ? button(part, () => focusOption(part), { class: "link" }) : part;
-  }));
+  const link = ({ flag, words: label }) => (isControl(flag) ? button(label, () => focusOption(flag), { class: "link" }) : label);
+  return element("span", {}, ...[words].flat().map((part) => (typeof part === "string" ? part : link(part))));
 }
 
 export const problem = (words) => element("p", { class: "problem" }, linked(words));
+
+/** Why an action failed. */
+export const failure = (error) => problem(error.words ?? error.message);
 
 /** A place for the error of an action; empty as long as there is none. */
 export class Notice {
   constructor() { this.node = element("div", { role: "alert" }); }
   show(words) { this.node.replaceChildren(problem(words)); }
   /** Shows why an action failed. The banner tells when the server is gone. */
-  fail(error) { if (!(error instanceof Gone)) this.show(error.message); }
+  fail(error) { if (!(error instanceof Gone)) this.show(error.words ?? error.message); }
   clear() { this.node.replaceChildren(); }
   /** Runs an action and shows its error, or the words that it gives. */
   async saying(action) {

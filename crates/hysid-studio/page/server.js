@@ -8,8 +8,13 @@ const opened = fetch("/api/session", { method: "POST" })
 const keyHeader = () => ({ "x-hysid-key": localStorage.getItem(KEY) ?? "" });
 if (location.search) history.replaceState(null, "", location.pathname + location.hash);
 
-/** An error in the server's words. */
-class ServerError extends Error {}
+/** An error in the server's words: a text, or a list of texts and controls. */
+class ServerError extends Error {
+  constructor(words) {
+    super([words].flat().map((part) => part.words ?? part).join(""));
+    this.words = words;
+  }
+}
 /** The server cannot be reached. */
 export class Gone extends Error {}
 

@@ -1,10 +1,10 @@
 //! A model driven by hand: a path of inputs, from rest.
 
-use anyhow::{Result, bail};
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Excitation;
 use hysid::model::{Model, Prediction};
 use hysid_app::BAND;
+use hysid_document::{Result, problem};
 
 /// Longest path.
 pub const MOST_ROWS: usize = 20_000;
@@ -21,10 +21,13 @@ impl Path {
         let needs_time = needs_time(model);
         let columns = model.names().inputs.len() + usize::from(needs_time);
         if rows == 0 || rows > MOST_ROWS {
-            bail!("the input must have 1 to {MOST_ROWS} rows, not {rows}");
+            return Err(problem!("the input must have 1 to {MOST_ROWS} rows, not {rows}"));
         }
         if values.len() != columns * rows {
-            bail!("{columns} columns of {rows} rows are needed, not {} numbers", values.len());
+            return Err(problem!(
+                "{columns} columns of {rows} rows are needed, not {} numbers",
+                values.len()
+            ));
         }
         let mut columns = values.chunks_exact(rows).map(<[f64]>::to_vec);
         let time = if needs_time { columns.next() } else { None };
@@ -34,7 +37,7 @@ impl Path {
     /// Simulates a model over the drive: outputs, and the edges of the band if there is one.
     pub fn run(&self, model: &Model) -> Result<Prediction> {
         if model.rate() == Some(RateMethod::Given) {
-            bail!("this model needs a measured rate; it cannot be simulated here");
+            return Err(problem!("this model needs a measured rate; it cannot be simulated here"));
         }
         let inputs = self.inputs.iter().map(Vec::as_slice).collect();
         let mut excitation = Excitation::new("path", inputs)?;

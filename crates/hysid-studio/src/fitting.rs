@@ -10,17 +10,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 
-use anyhow::{Context, Result, anyhow, bail};
 use hysid::Model;
 use hysid::fit::identify;
 use hysid::options::FitSpec;
 use hysid_app::{Beforehand, Identified, check_memory};
+use hysid_document::{Problem, Result, problem};
 use hysid_records::Data;
 
 use latest::Latest;
 pub use preview::FitPreview;
 use state::Candidate;
-pub use state::{FitState, Unsaved};
+pub use state::{FitEnd, FitState};
 use watch::Watch;
 
 /// The fits of a studio: the last one, running or ended.
@@ -62,8 +62,8 @@ pub struct FitWork {
 /// Keeps the best model so far in a file.
 pub type Keep = Box<dyn Fn(&Model) + Send + Sync>;
 
-/// Takes what a fit has found, or why it has found nothing, and gives the number of its model.
-pub type Finish = Box<dyn FnOnce(Result<(Identified, Arc<Data>)>) -> Result<u64> + Send>;
+/// Takes what a fit has found, or why it has found nothing, and says how the fit has ended.
+pub type Finish = Box<dyn FnOnce(Result<(Identified, Arc<Data>)>) -> FitEnd + Send>;
 
 impl Fits {
     /// Begins a fit.
@@ -73,9 +73,10 @@ impl Fits {
     pub fn begin(&self, work: FitWork, finish: Finish, tell: Tell) -> Result<()> {
         let mut last = self.last();
         if last.as_ref().is_some_and(|last| last.course.state().is_running) {
-            bail!("a fit is running: stop it, or wait until it ends");
+            return Err(is_running());
         }
-        let pool = hysid::thread_pool(None).context("cannot start the threads")?;
+        let pool = hysid::thread_pool(None);
+        let pool = pool.map_err(|error| problem!("cannot start the threads: {error}"))?;
         check_memory(&work.data.set, &work.request, pool.current_num_threads())
             .map_err(|error| work.data.explain(error))?;
         let course = Arc::new(FitCourse {
@@ -87,10 +88,10 @@ impl Fits {
         let own = Arc::clone(&course);
         let thread = std::thread::Builder::new().name("fit".into()).spawn(move || {
             let found = caught(|| run(&own, work, &pool));
-            let ended = caught(|| finish(found));
+            let ended = caught(|| Ok(finish(found))).unwrap_or_else(FitEnd::Failed);
             own.change(|state| state.end(ended));
         });
-        let thread = Some(thread.context("cannot start the fit")?);
+        let thread = Some(thread.map_err(|error| problem!("cannot start the fit: {error}"))?);
         *last = Some(RunningFit { course, thread });
         Ok(())
     }
@@ -165,10 +166,15 @@ impl FitCourse {
     }
 }
 
+/// The problem of a second fit.
+pub fn is_running() -> Problem {
+    Problem::Busy("a fit is running: stop it, or wait until it ends".into())
+}
+
 /// Result of `work`; a panic in it is an error.
 pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     let words = "an internal error ended this fit: this is a fault of Hysid, please report it with what the terminal says";
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(anyhow!(words)))
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(words.into()))
 }
 
 fn run(course: &Arc<FitCourse>, work: FitWork, pool: &rayon::ThreadPool) -> Result<(Identified, Arc<Data>)> {
@@ -199,6 +205,7 @@ fn run(course: &Arc<FitCourse>, work: FitWork, pool: &rayon::ThreadPool) -> Resu
 #[cfg(test)]
 mod tests {
     use hysid::options::ModelName;
+    use hysid_document::Face;
     use hysid_records::{Roles, csv_text};
     use hysid_tables::{Reading, Table};
 
@@ -206,13 +213,13 @@ mod tests {
 
     fn work() -> FitWork {
         let specimen = hysid::specimens::Specimen::named("ferromagnet").unwrap();
-        let text = csv_text(&specimen.train_with_seed(1)).unwrap();
+        let text = csv_text(&specimen.train_with_seed(1));
         let path = std::path::Path::new("a.csv");
         let table = Table::from_bytes(path, text.into_bytes(), &Reading::default()).unwrap();
         let roles = Roles::detect(&table, &hysid_records::ColumnChoice::default()).unwrap();
         let data = Arc::new(Data::new(vec![table], roles, None).unwrap());
         let request = FitSpec::of("prandtl-ishlinskii".parse::<ModelName>().unwrap(), None, 1);
-        let beforehand = Beforehand::of(&data, &request).unwrap();
+        let beforehand = Beforehand::of(&data, &request, Face::Studio).unwrap();
         FitWork { id: 1, request, data, beforehand, file: 1, time_limit: None, keep: Box::new(|_| ()) }
     }
 
@@ -223,10 +230,17 @@ mod tests {
         fits.begin(work(), Box::new(|_| panic!("while the model is stored")), Arc::clone(&silent)).unwrap();
         fits.end();
         let state = fits.state().unwrap();
-        assert!(!state.is_running && state.problem.unwrap().contains("an internal error ended this fit"));
+        assert!(
+            !state.is_running && state.problem.unwrap().text().contains("an internal error ended this fit")
+        );
         // One in the fit itself is told to who takes its result.
         let in_fit = FitWork { keep: Box::new(|_| panic!("while the fit runs")), ..work() };
-        fits.begin(in_fit, Box::new(|found| found.map(|_| 7)), silent).unwrap();
+        fits.begin(
+            in_fit,
+            Box::new(|found| found.map_or_else(FitEnd::Failed, |_| FitEnd::Stored(7))),
+            silent,
+        )
+        .unwrap();
         fits.end();
         assert!(!fits.state().unwrap().is_running);
     }

@@ -7,10 +7,10 @@ use std::fs::{self, DirBuilder};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow, bail};
+use hysid_core::words::{Hint, Words};
 use hysid_document::visible::is_hidden;
+use hysid_document::{Problem, Result, problem};
 use hysid_files::{Destination, Failure, Kind, Lock};
-use hysid_records::Usage;
 
 use entrance::ENTRANCE;
 use readings::Readings;
@@ -67,7 +67,8 @@ impl Folder {
         if let Some(asked) = asked {
             return Self::locked(asked)?.ok_or_else(|| {
                 let advice = "another studio has this project open: close it, or name another folder";
-                Usage(format!("{}: {advice} with --project", asked.display())).into()
+                let words = Words::from(format!("{}: {advice} with ", asked.display()));
+                Problem::Request(words + Hint::Option("project"))
             });
         }
         for number in 1..=MOST_FOLDERS {
@@ -76,9 +77,9 @@ impl Folder {
                 return Ok(folder);
             }
         }
-        Err(anyhow!(
-            "the default folders up to {DEFAULT}-{MOST_FOLDERS} are in use: name a folder with --project"
-        ))
+        let words =
+            format!("the default folders up to {DEFAULT}-{MOST_FOLDERS} are in use: name a folder with ");
+        Err(Problem::Other(Words::from(words) + Hint::Option("project")))
     }
 
     /// `None` if another process has it.
@@ -90,7 +91,7 @@ impl Folder {
             make_private(&asked.join(inner.name()))?;
             check_folder(&asked.join(inner.name()))?;
         }
-        let root = fs::canonicalize(asked).with_context(|| shown.to_string())?;
+        let root = fs::canonicalize(asked).map_err(|error| problem!("{shown}: {error}"))?;
         match Lock::acquire(&root.join(PROJECT)) {
             Ok(lock) => {
                 let data = root.join(ProjectFolder::Data.name());
@@ -101,7 +102,7 @@ impl Folder {
                 Ok(Some(Self { root, readings: Readings::left_in(&data), _lock: lock }))
             }
             Err(Failure::InUse(_)) => Ok(None),
-            Err(failure) => Err(anyhow!("{failure}")),
+            Err(failure) => Err(problem!("{failure}")),
         }
     }
 
@@ -144,7 +145,7 @@ impl Folder {
     /// The content of a file of the project.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
         self.check_file(path)?;
-        hysid_files::read(path).map_err(anyhow::Error::msg)
+        hysid_files::read(path).map_err(Problem::from)
     }
 
     /// Removes a file of the project; one that is not there, or not plain, stays as it is.
@@ -168,7 +169,7 @@ impl Folder {
         check_folder(path.parent().unwrap_or(&self.root))?;
         let found = fs::symlink_metadata(path).map_err(|error| cannot_read(path, &error))?;
         if !found.is_file() {
-            bail!("{}: is no plain file, and a project holds only those", path.display());
+            return Err(problem!("{}: is no plain file, and a project holds only those", path.display()));
         }
         Ok(())
     }
@@ -183,7 +184,7 @@ impl Folder {
         }
         check_folder(path.parent().unwrap_or(&self.root))?;
         let destination = Destination::new(path, kind, false).keeping_the_old(false);
-        destination.write(content).map(|_| ()).map_err(|failure| anyhow!("{failure}"))
+        destination.write(content).map(|_| ()).map_err(|failure| problem!("{failure}"))
     }
 
     /// Text of the project file, if there is one.
@@ -193,7 +194,7 @@ impl Folder {
             return Ok(None);
         }
         let text = String::from_utf8(self.read(&path)?);
-        text.map(Some).map_err(|_| anyhow!("{}: is no text", path.display()))
+        text.map(Some).map_err(|_| problem!("{}: is no text", path.display()))
     }
 
     /// Writes what was chosen and made, as a whole or not at all.
@@ -206,15 +207,15 @@ impl Folder {
 }
 
 /// Error for a file that cannot be read.
-pub fn cannot_read(path: &Path, error: &std::io::Error) -> anyhow::Error {
-    anyhow!(hysid_files::unreadable(&path.display().to_string(), error))
+pub fn cannot_read(path: &Path, error: &std::io::Error) -> Problem {
+    hysid_files::unreadable(&path.display().to_string(), error).into()
 }
 
 /// Refuses a link in the place of a folder of the project.
 fn check_folder(folder: &Path) -> Result<()> {
     match fs::symlink_metadata(folder) {
         Ok(found) if found.is_dir() => Ok(()),
-        Ok(_) => bail!("{}: is no folder, and a project holds no links", folder.display()),
+        Ok(_) => Err(problem!("{}: is no folder, and a project holds no links", folder.display())),
         Err(error) => Err(cannot_read(folder, &error)),
     }
 }
@@ -222,7 +223,7 @@ fn check_folder(folder: &Path) -> Result<()> {
 /// Makes a folder that only the user can enter; one that is there stays as it is.
 fn make_private(folder: &Path) -> Result<()> {
     let failed = |error: std::io::Error| {
-        anyhow!("{}: cannot be made: {}", folder.display(), hysid_files::reason(&error))
+        problem!("{}: cannot be made: {}", folder.display(), hysid_files::reason(&error))
     };
     fs::create_dir_all(folder.parent().unwrap_or(Path::new(""))).map_err(failed)?;
     let mut builder = DirBuilder::new();
@@ -257,11 +258,14 @@ fn check_ours(folder: &Path) -> Result<()> {
     let mut entries = match fs::read_dir(folder) {
         Ok(entries) => entries.flatten(),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => bail!("{}: cannot be opened: {}", folder.display(), hysid_files::reason(&error)),
+        Err(error) => {
+            return Err(problem!("{}: cannot be opened: {}", folder.display(), hysid_files::reason(&error)));
+        }
     };
     if entries.any(|entry| !is_of_lock(&entry)) {
-        let advice = "is not a Hysid project and is not empty: name another folder with --project";
-        return Err(Usage(format!("{} {advice}", folder.display())).into());
+        let advice = "is not a Hysid project and is not empty: name another folder with ";
+        let words = Words::from(format!("{} {advice}", folder.display()));
+        return Err(Problem::Request(words + Hint::Option("project")));
     }
     Ok(())
 }

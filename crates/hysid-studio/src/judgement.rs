@@ -3,13 +3,13 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use anyhow::{Context, Result};
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
 use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualFinding, ResidualOptions, Residuals};
 use hysid::model::{Model, Prediction};
 use hysid_app::residual_words::{name, p_value, verdict};
 use hysid_app::{BAND, BandCoverage, ReportSet};
+use hysid_document::{Problem, Result};
 use hysid_records::summarised;
 use serde_json::{Value, json};
 
@@ -108,7 +108,9 @@ pub fn members(model: &Model, data: &Dataset) -> Result<Vec<(String, Vec<f64>)>>
         let name = format!("{} {}", number + 1, member.name().name());
         let of_record = |record: &Record| member.simulate(record);
         let output: hysid::Result<Vec<Vec<f64>>> = data.records().iter().map(of_record).collect();
-        let output = output.with_context(|| format!("member {name} cannot run on these data"))?;
+        let output = output.map_err(|error| {
+            Problem::Library(error).within(format!("member {name} cannot run on these data"))
+        })?;
         Ok((name, output.concat()))
     };
     ensemble.members().iter().enumerate().map(run).collect()

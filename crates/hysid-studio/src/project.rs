@@ -1,9 +1,9 @@
 //! Content of a project: files, how they are read, models. It is one JSON file in the project's folder.
 
-use anyhow::{Result, anyhow, bail};
 use hysid::options::chosen::RateChoice;
 use hysid::options::table::{OPTIONS, OptionValues};
-use hysid_records::{ColumnChoice, RateOption, ReadingChoice, Roles, Usage};
+use hysid_document::{Problem, Result, problem};
+use hysid_records::{ColumnChoice, RateOption, ReadingChoice, Roles};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -164,13 +164,15 @@ impl Project {
     pub fn of(folder: &Folder) -> Result<Self> {
         let Some(text) = folder.read_project()? else { return Ok(Self::default()) };
         let file = folder.root().join("project.json");
-        let wrong = |what: String| anyhow!("{}: {what}", file.display());
+        let wrong = |what: String| problem!("{}: {what}", file.display());
         let value: Value = serde_json::from_str(&text)
             .map_err(|error| wrong(format!("is damaged: {error} (restore it, or open another folder)")))?;
         match (value["format"].as_str(), value["version"].as_u64()) {
             (Some("hysid-project"), Some(version)) if version <= u64::from(VERSION) => {}
-            (Some("hysid-project"), _) => bail!(wrong("was written by a later version of Hysid".into())),
-            _ => bail!(wrong("is not a Hysid project".into())),
+            (Some("hysid-project"), _) => {
+                return Err(wrong("was written by a later version of Hysid".into()));
+            }
+            _ => return Err(wrong("is not a Hysid project".into())),
         }
         let project: Self =
             serde_json::from_value(value).map_err(|error| wrong(format!("is damaged: {error}")))?;
@@ -184,23 +186,23 @@ impl Project {
         let mut ids: Vec<u64> = self.files.iter().map(|file| file.id).chain(of_models).collect();
         ids.sort_unstable();
         if let Some(twice) = ids.windows(2).find(|pair| pair[0] == pair[1]) {
-            bail!("the number {} is there twice", twice[0]);
+            return Err(problem!("the number {} is there twice", twice[0]));
         }
         let last = ids.into_iter().chain(self.unfinished.iter().map(|begun| begun.id)).max().unwrap_or(0);
         self.next = self.next.max(last.saturating_add(1));
         if self.next > LARGEST_ID {
-            bail!("a number is too large");
+            return Err(problem!("a number is too large"));
         }
         let of_data = self.files.iter().map(|file| file.name.as_str());
         let of_models =
             self.models.iter().flat_map(|model| std::iter::once(&model.file).chain(&model.report));
         for mut names in [of_data.collect::<Vec<&str>>(), of_models.map(String::as_str).collect()] {
             if let Some(other) = names.iter().find(|name| plain(name) != **name) {
-                bail!("{other:?} is no name of a file in the project");
+                return Err(problem!("{other:?} is no name of a file in the project"));
             }
             names.sort_unstable();
             if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-                bail!("the file {:?} is there twice", twice[0]);
+                return Err(problem!("the file {:?} is there twice", twice[0]));
             }
         }
         Ok(self)
@@ -217,11 +219,14 @@ impl Project {
     }
 
     pub fn file(&self, id: u64) -> Result<&ProjectFile> {
-        self.files.iter().find(|file| file.id == id).ok_or_else(|| anyhow!("there is no file {id}"))
+        self.files.iter().find(|file| file.id == id).ok_or_else(|| problem!("there is no file {id}"))
     }
 
     pub fn model(&self, id: u64) -> Result<&ProjectModel> {
-        self.models.iter().find(|model| model.begun.id == id).ok_or_else(|| anyhow!("there is no model {id}"))
+        self.models
+            .iter()
+            .find(|model| model.begun.id == id)
+            .ok_or_else(|| problem!("there is no model {id}"))
     }
 
     pub fn files_for(&self, usage: Use) -> impl Iterator<Item = &ProjectFile> {
@@ -243,14 +248,13 @@ impl Understanding {
 
 impl FitRequest {
     /// The same with values in place of their texts, as a form gives them.
-    pub fn with_values(mut self) -> Result<Self, Usage> {
+    pub fn with_values(mut self) -> Result<Self> {
         for (name, value) in &mut self.options {
             let Some(option) = OPTIONS.iter().find(|option| option.name == name) else { continue };
             if let Value::String(text) = value
                 && !matches!(option.values, OptionValues::Names(_))
             {
-                let needed = |needed| Usage(format!("--{}: {needed}", name.replace('_', "-")));
-                *value = option.read(text).map_err(needed)?;
+                *value = option.read(text).map_err(|needed| Problem::option(option.name, needed))?;
             }
         }
         Ok(self)
@@ -262,7 +266,7 @@ impl FitRequest {
             return Ok(RateOption::Column(column));
         }
         let method = self.rate.as_deref().unwrap_or("auto");
-        let choice: RateChoice = method.parse().map_err(|error| Usage(format!("--rate: {error}")))?;
+        let choice: RateChoice = method.parse().map_err(|error| Problem::option("rate", error))?;
         Ok(RateOption::Choice(choice))
     }
 }

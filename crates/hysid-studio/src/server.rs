@@ -17,8 +17,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use anyhow::{Context, Result, anyhow};
-use hysid_records::Usage;
+use hysid_core::words::{Hint, Words};
+use hysid_document::{Problem, Result, problem};
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, watch};
@@ -82,21 +82,23 @@ impl Server {
             .thread_name("studio")
             .enable_all()
             .build()
-            .context("cannot start the threads")?;
+            .map_err(|error| problem!("cannot start the threads: {error}"))?;
         let bind = |port: u16| {
             let address = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
             runtime.block_on(TcpListener::bind(address))
         };
+        let no_port = |error| problem!("no port of this machine can be used: {error}");
         let listener = match port {
             Some(port) => bind(port).map_err(|error| match error.kind() {
-                std::io::ErrorKind::AddrInUse => anyhow::Error::from(Usage(format!(
-                    "port {port} is in use: name another one with --port, or leave it out"
-                ))),
-                _ => anyhow!("port {port} cannot be used: {}", hysid_files::reason(&error)),
+                std::io::ErrorKind::AddrInUse => {
+                    let words = Words::from(format!("port {port} is in use: name another one with "));
+                    Problem::Request(words + Hint::Option("port") + ", or leave it out")
+                }
+                _ => problem!("port {port} cannot be used: {}", hysid_files::reason(&error)),
             })?,
-            None => bind(PORT).or_else(|_| bind(0)).context("no port of this machine can be used")?,
+            None => bind(PORT).or_else(|_| bind(0)).map_err(no_port)?,
         };
-        let port = listener.local_addr()?.port();
+        let port = listener.local_addr().map_err(no_port)?.port();
         let (ending, is_over) = watch::channel(false);
         let keys = Arc::new(Keys::new(Arc::clone(&studio), port)?);
         let semaphore = |permits| Arc::new(Semaphore::new(permits));

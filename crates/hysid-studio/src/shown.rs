@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use anyhow::Result;
 use hysid::model::Model;
 use hysid::model::selection::CandidateResult;
+use hysid_document::Result;
 use hysid_document::{object, unit};
 use hysid_records::{Data, Roles};
 use serde_json::{Value, json};
@@ -15,7 +15,7 @@ use crate::fitting::FitState;
 use crate::folder::Folder;
 use crate::project::{ChosenColumns, Project, ProjectFile, ProjectModel};
 use crate::view::{FileView, View};
-use crate::words::said;
+use crate::words::{Said, said};
 
 /// Of a project whose files are read as in the view. `model` gives the model of a stored one.
 pub fn shown(
@@ -85,7 +85,7 @@ fn of_file(file: &ProjectFile, view: Option<&FileView>, is_held_back: bool) -> V
         "rows": table.map_or(0, |table| table.rows),
         "columns": table.map_or(&[][..], |table| &table.looked.columns),
         "records": data.map_or_else(Vec::new, |data| records(data)),
-        "warnings": data.map_or(&[][..], |data| &data.warnings),
+        "warnings": data.iter().flat_map(|data| data.warnings.iter().cloned().map(Said::from)).collect::<Vec<_>>(),
     })
 }
 

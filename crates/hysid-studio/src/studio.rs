@@ -9,7 +9,7 @@ mod tests;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
 
-use anyhow::Result;
+use hysid_document::Result;
 use serde_json::Value;
 use tokio::sync::watch;
 

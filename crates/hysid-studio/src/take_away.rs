@@ -3,33 +3,36 @@
 use std::io::{Cursor, Write};
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow};
 use hysid::model::Model;
 use hysid::options::table::{OPTIONS, OptionValues};
-use hysid::termination::Termination;
+use hysid_core::termination::Termination;
 use hysid_document::shell::{flag, option, shown};
+use hysid_document::{Problem, Result, problem};
 use hysid_export::{Options, Target};
 use hysid_records::ReadingChoice;
 use serde_json::{Value, json};
+use zip::result::ZipError;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
 use crate::project::{Begun, ProjectModel};
 
 /// A model for a target, as one archive; and its name.
 pub fn archive(model: &Model, stored: &ProjectModel, target: &str) -> Result<(String, Vec<u8>)> {
-    let to = Target::named(target).ok_or_else(|| anyhow!("there is no target \"{target}\""))?;
+    let to = Target::named(target).ok_or_else(|| problem!("there is no target \"{target}\""))?;
     let name = identifier(&stored.file);
     let mut options = Options::named(name.clone());
     options.source = vec![("model file".into(), stored.file.clone())];
-    let export = hysid_export::export(model, to, &options)?;
+    let export =
+        hysid_export::export(model, to, &options).map_err(|error| Problem::from(error.to_string()))?;
     let folder = format!("{name}_{target}");
+    let failed = |error: ZipError| problem!("cannot make the archive: {error}");
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let stored = SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
     for file in &export.files {
-        archive.start_file(format!("{folder}/{}", file.path), stored).context("cannot make the archive")?;
-        archive.write_all(&file.content)?;
+        archive.start_file(format!("{folder}/{}", file.path), stored).map_err(failed)?;
+        archive.write_all(&file.content).map_err(|error| failed(error.into()))?;
     }
-    let content = archive.finish().context("cannot make the archive")?.into_inner();
+    let content = archive.finish().map_err(failed)?.into_inner();
     Ok((format!("{folder}.zip"), content))
 }
 

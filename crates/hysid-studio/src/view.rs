@@ -5,13 +5,13 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-use anyhow::{Result, anyhow, bail};
+use hysid_document::{Face, Problem, Result, problem};
 use hysid_records::{Data, Roles, TableOverview};
 use hysid_tables::{Reading, Table};
 
 use crate::folder::Folder;
 use crate::project::{Project, ProjectFile, Understanding, Use};
-use crate::words::said;
+use crate::words::{Said, said};
 
 /// Time between two views that are shown while files are read.
 const BETWEEN_VIEWS: Duration = Duration::from_secs(1);
@@ -28,13 +28,13 @@ pub struct View {
     /// Which column is what; `None` without a file, or with [`View::problem`].
     pub roles: Option<Roles>,
     /// Why the roles of the columns of the first file cannot be found.
-    pub problem: Option<String>,
+    pub problem: Option<Said>,
     /// All training files together, once they were asked for.
     together: OnceLock<Arc<Data>>,
     /// The diagnosis of the training data, or why there is none, once it was asked for.
-    pub diagnosis: OnceLock<std::result::Result<String, String>>,
+    pub diagnosis: OnceLock<std::result::Result<String, Said>>,
     /// The cycles of the training data, as the diagnosis.
-    pub cycles: OnceLock<std::result::Result<String, String>>,
+    pub cycles: OnceLock<std::result::Result<String, Said>>,
 }
 
 /// A table that was read before its file was in the project, with the number of the file.
@@ -46,7 +46,7 @@ pub struct FileView {
     /// The data, if the columns can be used.
     pub data: Option<Arc<Data>>,
     /// Why it cannot be used.
-    pub problem: Option<String>,
+    pub problem: Option<Said>,
     roles: Option<Roles>,
 }
 
@@ -79,7 +79,7 @@ impl View {
         let reading = match understanding.reading.reading() {
             Ok(reading) => reading,
             Err(problem) => {
-                view.problem = Some(said(&problem.into()));
+                view.problem = Some(said(&problem));
                 view.of.clone_from(&project.files);
                 return view;
             }
@@ -157,28 +157,29 @@ impl View {
     }
 
     pub fn file(&self, id: u64) -> Result<&Arc<FileView>> {
-        self.files.iter().find(|file| file.id == id).ok_or_else(|| anyhow!("there is no file {id}"))
+        self.files.iter().find(|file| file.id == id).ok_or_else(|| problem!("there is no file {id}"))
     }
 
     pub fn data(&self, id: u64) -> Result<Arc<Data>> {
         let file = self.file(id)?;
         let problem = file.problem.as_ref().or(self.problem.as_ref());
-        file.data
-            .clone()
-            .ok_or_else(|| anyhow!(problem.map_or("this file is not read", String::as_str).to_string()))
+        let not_read = || "this file is not read".into();
+        file.data.clone().ok_or_else(|| problem.map_or_else(not_read, |said| said.clone().into()))
     }
 
     /// The training files of the project that this is a view of, as one set of data.
     pub fn training(&self, project: &Project, folder: &Folder) -> Result<Arc<Data>> {
         let files: Vec<&ProjectFile> = project.files_for(Use::Training).collect();
         match (files.as_slice(), self.together.get()) {
-            ([], _) => bail!("there are no training data: drop a file, or choose one for training"),
+            ([], _) => {
+                return Err(problem!("there are no training data: drop a file, or choose one for training"));
+            }
             ([one], _) => return self.data(one.id),
             (_, Some(together)) => return Ok(Arc::clone(together)),
             _ => {}
         }
-        let problem = self.problem.as_deref().unwrap_or("the files are not read");
-        let roles = self.roles.clone().ok_or_else(|| anyhow!(problem.to_string()))?;
+        let problem = || self.problem.clone().unwrap_or_else(|| "the files are not read".into());
+        let roles = self.roles.clone().ok_or_else(|| Problem::from(problem()))?;
         let reading = &project.understanding.reading;
         let as_read = reading.reading()?;
         let tables = files.iter().map(|file| read(file, folder, &as_read)).collect::<Result<_>>()?;
@@ -204,7 +205,7 @@ impl FileView {
                 return view;
             }
         };
-        let looked = TableOverview::of(&table, roles);
+        let looked = TableOverview::of(&table, roles, Face::Studio);
         view.table = Some(TableView { read_as: table.described(), rows: table.rows(), looked });
         let Some(roles) = roles else { return view };
         let data = roles

@@ -2,10 +2,64 @@
 
 use std::borrow::Cow;
 
+use hysid_core::words::{Phrase, Words};
+use hysid_document::shell::flag;
+use hysid_document::{Face, Problem};
+use serde::{Serialize, Serializer};
+use serde_json::json;
+
 const MOST_LETTERS: usize = 1000;
 
-pub fn said(error: &anyhow::Error) -> String {
-    shortened(&format!("{error:#}")).into_owned()
+/// Words of a problem for the page, which makes links of the hints: a text, or texts and controls by their options.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Said(Words);
+
+impl Said {
+    /// All of it as text.
+    pub fn text(&self) -> String {
+        Face::Studio.told(&self.0)
+    }
+}
+
+impl From<Words> for Said {
+    fn from(words: Words) -> Self {
+        Self(words)
+    }
+}
+
+impl From<String> for Said {
+    fn from(text: String) -> Self {
+        Self(text.into())
+    }
+}
+
+impl From<&str> for Said {
+    fn from(text: &str) -> Self {
+        Self(text.into())
+    }
+}
+
+impl From<Said> for Problem {
+    fn from(said: Said) -> Self {
+        Self::Other(said.0)
+    }
+}
+
+impl Serialize for Said {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let value = |phrase: &Phrase| match phrase {
+            Phrase::Text(text) => json!(shortened(text)),
+            Phrase::Hint(hint) => json!({"flag": flag(hint.option()), "words": Face::Studio.hint(hint)}),
+        };
+        match self.0.phrases() {
+            [Phrase::Text(text)] => serializer.serialize_str(&shortened(text)),
+            phrases => serializer.collect_seq(phrases.iter().map(value)),
+        }
+    }
+}
+
+pub fn said(problem: &Problem) -> Said {
+    Said(problem.words())
 }
 
 /// The text, or its beginning and end if it is long.

@@ -1,9 +1,11 @@
 //! The numbers of a column, row by row.
 
+use hysid_core::words::Words;
 use hysid_document::visible::clipped;
 
 use crate::head::Head;
 use crate::number::{CellReader, ThousandsWatch, is_missing};
+use crate::problem::CellProblem;
 use crate::stamp::{Stamp, StampReader};
 
 /// Reads the cells of a column: numbers, numbers with their unit, dates or clocks.
@@ -38,12 +40,15 @@ impl ColumnReader {
         cells: &mut CellReader,
         cell: &str,
         line: u64,
-    ) -> Result<f64, String> {
+    ) -> Result<f64, CellProblem> {
         if let Some(stamps) = &mut self.stamps {
             return match Stamp::of(cell) {
                 Some(stamp) => Ok(stamps.seconds(stamp)),
                 None if is_missing(cell) => Ok(f64::NAN),
-                None => Err(format!("\"{}\" is no date and no clock with seconds", clipped(cell))),
+                None => {
+                    let words = format!("\"{}\" is no date and no clock with seconds", clipped(cell));
+                    Err(CellProblem::Other(words.into()))
+                }
             };
         }
         let digits = head.bare(self.place, cell)?;
@@ -52,7 +57,7 @@ impl ColumnReader {
     }
 
     /// Problem of the column as a whole, with the first line that shows it.
-    pub fn problem(&self, cells: &CellReader) -> Option<(u64, String)> {
+    pub fn problem(&self, cells: &CellReader) -> Option<(u64, Words)> {
         self.thousands.problem(cells)
     }
 }

@@ -9,14 +9,15 @@ mod spreadsheet;
 use std::io::{self, Cursor, Read};
 use std::path::Path;
 
-use anyhow::{Error, Result, anyhow};
 use flate2::read::MultiGzDecoder;
 
+use hysid_core::words::Words;
 use hysid_files::unreadable;
 
 use crate::reading::Reading;
 pub use budget::THREAD;
 use budget::UnpackingReader;
+use hysid_document::{Problem, Result};
 
 /// Bytes that identify the format of a file.
 const FIRST: usize = 1 << 16;
@@ -38,7 +39,7 @@ impl DecodedText {
             return Self::new("standard input".into(), Box::new(io::stdin()), reading);
         }
         let file = path.display().to_string();
-        let reader = hysid_files::open(path).map_err(Error::msg)?;
+        let reader = hysid_files::open(path).map_err(Problem::from)?;
         Self::new(file, Box::new(reader), reading)
     }
 
@@ -50,12 +51,13 @@ impl DecodedText {
             packed = ", gzip";
             (reader, first) = peeked(&file, Box::new(UnpackingReader::of(reader, MultiGzDecoder::new)))?;
         }
-        let failed =
-            |what: &str, problem: String| anyhow!("{file}: is {what} that cannot be read: {problem}");
+        let failed = |what: &str, problem: Words| {
+            Problem::in_file(&file, Words::from(format!("is {what} that cannot be read: ")) + problem)
+        };
         if first.starts_with(b"PK\x03\x04") || first.starts_with(spreadsheet::COMPOUND) {
             let bytes = all(&file, reader)?;
             let (text, sheet, other_sheets) = spreadsheet::text(bytes, reading.sheet.clone())
-                .map_err(|problem| failed("a spreadsheet or an archive", problem))?;
+                .map_err(|problem| failed("a spreadsheet or an archive", problem.into()))?;
             let stored = format!("spreadsheet, sheet {sheet}{packed}");
             return Ok(Self { file, reader: Box::new(Cursor::new(text)), stored, other_sheets });
         }
@@ -66,7 +68,7 @@ impl DecodedText {
             let stored = format!("{kind}{packed}");
             return Ok(Self { file, reader: Box::new(Cursor::new(text)), stored, other_sheets: Vec::new() });
         }
-        check_kind(&first).map_err(|what| anyhow!("{file}: {what}"))?;
+        check_kind(&first).map_err(|what| Problem::in_file(&file, what))?;
         let (reader, encoding) = encoding::decoded(reader, &first, reading.encoding);
         Ok(Self { file, reader, stored: format!("text, {encoding}{packed}"), other_sheets: Vec::new() })
     }
@@ -76,13 +78,13 @@ impl DecodedText {
 fn peeked(file: &str, mut reader: Box<dyn Read>) -> Result<(Box<dyn Read>, Vec<u8>)> {
     let mut first = Vec::new();
     let mut beginning = reader.by_ref().take(FIRST as u64);
-    beginning.read_to_end(&mut first).map_err(|error| Error::msg(unreadable(file, &error)))?;
+    beginning.read_to_end(&mut first).map_err(|error| unreadable(file, &error))?;
     Ok((Box::new(Cursor::new(first.clone()).chain(reader)), first))
 }
 
 fn all(file: &str, mut reader: Box<dyn Read>) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    reader.read_to_end(&mut bytes).map_err(|error| Error::msg(unreadable(file, &error)))?;
+    reader.read_to_end(&mut bytes).map_err(|error| unreadable(file, &error))?;
     Ok(bytes)
 }
 
@@ -129,7 +131,7 @@ mod tests {
         let bytes = bytes.to_vec();
         let mut text = DecodedText::new("f".into(), Box::new(Cursor::new(bytes)), &Reading::default())?;
         let mut content = String::new();
-        text.reader.read_to_string(&mut content)?;
+        text.reader.read_to_string(&mut content).unwrap();
         Ok((content, text.stored))
     }
 

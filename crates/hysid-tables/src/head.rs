@@ -2,13 +2,15 @@
 
 use std::collections::HashMap;
 
-use anyhow::{Result, bail};
 use hysid_core::data::unit;
+use hysid_core::words::{Hint, Words};
 use hysid_document::visible::clipped;
 
 use crate::layout::{Layout, bare};
 use crate::number::{DecimalSign, NumberFormat};
+use crate::problem::CellProblem;
 use crate::reading::{Delimiter, Reading};
+use hysid_document::{Problem, Result};
 
 /// A file and the layout of its table.
 #[derive(Debug)]
@@ -75,29 +77,31 @@ impl Head {
         if others.is_empty() { first.clone() } else { format!("{first}; {}", others.join(", ")) }
     }
 
-    /// Message on a table without rows.
-    pub fn no_rows(&self) -> String {
-        let file = &self.file;
-        match self.other_sheets.as_slice() {
-            _ if !self.reading.rows.is_all() => format!("{file}: has no row that --rows selects"),
-            [] => format!("{file}: has a header but no rows"),
-            others => format!(
-                "{file}: has no rows of numbers in {} (choose another sheet with --sheet: {})",
-                self.stored.rsplit(", ").next().unwrap_or_default(),
-                others.iter().map(|name| clipped(name)).collect::<Vec<_>>().join(", ")
-            ),
-        }
+    /// The problem of a table without rows.
+    pub fn no_rows(&self) -> Problem {
+        let words = match self.other_sheets.as_slice() {
+            _ if !self.reading.rows.is_all() => {
+                Words::from("has no row that ") + Hint::Option("rows") + " selects"
+            }
+            [] => "has a header but no rows".into(),
+            others => {
+                let stored = self.stored.rsplit(", ").next().unwrap_or_default();
+                let others = others.iter().map(|name| clipped(name)).collect::<Vec<_>>().join(", ");
+                let choice = Words::from("choose another sheet with ") + Hint::Option("sheet");
+                Words::from(format!("has no rows of numbers in {stored}"))
+                    .advised(choice + format!(": {others}"))
+            }
+        };
+        Problem::in_file(&self.file, words)
     }
 
     /// Refuses a single column where more are needed: it is likely to be several, separated by something else.
     pub fn require_columns(&self) -> Result<()> {
         if let [name] = self.header.as_slice() {
-            bail!(
-                "{}, line {}: there is only one column, \"{}\" (what separates the columns? name it with --delimiter)",
-                self.file,
-                self.layout.header_lines.first().unwrap_or(&self.layout.line),
-                clipped(name)
-            );
+            let line = *self.layout.header_lines.first().unwrap_or(&self.layout.line);
+            let advice = Words::from("what separates the columns? name it with ") + Hint::Option("delimiter");
+            let words = Words::from(format!("there is only one column, \"{}\"", clipped(name)));
+            return Err(Problem::at(&self.file, line, words.advised(advice)));
         }
         Ok(())
     }
@@ -121,14 +125,16 @@ impl Head {
     }
 
     /// A cell without the unit that all numbers of its column have.
-    pub fn bare<'c>(&self, place: usize, cell: &'c str) -> Result<&'c str, String> {
+    pub fn bare<'c>(&self, place: usize, cell: &'c str) -> Result<&'c str, CellProblem> {
         let Some(unit) = self.layout.cell_units.get(place).and_then(Option::as_deref) else {
             return Ok(cell);
         };
         match bare(cell) {
             (digits, Some(found)) if found == unit => Ok(digits),
             (_, Some(found)) => {
-                Err(format!("\"{}\" is in {}, other cells are in {unit}", clipped(cell), clipped(found)))
+                let words =
+                    format!("\"{}\" is in {}, other cells are in {unit}", clipped(cell), clipped(found));
+                Err(CellProblem::Other(words.into()))
             }
             (text, None) => Ok(text),
         }

@@ -8,11 +8,12 @@ mod lines;
 mod numbers;
 mod run;
 
-use anyhow::{Result, bail, ensure};
+use hysid_core::words::Words;
 
 use crate::number::NumberFormat;
 use crate::reading::{Delimiter, Reading};
 use header::Header;
+use hysid_document::{Problem, Result};
 use lines::TextLine;
 use run::LineRun;
 
@@ -64,8 +65,8 @@ impl Layout {
     pub fn find(file: &str, text: &str, is_all: bool, reading: &Reading) -> Result<Self> {
         let lines = lines::lines(text, is_all, reading.skip);
         if lines.iter().all(TextLine::is_blank) {
-            ensure!(is_all, "{file}: begins with more than {} blank lines (remove them)", lines.len());
-            bail!("{file}: {IS_EMPTY}");
+            let more = || format!("begins with more than {} blank lines (remove them)", lines.len());
+            return Err(Problem::in_file(file, if is_all { IS_EMPTY.into() } else { more() }));
         }
         let delimiters = reading.delimiter.as_ref().map_or(&Delimiter::ALL[..], std::slice::from_ref);
         let runs: Vec<Vec<LineRun>> =
@@ -95,10 +96,11 @@ impl Layout {
         };
         layout.name_units();
         if let Some(name) = layout.names.iter().find(|name| name.len() > LONGEST_NAME) {
-            let (line, letters) = (layout.line, name.chars().count());
-            bail!(
-                "{file}, above line {line}: the name of a column has {letters} characters, and {LONGEST_NAME} are allowed"
-            );
+            let line = layout.header_lines.last().unwrap_or(&layout.line);
+            let letters = name.chars().count();
+            let words =
+                format!("the name of a column has {letters} characters, and {LONGEST_NAME} are allowed");
+            return Err(Problem::at(file, *line, Words::from(words).helpful()));
         }
         Ok(layout)
     }
@@ -106,7 +108,7 @@ impl Layout {
     /// Of a text without a row of numbers: its first line is the header, and what follows is reported where it is read.
     fn without_rows(file: &str, lines: &[TextLine<'_>], reading: &Reading) -> Result<Self> {
         let Some(place) = lines.iter().position(|line| !line.is_blank() && !line.is_comment) else {
-            bail!("{file}: {IS_EMPTY}");
+            return Err(Problem::in_file(file, IS_EMPTY));
         };
         let line = &lines[place];
         let most = |&delimiter: &Delimiter| cells::split(line.text, delimiter).len();
@@ -189,18 +191,23 @@ fn table(
 }
 
 /// Message on a row with more or fewer cells than the table has columns.
-pub fn width_problem(found: usize, expected: usize, row: &[&str], delimiter: Delimiter) -> String {
-    let hint = match delimiter {
-        _ if row.iter().any(|cell| cell.contains(['\n', '\r'])) => " (is a quotation mark not closed?)",
-        Delimiter::COMMA if found > expected => " (decimal commas? separate the columns by semicolons)",
-        _ => "",
-    };
-    cells_and_names(found, expected) + hint
+pub fn width_problem(found: usize, expected: usize, row: &[&str], delimiter: Delimiter) -> Words {
+    let words = cells_and_names(found, expected);
+    match delimiter {
+        _ if row.iter().any(|cell| cell.contains(['\n', '\r'])) => {
+            words.advised("is a quotation mark not closed?")
+        }
+        Delimiter::COMMA if found > expected => words.advised(DECIMAL_COMMAS),
+        _ => words,
+    }
 }
 
+/// Advice on rows with more cells than names, separated by commas.
+const DECIMAL_COMMAS: &str = "decimal commas? separate the columns by semicolons";
+
 /// That a row has another number of cells than the header has names.
-fn cells_and_names(cells: usize, names: usize) -> String {
-    format!("has {cells} cell{} where the header has {names}", if cells == 1 { "" } else { "s" })
+fn cells_and_names(cells: usize, names: usize) -> Words {
+    format!("has {cells} cell{} where the header has {names}", if cells == 1 { "" } else { "s" }).into()
 }
 
 #[cfg(test)]
@@ -222,7 +229,7 @@ mod tests {
         assert_eq!(names(&text(LONGEST_NAME))[0].len(), LONGEST_NAME);
         let error =
             Layout::find("f", &text(LONGEST_NAME + 1), true, &Reading::default()).unwrap_err().to_string();
-        assert!(error.starts_with("f, above line 2: the name of a column has 10001 characters"), "{error}");
+        assert!(error.starts_with("f, line 1: the name of a column has 10001 characters"), "{error}");
     }
 
     #[test]

@@ -4,8 +4,11 @@ mod thousands;
 
 use std::fmt::Write;
 
+use hysid_core::words::{Hint, Words};
 use hysid_document::visible::clipped;
 pub use thousands::ThousandsWatch;
+
+use crate::problem::CellProblem;
 
 /// Sign before the decimals of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,7 +48,7 @@ impl CellReader {
     ///
     /// # Errors
     /// A cell that is no number, or has another decimal sign than those before.
-    pub fn number(&mut self, cell: &str, line: u64) -> Result<f64, String> {
+    pub fn number(&mut self, cell: &str, line: u64) -> Result<f64, CellProblem> {
         let text = cell.trim();
         // Most numbers have what those before had.
         let value = match plain(text, self.format.decimal) {
@@ -68,7 +71,7 @@ impl CellReader {
         self.format.is_chosen
     }
 
-    fn slowly(&mut self, text: &str, line: u64) -> Result<f64, String> {
+    fn slowly(&mut self, text: &str, line: u64) -> Result<f64, CellProblem> {
         let (value, sign) =
             parsed(text, self.format.decimal).map_err(|problem| self.in_words(problem, text))?;
         if let (None, Some(sign)) = (self.format.decimal, sign) {
@@ -77,24 +80,24 @@ impl CellReader {
         Ok(value)
     }
 
-    fn in_words(&self, problem: NumberProblem, text: &str) -> String {
+    fn in_words(&self, problem: NumberProblem, text: &str) -> CellProblem {
         let text = clipped(text);
-        let origin = match self.format.decimal_line {
-            _ if self.format.is_chosen => "--decimal chooses".to_string(),
-            None => "the file has".into(),
-            Some(line) => format!("line {line}"),
-        };
-        match problem {
-            NumberProblem::OtherSign(DecimalSign::Point) => {
-                format!("\"{text}\" has a decimal point, {origin} a decimal comma (use one of them)")
-            }
-            NumberProblem::OtherSign(DecimalSign::Comma) => {
-                format!("\"{text}\" has a decimal comma, {origin} a decimal point (use one of them)")
+        let sign = |sign: DecimalSign| if sign == DecimalSign::Point { "point" } else { "comma" };
+        CellProblem::NoNumber(match problem {
+            NumberProblem::OtherSign(other) => {
+                let origin = match self.format.decimal_line {
+                    _ if self.format.is_chosen => Words::from(Hint::Option("decimal")) + " chooses",
+                    None => "the file has".into(),
+                    Some(line) => format!("line {line}").into(),
+                };
+                let words = Words::from(format!("\"{text}\" has a decimal {}, ", sign(other))) + origin;
+                let words = words + format!(" a decimal {}", sign(other.opposite()));
+                return CellProblem::Other(words.advised("use one of them"));
             }
             NumberProblem::TooLarge => format!("\"{text}\" is too large for a number"),
             NumberProblem::NotFinite => format!("\"{text}\" is not a finite number"),
             NumberProblem::NotANumber => format!("\"{text}\" is not a number"),
-        }
+        })
     }
 }
 
@@ -331,6 +334,7 @@ impl DecimalSign {
 #[cfg(test)]
 mod tests {
     use hysid_core::elementary::powi;
+    use hysid_document::Face;
 
     use super::*;
 
@@ -374,7 +378,8 @@ mod tests {
         let mut cells = CellReader::new(&format);
         assert_eq!(cells.number("7", 2), Ok(7.0));
         assert_eq!(cells.number("1,5", 3), Ok(1.5));
-        assert!(cells.number("1.5", 4).unwrap_err().contains("line 3 a decimal comma"));
+        let problem: Words = cells.number("1.5", 4).unwrap_err().into();
+        assert!(Face::Terminal.told(&problem).contains("line 3 a decimal comma"));
         for missing in ["", "NaN", "#N/A", "-", "-999", "-999,0", "over"] {
             assert!(cells.number(missing, 5).unwrap().is_nan(), "{missing}");
         }

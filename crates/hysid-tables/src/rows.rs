@@ -3,8 +3,8 @@
 use std::io::{Cursor, ErrorKind, Read};
 use std::path::Path;
 
-use anyhow::{Error, Result, bail, ensure};
 use csv_core::ReadRecordResult;
+use hysid_core::words::{Hint, Words};
 
 use crate::blanks::TabsForBlanks;
 use crate::container::{BINARY, DecodedText};
@@ -14,6 +14,7 @@ use crate::head::{Head, counted};
 use crate::layout::{Layout, is_comment, is_row, split, width_problem};
 use crate::line_counter::LineCounter;
 use crate::reading::{Delimiter, Reading};
+use hysid_document::{Problem, Result};
 
 /// Bytes that are read at a time.
 const BLOCK: usize = 1 << 18;
@@ -123,12 +124,15 @@ impl Rows {
         let (first, is_all) = beginning(&file, &mut reader)?;
         let valid = match std::str::from_utf8(&first) {
             Ok(text) => text,
-            Err(error) => std::str::from_utf8(&first[..error.valid_up_to()])?,
+            Err(error) => std::str::from_utf8(&first[..error.valid_up_to()]).unwrap_or_default(),
         };
         let is_cut = first.len() - valid.len() < 4 && !is_all;
         let layout = Layout::find(&file, valid, is_all || !is_cut && valid.len() < first.len(), reading)?;
         let width = layout.names.len();
-        ensure!(width <= MOST_COLUMNS, "{file}: has {width} columns: at most {MOST_COLUMNS} are read");
+        if width > MOST_COLUMNS {
+            let words = format!("has {width} columns: at most {MOST_COLUMNS} are read");
+            return Err(Problem::in_file(&file, words));
+        }
         let mut lines = LineCounter::new();
         lines.pass(&first[..layout.start]);
         let mut rest = Cursor::new(first);
@@ -209,11 +213,14 @@ impl Rows {
                 self.left_out.end = Some((line, lines));
                 return Ok(false);
             }
-            let hint = match (has_numbers, self.read) {
-                (true, _) | (_, 0) => String::new(),
-                (false, rows) => format!(" (use the rows before it with --rows 1:{rows})"),
+            let problem = match (has_numbers, self.read) {
+                (true, _) | (_, 0) => problem,
+                (false, rows) => {
+                    let rows = Hint::Value("rows", format!("1:{rows}"));
+                    problem.advised(Words::from("use the rows before it with ") + rows)
+                }
             };
-            bail!("{}, line {line}: {problem}{hint}", self.head.file);
+            return Err(Problem::at(&self.head.file, line, problem));
         }
     }
 
@@ -284,13 +291,10 @@ impl Rows {
                 let valid = std::str::from_utf8(raw).map_or_else(|error| error.valid_up_to(), str::len);
                 let mut lines = self.lines;
                 lines.pass(&raw[..valid]);
-                bail!(
-                    "{}, line {}: is not {} text (name the encoding with --encoding, such as windows-1252, or save the \
-                     file as UTF-8)",
-                    self.head.file,
-                    lines.line(),
-                    encoding_rs::UTF_8.name()
-                )
+                let advice = Words::from("name the encoding with ") + Hint::Option("encoding");
+                let words = Words::from(format!("is not {} text", encoding_rs::UTF_8.name()))
+                    .advised(advice + ", such as windows-1252, or save the file as UTF-8");
+                Err(Problem::at(&self.head.file, lines.line(), words))
             }
         }
     }
@@ -298,8 +302,10 @@ impl Rows {
     /// As [`Rows::fill`], of a file that is known to begin as a table.
     fn fill_with_text(&mut self) -> Result<()> {
         let read = self.fill()?;
-        ensure!(!self.buffer[self.end - read..self.end].contains(&0), "{}: {BINARY}", self.head.file);
-        Ok(())
+        match self.buffer[self.end - read..self.end].contains(&0) {
+            true => Err(Problem::in_file(&self.head.file, BINARY)),
+            false => Ok(()),
+        }
     }
 
     /// Reads on, behind what is not parsed yet; gives the number of bytes.
@@ -310,10 +316,10 @@ impl Rows {
         }
         if self.buffer.len() < self.end + BLOCK {
             let (file, line) = (&self.head.file, self.lines.line_of(&self.buffer[..self.end]));
-            ensure!(
-                self.end < LONGEST_ROW,
-                "{file}, line {line}: the row is longer than {LONGEST_ROW} bytes (is a quotation mark not closed?)"
-            );
+            if self.end >= LONGEST_ROW {
+                let words = Words::from(format!("the row is longer than {LONGEST_ROW} bytes"));
+                return Err(Problem::at(file, line, words.advised("is a quotation mark not closed?")));
+            }
             self.buffer.resize((2 * self.end).max(BLOCK), 0);
         }
         let read = loop {
@@ -322,7 +328,7 @@ impl Rows {
                 read => break read,
             }
         };
-        let read = read.map_err(|error| Error::msg(unreadable(&self.head.file, &error)))?;
+        let read = read.map_err(|error| unreadable(&self.head.file, &error))?;
         self.is_all_read = read == 0;
         self.end += read;
         Ok(read)
@@ -336,7 +342,7 @@ fn beginning(file: &str, reader: &mut dyn Read) -> Result<(Vec<u8>, bool)> {
     loop {
         let more = (wanted - first.len()) as u64;
         let read = reader.take(more).read_to_end(&mut first);
-        read.map_err(|error| Error::msg(unreadable(file, &error)))?;
+        read.map_err(|error| unreadable(file, &error))?;
         let mut lines = first.split(|&byte| byte == b'\n' || byte == b'\r');
         let is_comment = |line: &[u8]| std::str::from_utf8(line).is_ok_and(is_comment);
         let has_enough = lines.by_ref().filter(|line| !is_comment(line)).nth(FEWEST_LINES).is_some();

@@ -3,11 +3,10 @@
 use std::ops::Deref;
 use std::path::Path;
 
-use anyhow::{Result, ensure};
-
 use crate::head::Head;
 use crate::reading::Reading;
 use crate::rows::{LeftOut, Rows};
+use hysid_document::Result;
 
 /// A table as it stands in its file.
 #[derive(Debug)]
@@ -65,8 +64,7 @@ impl Table {
         }
         let origin = TableOrigin { left_out: rows.left_out, head: rows.head, lines };
         let table = Self { origin, text: all, ends: all_ends };
-        ensure!(!table.lines.is_empty(), "{}", table.no_rows());
-        Ok(table)
+        if table.lines.is_empty() { Err(table.no_rows()) } else { Ok(table) }
     }
 
     /// The table without its cells, which need several times the memory of their numbers.

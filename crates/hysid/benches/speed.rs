@@ -10,11 +10,11 @@ use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use hysid::fit::network::fit;
 use hysid::fit::network::objective::Objective;
-use hysid::network::Family;
-use hysid::network::scaling::Scaling;
 use hysid::operator::{DeterioratingStop, Operator, Play, Relaxation, Stop};
 use hysid::optimise::levenberg_marquardt::LevenbergMarquardt;
 use hysid::options::network::{FitOptions, Trainer};
+use hysid_core::network::Family;
+use hysid_core::network::scaling::Scaling;
 
 use inputs::{data, network, options, parameters, path, xpnn};
 

@@ -29,8 +29,8 @@
 //!
 //! The library does no input or output, keeps no global state and has no unsafe code; only
 //! [`Fit::time_limit`] reads a clock. Each of these modules uses only those before it: [`data`] holds
-//! measured records, [`operator`] the operators with memory, [`network`] the family of networks, [`law`] the
-//! classical models, [`options`] the options of a fit, [`model`] the fitted model, [`validation`] the folds,
+//! measured records, [`operator`] the operators with memory, [`law`] the classical models, [`options`] the
+//! options of a fit, [`model`] the fitted model, [`validation`] the folds,
 //! [`mod@fit`] the identification, [`plan`] what to measure next.
 //! [`mod@restoring_force`] computes the force of an element from the motion of a mass. [`diagnosis`] finds properties of hysteresis, and [`specimens`] generates
 //! synthetic data.
@@ -39,6 +39,7 @@
 
 mod builder;
 pub mod fit;
+#[doc(hidden)]
 pub mod optimise;
 pub mod plan;
 pub mod restoring_force;
@@ -47,24 +48,21 @@ mod time_limit;
 pub mod validation;
 
 pub use builder::Fit;
-pub use fit::progress::Progress;
-pub use hysid_core::data::metrics::Errors;
-pub use hysid_core::data::record::{ColumnNames, Dataset, Record};
-pub(crate) use hysid_core::linear_algebra;
-pub use hysid_core::model::{Inverse, Inversion, Inverted, Model, Reach, Reference, Stepper};
-pub use hysid_core::options::ModelName;
+pub use hysid_core::data::record::{Dataset, Record};
+pub use hysid_core::model::Model;
 pub use hysid_core::{Error, Result};
-pub use hysid_core::{
-    data, elementary, error, law, model, network, operator, options, property, significant, simd, stop_check,
-    termination,
-};
+#[doc(no_inline)]
+pub use hysid_core::{data, error, law, model, operator, options};
+pub(crate) use hysid_core::{linear_algebra, network, property, significant, stop_check, termination};
+#[doc(no_inline)]
 pub use hysid_diagnosis as diagnosis;
-pub use hysid_diagnosis::Diagnosis;
+#[doc(no_inline)]
 pub use hysid_specimens as specimens;
 pub use restoring_force::restoring_force;
+#[doc(hidden)]
 pub use thread_pool::{MOST_THREADS, thread_pool};
+#[doc(hidden)]
 pub use time_limit::time_limit;
-pub use validation::CrossValidation;
 
 /// Fits a model to data with the defaults: cross-validates networks and classical models and combines the
 /// best.
@@ -79,7 +77,7 @@ pub fn fit(data: &Dataset) -> Result<Model> {
 ///
 /// # Errors
 /// As [`fit`](fit()), and data too few for two folds.
-pub fn validate(data: &Dataset) -> Result<CrossValidation> {
+pub fn validate(data: &Dataset) -> Result<validation::CrossValidation> {
     Fit::new().validate(data)
 }
 
@@ -87,8 +85,8 @@ pub fn validate(data: &Dataset) -> Result<CrossValidation> {
 ///
 /// # Errors
 /// A constant input or output, or too few rows.
-pub fn diagnose(data: &Dataset) -> Result<Diagnosis> {
-    Diagnosis::of(data, &diagnosis::DiagnosisOptions::default())
+pub fn diagnose(data: &Dataset) -> Result<diagnosis::Diagnosis> {
+    diagnosis::Diagnosis::of(data, &diagnosis::DiagnosisOptions::default())
 }
 
 /// The examples of the README, compiled and run by the tests.

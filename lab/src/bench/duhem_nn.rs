@@ -14,7 +14,7 @@ use hysid::law::series::Series;
 use hysid::model::{Model, Predictor};
 use hysid::options::FitSpec;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::stop_check::StopCheck;
+use hysid_core::stop_check::StopCheck;
 
 use super::spread::Spread;
 use super::{FITS, RUNS};

@@ -1,8 +1,9 @@
 //! How to invert: the deviation of driven specimens from a wanted output, by the data that the model was fitted to.
 
 use anyhow::Result;
+use hysid::model::Reference;
 use hysid::plan::DrivePath;
-use hysid::{Model, Record, Reference};
+use hysid::{Model, Record};
 use hysid_core::elementary::square;
 
 use super::{auto, by_specimen};

@@ -1,10 +1,9 @@
 //! The page of a comparison: table, error against size, loops of every model.
 
-use anyhow::Result;
 use hysid::data::record::Dataset;
-use hysid::elementary::ln;
+use hysid_core::elementary::ln;
 use hysid_document::chart::thin::thin;
-use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Table, unit};
+use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Result, Table, unit};
 
 use super::{CompareOutcome, CompareRow, ComparedFit, HEADINGS, cells, stopped_note};
 use crate::{MEASURED_WIDTH, MODEL_WIDTH, ReportSet, Tracks, small_loops};

@@ -1,7 +1,7 @@
 //! The cycles on a terminal: the main figures, both ends of a long table, and notes.
 
 use hysid::diagnosis::cycles::Field;
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::plain::{WIDTH, indented, rendered, wrapped};
 use hysid_document::{Cell, Part, Table, count};
 

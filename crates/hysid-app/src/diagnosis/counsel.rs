@@ -2,7 +2,7 @@
 
 use hysid::diagnosis::{Advice, DataIssue, Severity, Verdict};
 use hysid_document::plain::indented;
-use hysid_document::{Item, Part};
+use hysid_document::{Face, Item, Part};
 
 use super::cards::sentence;
 
@@ -10,8 +10,9 @@ use super::cards::sentence;
 const INDENT: usize = 4;
 
 /// The issues under a heading, which also reports that there are none.
-pub fn doctor_text(complaints: &[DataIssue]) -> String {
-    let told: String = complaints.iter().map(|complaint| indented(&labelled(complaint), INDENT)).collect();
+pub fn doctor_text(complaints: &[DataIssue], face: Face) -> String {
+    let told: String =
+        complaints.iter().map(|complaint| indented(&labelled(complaint, face), INDENT)).collect();
     match complaints.len() {
         0 => "data quality: no issues found\n".into(),
         _ => format!("data quality\n{told}"),
@@ -19,8 +20,8 @@ pub fn doctor_text(complaints: &[DataIssue]) -> String {
 }
 
 /// A complaint with how much it matters and whom it concerns.
-fn labelled(complaint: &DataIssue) -> String {
-    format!("{}: {}", severity(complaint), complaint.statement)
+fn labelled(complaint: &DataIssue, face: Face) -> String {
+    format!("{}: {}", severity(complaint), face.told(&complaint.words()))
 }
 
 fn severity(complaint: &DataIssue) -> &'static str {
@@ -67,9 +68,9 @@ pub fn verdict(advice: &Advice) -> [Part; 2] {
     [Part::Lead(first.into()), Part::note(rest.join(" "))]
 }
 
-pub fn doctor_section(complaints: &[DataIssue]) -> Part {
+pub fn doctor_section(complaints: &[DataIssue], face: Face) -> Part {
     let item = |complaint: &DataIssue| Item {
-        text: sentence(&labelled(complaint)).into(),
+        text: sentence(&labelled(complaint, face)).into(),
         is_warning: complaint.severity == Severity::Warning,
     };
     let said = match complaints.len() {

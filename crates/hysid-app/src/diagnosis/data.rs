@@ -1,9 +1,8 @@
 //! Diagnosis of measured data.
 
-use anyhow::Result;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
-use hysid::significant::Significant;
-use hysid_document::{Page, Part, count, object};
+use hysid_core::significant::Significant;
+use hysid_document::{Face, Page, Part, Result, count, object};
 use hysid_records::Data;
 
 use super::cards::{EXPLANATION, cards, verdicts};
@@ -19,6 +18,7 @@ pub struct DataDiagnosis<'a> {
     quantities: Quantities,
     understood: &'a [(String, String)],
     fit: String,
+    face: Face,
 }
 
 impl<'a> DataDiagnosis<'a> {
@@ -28,10 +28,11 @@ impl<'a> DataDiagnosis<'a> {
         options: &DiagnosisOptions,
         understood: &'a [(String, String)],
         fit: String,
+        face: Face,
     ) -> Result<Self> {
         let diagnosis = Diagnosis::of(&data.set, options).map_err(|error| data.explain(error))?;
         let quantities = Quantities::of(data.set.names());
-        Ok(Self { data, diagnosis, quantities, understood, fit })
+        Ok(Self { data, diagnosis, quantities, understood, fit, face })
     }
 
     /// All of it within 80 columns.
@@ -39,7 +40,7 @@ impl<'a> DataDiagnosis<'a> {
         let parts = [
             findings::text(&self.diagnosis.properties),
             loops::text(&self.diagnosis.cycles, &self.quantities) + &paragraph(&self.noise()),
-            counsel::doctor_text(&self.diagnosis.doctor),
+            counsel::doctor_text(&self.diagnosis.doctor, self.face),
             counsel::advice_text(&self.diagnosis.advice, &self.fit),
         ];
         parts.join("\n")
@@ -89,7 +90,7 @@ impl<'a> DataDiagnosis<'a> {
         let mut parts = counsel::verdict(&diagnosis.advice).to_vec();
         parts.extend([
             Part::section("Verdicts", [verdicts(found)]),
-            counsel::doctor_section(&diagnosis.doctor),
+            counsel::doctor_section(&diagnosis.doctor, self.face),
             overview.section(),
             Part::section("Property by property", [Part::Cards(cards), Part::note(EXPLANATION)]),
         ]);

@@ -1,7 +1,7 @@
 //! Findings in words and numbers: the table of verdicts for a terminal.
 
 use hysid::diagnosis::{Evidence, Finding, Property};
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::plain::{aligned, indented};
 
 const HEADINGS: [&str; 5] =

@@ -2,7 +2,7 @@
 //! those of `hysid cycles`.
 
 use hysid::diagnosis::cycles::{CycleRow, CycleTable, FIGURES, Figure};
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::plain::aligned;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, unit};

@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use anyhow::{Result, anyhow};
 use hysid::data::unit;
 use hysid::diagnosis::Finding;
 use hysid::diagnosis::model::{ModelDiagnosis, TimeScale, WidthAtSpeed};
 use hysid::model::Model;
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::plain::columns;
 use hysid_document::unit::label as unit_label;
-use hysid_document::{Cell, Page, Part, Table, object};
+use hysid_document::{Cell, Page, Part, Problem, Result, Table, object};
 
 use super::cards::{EXPLANATION, cards, sentence, verdicts};
 use super::{findings, invertibility, paragraph};
@@ -28,7 +27,8 @@ impl<'a> DiagnosedModel<'a> {
     /// Diagnoses the model of a file.
     pub fn of(path: &Path, model: &'a Model) -> Result<Self> {
         let file = path.display().to_string();
-        let diagnosis = ModelDiagnosis::of(model).map_err(|error| anyhow!("{file}: {error}"))?;
+        let diagnosis =
+            ModelDiagnosis::of(model).map_err(|error| Problem::in_file(&file, error.to_string()))?;
         Ok(Self { file, model, diagnosis, quantities: Quantities::of(model.names()) })
     }
 

@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use anyhow::Result;
-use hysid::Reference;
+use hysid::model::Reference;
 use hysid_records::{CellNeed, Roles, UnitFactors, column_of, places_of};
 
-use hysid_tables::{CellReader, DecimalSign, Table};
+use hysid_tables::{CellReader, DecimalSign, Result, Table};
 
 /// The wanted outputs of a table, in the units of the model.
 pub struct ReferenceOutputs {

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use hysid_app::restoring_force::{Mass, MotionChoice, RestoringForceRequest};
 
-use super::mass::Mass;
 use super::reading::missing_help;
 use super::{Overwriting, RUN, ReadingOptions};
 
@@ -111,6 +111,26 @@ pub struct MotionOptions {
     /// A further column to copy, such as a temperature; repeat for several
     #[arg(long, value_name = "COLUMN", hide_short_help = true)]
     pub keep: Vec<String>,
+}
+
+impl RestoringForce {
+    pub fn request(&self) -> RestoringForceRequest {
+        let MotionOptions { same_units, .. } = self.columns;
+        let of = self.columns.clone();
+        let columns = MotionChoice {
+            record: of.record,
+            time: of.time,
+            displacement: of.displacement,
+            velocity: of.velocity,
+            acceleration: of.acceleration,
+            absolute_acceleration: of.absolute_acceleration,
+            base_acceleration: of.base_acceleration,
+            applied_force: of.applied_force,
+            keep: of.keep,
+        };
+        let (mass, window, zero) = (self.mass.clone(), self.window, self.reading.zero);
+        RestoringForceRequest { columns, mass, same_units, window, zero }
+    }
 }
 
 fn mass(text: &str) -> Result<Mass, String> {

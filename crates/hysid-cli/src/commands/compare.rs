@@ -9,6 +9,7 @@ use hysid::options::ModelName;
 use hysid::options::chosen::NamedOptions;
 use hysid_app::compare::{CompareObserver, CompareRequest, CompareRow, ComparedData, compare};
 use hysid_app::data_warnings;
+use hysid_document::Face;
 use hysid_records::{Data, Roles};
 
 use crate::Outcome;
@@ -52,7 +53,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
         requests.extend(request.variants());
     }
 
-    data_warnings(&train, &Summary::of(&train.set)).iter().for_each(warning);
+    data_warnings(&train, &Summary::of(&train.set), Face::Terminal).iter().for_each(warning);
     if let Some(test) = &test {
         summarised(&test.set.copies_of(&train.set)).iter().for_each(warning);
     }

@@ -6,6 +6,7 @@ use anyhow::Result;
 use hysid::data::summary::Summary;
 use hysid::diagnosis::cycles::CycleOptions;
 use hysid::options::chosen::RateChoice;
+use hysid_document::Face;
 use hysid_files::{Destination, Kind};
 use hysid_records::understanding;
 
@@ -14,7 +15,7 @@ use crate::arguments::{self, RateOption};
 use crate::commands::{Given, model_from_bytes};
 use crate::data::data_of;
 use crate::files::{self, check_outputs};
-use crate::messages::{note_labelled, raw_results, results, warning};
+use crate::messages::{note_labelled, raw_results, results, warning, warning_words};
 use hysid_app::cycles::{self, BEGINNING, BEGINNING_OF_CURVES, Cycles, Files};
 
 pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
@@ -36,9 +37,9 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
         }
         Given::Tables(tables) => {
             let data = data_of(tables, &arguments.columns)?;
-            let understood = understanding::of_data(&data, &Summary::of(&data.set));
+            let understood = understanding::of_data(&data, &Summary::of(&data.set), Face::Terminal);
             note_labelled(&understood);
-            data.unused_inputs("cycles of", "used").iter().for_each(warning);
+            data.unused_inputs("cycles of", "used").iter().for_each(warning_words);
             if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
                 warning("cycles ignores --rate: it needs no rate");
             }
@@ -80,7 +81,7 @@ impl CycleFiles {
 
 /// Prints and writes the results.
 fn tell(arguments: &arguments::Cycles, outputs: &CycleFiles, cycles: &Cycles) -> Result<Outcome> {
-    let table = cycles::csv(cycles)?;
+    let table = cycles::csv(cycles);
     let Some(destination) = &outputs.table else {
         raw_results(&String::from_utf8(table)?)?;
         return Ok(Outcome::Done);
@@ -91,7 +92,7 @@ fn tell(arguments: &arguments::Cycles, outputs: &CycleFiles, cycles: &Cycles) ->
     }
     files::write(destination, &table)?;
     if let Some((curves, destination)) = curves {
-        files::write(destination, &cycles::curves_csv(cycles, curves)?)?;
+        files::write(destination, &cycles::curves_csv(cycles, curves))?;
     }
     if let Some(page) = &outputs.page {
         files::write_page(page, cycles::page(cycles), &arguments.files)?;

@@ -27,7 +27,7 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
     let place =
         |name: &str, kind: Kind| Destination::new(folder.join(name), kind, arguments.overwriting.force);
     let table = |name: &str, data: &Dataset| {
-        let content = csv_text(data)?.into_bytes();
+        let content = csv_text(data).into_bytes();
         anyhow::Ok((place(name, Kind::Content(content.clone())), content))
     };
     let (train, train_text) = table("demo-train.csv", &ferromagnet.train())?;

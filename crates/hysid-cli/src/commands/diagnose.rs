@@ -5,7 +5,7 @@ use hysid::data::summary::Summary;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::options::chosen::RateChoice;
 use hysid_app::diagnosis::{DataDiagnosis, DiagnosedModel};
-use hysid_document::Page;
+use hysid_document::{Face, Page};
 use hysid_records::understanding;
 use hysid_tables::Table;
 
@@ -14,7 +14,7 @@ use crate::arguments::{ColumnOptions, Diagnose, RateOption};
 use crate::commands::{Given, model_from_bytes};
 use crate::data::data_of;
 use crate::files::{self, check_outputs};
-use crate::messages::{note, note_labelled, results, warning};
+use crate::messages::{note, note_labelled, results, warning, warning_words};
 use crate::progress::while_working;
 
 /// Text of a diagnosis, and its page if there is to be one.
@@ -44,14 +44,14 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
 
 fn of_data(arguments: &Diagnose, tables: Vec<Table>) -> Result<PrintedDiagnosis> {
     let data = data_of(tables, &arguments.columns)?;
-    let understood = understanding::of_data(&data, &Summary::of(&data.set));
+    let understood = understanding::of_data(&data, &Summary::of(&data.set), Face::Terminal);
     note_labelled(&understood);
-    data.unused_inputs("diagnosed:", "diagnosed").iter().for_each(warning);
+    data.unused_inputs("diagnosed:", "diagnosed").iter().for_each(warning_words);
     if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
         warning("diagnose ignores --rate: it uses the speeds between turning points");
     }
     let diagnosed = while_working("diagnosing the data", || {
-        DataDiagnosis::of(&data, &arguments.options(), &understood, fit_command(arguments))
+        DataDiagnosis::of(&data, &arguments.options(), &understood, fit_command(arguments), Face::Terminal)
     })?;
     let text = if arguments.json { diagnosed.json()? } else { diagnosed.text() };
     Ok(PrintedDiagnosis { text, page: (!arguments.no_report).then(|| diagnosed.page()) })

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Result, anyhow};
 use hysid_app::date;
-use hysid_document::{count, object};
+use hysid_document::{Problem, count, object};
 use hysid_export::description::RateSource;
 use hysid_export::{
     Error, Export as Exported, FmiVersion, InverseOptions, MANIFEST, Options, Precision, Target, files_of,
@@ -28,7 +28,7 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
     };
     let folder = arguments.out.clone().unwrap_or_else(|| format!("{name}_{}", arguments.to.name()).into());
     if folder == Path::new("-") {
-        return Err(Usage("-o -: an export is a folder, which stdout cannot be: name one".into()).into());
+        return Err(Problem::request("-o -: an export is a folder, which stdout cannot be: name one").into());
     }
     if arguments.fmi.is_some() && arguments.to != Target::Fmu {
         return Err(Usage("--fmi is a version of --to fmu".into()).into());

@@ -12,8 +12,8 @@ use hysid::options::FitSpec;
 use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};
 use hysid::options::network::FitOptions;
 use hysid_app::{Identified, initial_state};
-use hysid_document::object;
 use hysid_document::shell::flag;
+use hysid_document::{Problem, object};
 use hysid_files::{Destination, Kind};
 use hysid_records::Roles;
 use serde::Serialize;
@@ -101,7 +101,7 @@ fn out(arguments: &Fit) -> Result<PathBuf> {
     };
     if out.extension().is_some_and(|extension| extension == "html") {
         let advice = "use .json for the model file: the report gets the same name with .html";
-        return Err(Usage(format!("{}: {advice}", out.display())).into());
+        return Err(Problem::request(format!("{}: {advice}", out.display())).into());
     }
     if out.as_os_str() == "-" {
         return Err(Usage("--out needs the name of a file for the model".into()).into());

@@ -67,7 +67,7 @@ struct Set {
 impl Set {
     /// A path `-` is stdout.
     fn new(path: &Path, what: &'static str, data: Dataset, arguments: &Generate) -> Result<Self> {
-        let text = csv_text(&data)?;
+        let text = csv_text(&data);
         let kind = || Kind::Content(text.as_bytes().to_vec());
         let is_file = path != Path::new("-");
         let destination = is_file.then(|| Destination::new(path, kind(), arguments.overwriting.force));

@@ -6,7 +6,7 @@ use anyhow::{Result, ensure};
 use hysid::Model;
 use hysid::data::metrics::Errors;
 use hysid::data::unit;
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::{count, object};
 use hysid_files::{Destination, Kind};
 use hysid_records::Roles;
@@ -18,10 +18,10 @@ use crate::Outcome;
 use crate::arguments::Invert;
 use crate::commands::{check_band, read_model};
 use crate::data::factors;
-use crate::errors_table::errors_table;
 use crate::files::{self, check_outputs};
 use crate::messages::{note_labelled, raw_results, told, warning};
 use crate::terminal::clipped;
+use hysid_app::errors_table::errors_table;
 use hysid_app::inversion::{self, InputBounds, Inverted, Preview, ReferenceOutputs};
 
 pub fn run(arguments: &Invert) -> Result<Outcome> {
@@ -30,7 +30,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     let table = Table::read(&arguments.reference, &arguments.columns.reading.reading())?;
     let names = Names::of(&model, &table, arguments.band.is_some())?;
     let header =
-        header_line(delimiter_of(&table), table.header.iter().chain(names.all()).map(String::as_str))?;
+        header_line(delimiter_of(&table), table.header.iter().chain(names.all()).map(String::as_str));
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     files::check_stdout(out.is_none(), arguments.json)?;
     let force = arguments.overwriting.force;

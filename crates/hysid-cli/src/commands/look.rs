@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use hysid::data::summary::Summary;
 use hysid_app::data_warnings;
-use hysid_document::object;
+use hysid_document::{Face, object};
 use hysid_files::{Destination, Kind};
 use hysid_records::csv_text;
 use hysid_records::{Data, Roles, TableOverview, understanding};
@@ -28,12 +28,17 @@ pub fn run(arguments: &Look) -> Result<Outcome> {
     let tables = read_tables(&arguments.files, &arguments.columns.reading)?;
     let roles = Roles::detect(&tables[0], &arguments.columns.choice());
     let looked: Vec<TableOverview> =
-        tables.iter().map(|table| TableOverview::of(table, roles.as_ref().ok())).collect();
-    let data = roles.and_then(|roles| data_with(tables, roles, arguments.columns.reading.zero));
+        tables.iter().map(|table| TableOverview::of(table, roles.as_ref().ok(), Face::Terminal)).collect();
+    let data = roles
+        .map_err(anyhow::Error::from)
+        .and_then(|roles| data_with(tables, roles, arguments.columns.reading.zero));
     let (warnings, understood) = match &data {
         Ok(data) => {
             let summary = Summary::of(&data.set);
-            (data_warnings(data, &summary), understanding::of_data(data, &summary))
+            (
+                data_warnings(data, &summary, Face::Terminal),
+                understanding::of_data(data, &summary, Face::Terminal),
+            )
         }
         Err(_) => Default::default(),
     };
@@ -45,7 +50,7 @@ pub fn run(arguments: &Look) -> Result<Outcome> {
     warnings.iter().for_each(warning);
     let data = data?;
     match &arguments.out {
-        Some(_) if to_stdout => raw_results(&csv_text(&data.set)?)?,
+        Some(_) if to_stdout => raw_results(&csv_text(&data.set))?,
         Some(out) => write(out, &data, arguments)?,
         None => {}
     }
@@ -59,7 +64,7 @@ fn printed(files: &[TableOverview], data: &Result<Data>, warnings: &[String]) ->
         #[serde(skip_serializing_if = "hysid_document::is_nothing")]
         records: data.as_ref().ok().map(|data| data.set.records().len()),
         #[serde(skip_serializing_if = "hysid_document::is_nothing")]
-        guessed: data.as_ref().ok().and_then(|data| data.roles.guessed),
+        guessed: data.as_ref().ok().and_then(|data| data.roles.guessed.as_ref()).map(|words| Face::Terminal.told(words)),
         /// Doubts about the data.
         warnings: warnings,
         /// Why the data cannot be used as they are.
@@ -82,7 +87,7 @@ fn text(looked: &[TableOverview], understood: &[(String, String)]) -> String {
 
 /// Writes the columns that have a role as a plain table.
 fn write(out: &Path, data: &Data, arguments: &Look) -> Result<()> {
-    let text = csv_text(&data.set)?;
+    let text = csv_text(&data.set);
     let header = text.lines().next().unwrap_or_default().as_bytes().to_vec();
     let out = Destination::new(out, Kind::Beginning(header), arguments.overwriting.force);
     check_outputs([&out], &arguments.files)?;

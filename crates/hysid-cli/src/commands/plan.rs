@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use hysid::data::summary::Summary;
 use hysid::plan::{LimitOptions, MOST_ROWS, Plan, PlanOptions, Protocol, ProtocolOptions};
+use hysid_document::{Face, Problem};
 use hysid_files::{Destination, Kind};
 use hysid_records::header_line;
 use hysid_records::{Roles, understanding};
@@ -30,7 +31,7 @@ pub fn run(arguments: &arguments::Plan) -> Result<Outcome> {
 
 /// A first test.
 fn of_kind(arguments: &arguments::Plan, kind: &str) -> Result<Outcome> {
-    let of_options = |error: hysid::Error| Usage(error.to_string());
+    let of_options = |error: hysid::Error| Problem::request(error.to_string());
     let protocol = Protocol::named(kind).map_err(of_options)?;
     if arguments.range.is_none() {
         return Err(Usage("--for needs the range of the input: --range LOW:HIGH".into()).into());
@@ -74,7 +75,7 @@ fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
     let of_data = || summary.records.iter().find_map(|record| Some(record.time_steps?.1));
     let limits = wanted(arguments, arguments.step.or_else(of_data))?;
     let options = PlanOptions { limits, wave: arguments.wave, seed: arguments.seed };
-    let understood = understanding::of_data(&data, &summary);
+    let understood = understanding::of_data(&data, &summary, Face::Terminal);
     note_labelled(&understood);
     let plan = Plan::of(&data.set, &options).map_err(|error| data.explain(error))?;
     let shown: Vec<String> = arguments.like.iter().map(|path| files::shown(path)).collect();
@@ -117,7 +118,7 @@ impl PlanFiles {
         names: &hysid::data::record::ColumnNames,
     ) -> Result<Self> {
         let columns = names.time.iter().chain(&names.inputs[..1]).map(String::as_str);
-        let header = header_line(b',', columns)?;
+        let header = header_line(b',', columns);
         let to_stdout = path == Path::new("-");
         files::check_stdout(to_stdout, arguments.json)?;
         if to_stdout {
@@ -125,7 +126,7 @@ impl PlanFiles {
         }
         if path.extension().is_some_and(|ending| ending == "html") {
             let advice = "use .csv for the drive: the page gets the same name with .html";
-            return Err(Usage(format!("{}: {advice}", path.display())).into());
+            return Err(Problem::request(format!("{}: {advice}", path.display())).into());
         }
         let force = arguments.overwriting.force;
         let page = files::page(arguments.no_report, path.with_extension("html"), force);

@@ -14,10 +14,10 @@ use crate::arguments::Plot;
 use crate::commands::{check_band, model_from_bytes};
 use crate::data::{data_of, factors, read_tables};
 use crate::files::{self, check_outputs};
-use crate::gathered::{Gathered, Gatherer};
-use crate::messages::{Usage, summarised, warning};
+use crate::messages::{Usage, is_usage, summarised, warning};
 use crate::plotting::{self, Format, PlotData, Style};
-use crate::table_run::{self, KeptColumns};
+use hysid_app::gathered::{Gathered, Gatherer};
+use hysid_app::table_run::{self, KeptColumns};
 
 pub fn run(arguments: &Plot) -> Result<Outcome> {
     let (model, tables) = given(arguments)?;
@@ -39,7 +39,7 @@ pub fn run(arguments: &Plot) -> Result<Outcome> {
         dots_per_inch: arguments.dpi,
     };
     let in_file = |error: anyhow::Error| {
-        if error.is::<Usage>() { error } else { error.context(files::shown(&tables[0])) }
+        if is_usage(&error) { error } else { error.context(files::shown(&tables[0])) }
     };
     let subject = subject.only(&arguments.only).map_err(in_file)?;
     let charts = plotting::charts(&subject, kind, &arguments.options(), style.pixels()).map_err(in_file)?;
@@ -100,12 +100,12 @@ fn simulated(arguments: &Plot, model: &Model, tables: &[PathBuf]) -> Result<Plot
             band: arguments.data_sets.level(arguments.band),
             zero: arguments.columns.reading.zero,
         };
-        let mut take = |rows: &table_run::Simulated<'_>| {
+        let mut take = |rows: &table_run::Simulated<'_>| -> Result<_> {
             gatherer.take(rows);
             Ok(ControlFlow::Continue(()))
         };
-        let warnings = table_run::run(model, &mut rows, &roles, &factors, wanted, &mut take)?;
-        summarised(&warnings.unwrap_or_default()).iter().for_each(warning);
+        let end = table_run::run(model, &mut rows, &roles, &factors, wanted, &mut take)?;
+        end.note.into_iter().chain(summarised(&end.warnings)).for_each(warning);
         names.get_or_insert((factors.names(model, &roles), rows.head.file.clone(), roles));
     }
     let (names, file, roles) = names.context("no tables")?;

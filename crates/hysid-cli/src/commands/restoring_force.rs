@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use anyhow::{Result, anyhow};
+use hysid_app::restoring_force::{ForceTable, MeasuredMotion, PrintedForce, summary, understood, warnings};
+use hysid_document::Face;
 use hysid_files::{Destination, Kind};
 use hysid_tables::Table;
 
@@ -11,32 +13,31 @@ use crate::arguments::RestoringForce;
 use crate::files::{self, check_outputs};
 use crate::help;
 use crate::messages::{note_labelled, raw_results, told, warning};
-use crate::motion::{MeasuredMotion, Printed, Written, summary, understood, warnings};
 
 pub fn run(arguments: &RestoringForce) -> Result<Outcome> {
     let path = arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.data, ".force.csv"));
     let to_stdout = path == Path::new("-");
     files::check_stdout(to_stdout, arguments.json)?;
     let table = table(arguments)?;
-    let motion = MeasuredMotion::of(&table, arguments)?;
-    let written = Written::of(&table, &motion)?;
-    let header = written.header()?;
+    let request = arguments.request();
+    let motion = MeasuredMotion::of(&table, &request)?;
+    let written = ForceTable::of(&table, &motion)?;
+    let header = written.header();
     let out = (!to_stdout)
         .then(|| Destination::new(path, Kind::Beginning(header.clone()), arguments.overwriting.force));
     check_outputs(&out, &[&arguments.data])?;
 
-    let zero = arguments.reading.zero;
-    let found = motion.restoring_force(&arguments.mass, arguments.window, zero)?;
-    note_labelled(&understood(&table, &motion, &arguments.mass, &found));
-    motion.warnings.iter().chain(&warnings(&motion, &found, arguments.window)).for_each(warning);
-    let text = [header, written.rows(&table, &motion, &found, zero)?].concat();
+    let found = motion.restoring_force(&request)?;
+    note_labelled(&understood(&table, &motion, &request.mass, &found, Face::Terminal));
+    warnings(&motion, &found, request.window, Face::Terminal).iter().for_each(warning);
+    let text = [header, written.rows(&table, &motion, &found, request.zero)].concat();
     let Some(out) = &out else {
         raw_results(&String::from_utf8(text)?)?;
         return Ok(Outcome::Done);
     };
     files::write(out, &text)?;
     let path = Some(out.path());
-    told(arguments.json, || Ok(Printed::of(&motion, &found, path)), || summary(&motion, &found, path))?;
+    told(arguments.json, || Ok(PrintedForce::of(&motion, &found, path)), || summary(&motion, &found, path))?;
     files::say_written([("table", path)]);
     Ok(Outcome::Done)
 }
@@ -47,6 +48,6 @@ fn table(arguments: &RestoringForce) -> Result<Table> {
     let table = Table::read(data, &reading.reading());
     match help::hint_of_force().filter(|_| !data.exists()) {
         Some(hint) => table.map_err(|error| anyhow!("{error:#} ({hint})")),
-        None => table,
+        None => Ok(table?),
     }
 }

@@ -15,9 +15,9 @@ use crate::commands::{check_band, read_model};
 use crate::data::factors;
 use crate::files::{self, check_outputs};
 use crate::messages::{stdout_failed, warning};
-use crate::table_run::{self, KeptColumns, Simulated};
 use crate::terminal::clipped;
 use crate::{Outcome, interrupt};
+use hysid_app::table_run::{self, KeptColumns, Simulated};
 
 /// Bytes that are written together. A table with an error in its first rows leaves nothing on stdout.
 const BUFFERED: usize = 1 << 20;
@@ -41,7 +41,7 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     }
     let delimiter = rows.head.delimiter().in_a_copy(rows.head.numbers().decimal);
     let all = rows.head.header.iter().chain(&names).map(String::as_str);
-    let header = header_line(delimiter, all)?;
+    let header = header_line(delimiter, all);
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     let kind = Kind::Beginning(header.clone());
     let out = out.map(|out| Destination::new(out, kind, arguments.overwriting.force));
@@ -62,14 +62,16 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
         band: arguments.data_sets.level(arguments.band),
         zero: arguments.columns.reading.zero,
     };
-    let mut take = |simulated: &Simulated<'_>| {
+    let mut take = |simulated: &Simulated<'_>| -> Result<_> {
         output.add(simulated)?;
         Ok(if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     };
-    let Some(warnings) = table_run::run(&model, &mut rows, &roles, &factors, wanted, &mut take)? else {
+    let end = table_run::run(&model, &mut rows, &roles, &factors, wanted, &mut take)?;
+    end.note.iter().for_each(warning);
+    if end.is_early {
         return Ok(Outcome::Interrupted);
-    };
-    warnings.iter().for_each(warning);
+    }
+    end.warnings.iter().for_each(warning);
     output.finish()?;
     Ok(Outcome::Done)
 }

@@ -68,5 +68,5 @@ fn end_when_asked(studio: &Opened, ending: &Ending) -> Result<()> {
         failed.iter().for_each(|words| insist(format_args!("{words}")));
         std::process::exit(failed.map_or(interrupt::exit_status().into(), |_| 1));
     });
-    ended
+    Ok(ended?)
 }

@@ -5,10 +5,10 @@ use hysid::data::unit;
 use hysid::fit::identify;
 use hysid::fit::progress::Progress;
 use hysid::model::Model;
-use hysid::significant::Significant;
-use hysid::termination::Termination;
 use hysid::validation::{CrossValidation, CrossValidator, FoldErrors};
 use hysid_app::check_memory;
+use hysid_core::significant::Significant;
+use hysid_core::termination::Termination;
 use hysid_document::plain::{WIDTH, aligned, wrapped};
 
 use crate::Outcome;

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
-use hysid_document::Chart;
 use hysid_document::chart::{Appearance, PIXELS_PER_MILLIMETRE, sheet};
+use hysid_document::{Chart, Problem};
 use hysid_files::GENERATOR;
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, TextStr};
 use resvg::tiny_skia::{Pixmap, Transform};
@@ -37,7 +37,7 @@ impl Format {
             Some("svg") => Ok(Self::Svg),
             Some("pdf") => Ok(Self::Pdf),
             Some("png") => Ok(Self::Png),
-            _ => Err(Usage(format!(
+            _ => Err(Problem::request(format!(
                 "{}: the ending tells the format of the figure: .svg, .pdf or .png",
                 crate::files::shown(path)
             ))

@@ -307,7 +307,7 @@ def test_an_option_in_a_problem_leads_to_its_control(start, visit):
     opened = visit(studio)
     rows = "".join(",".join(str(k % most) for most in range(3, 11)) + "\n" for k in range(40))
     drop(opened.page, "many.csv", "a,b,c,d,e,f,g,h\n" + rows)
-    opened.page.locator("#data .problem button", has_text="--input").first.click()
+    opened.page.locator("#data .problem button", has_text='the role "input"').first.click()
     opened.page.wait_for_function("() => document.activeElement.getAttribute('aria-label')?.startsWith('Role of ')")
 
 

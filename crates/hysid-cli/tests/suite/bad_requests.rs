@@ -2,8 +2,8 @@
 //! written: one line that says where and what helps, and the right exit status.
 
 use crate::workbench::{Workbench, csv, rows, table, with_column};
-use hysid::elementary::cos;
 use hysid::model::FORMAT_VERSION;
+use hysid_core::elementary::cos;
 
 #[test]
 fn model_files() {

@@ -1,6 +1,6 @@
 //! Which column is what, where no option says so: guesses are told before the fit, and bad ones are refused.
 
-use hysid::elementary::{cos, sin};
+use hysid_core::elementary::{cos, sin};
 
 use crate::workbench::{Workbench, csv, rows};
 

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::workbench::{ROWS, Ran, Workbench, csv, json, must_contain, rows, table, with_cell};
-use hysid::elementary::{cos, square};
+use hysid_core::elementary::{cos, square};
 use serde_json::Value;
 
 fn keys(object: &Value) -> String {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::workbench::{Workbench, must_contain};
-use hysid::elementary::{sin, square};
+use hysid_core::elementary::{sin, square};
 use serde_json::Value;
 
 /// Turning points joined in steps, through a law.

@@ -1,7 +1,7 @@
 //! `hysid diagnose` as a user runs it: text, JSON, page, and what it refuses.
 
 use crate::workbench::{Workbench, csv, must_contain, rows, table};
-use hysid::elementary::sin;
+use hysid_core::elementary::sin;
 use serde_json::Value;
 
 const PROPERTIES: [&str; 10] = [

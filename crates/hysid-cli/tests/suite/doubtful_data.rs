@@ -2,7 +2,7 @@
 //! is told before the fit.
 
 use crate::workbench::{ROWS, Ran, Workbench, csv, rows, table, with_column};
-use hysid::elementary::{cos, sin};
+use hysid_core::elementary::{cos, sin};
 use serde_json::Value;
 
 const QUICK: &str = "--no-report --model prandtl-ishlinskii --operators 5";

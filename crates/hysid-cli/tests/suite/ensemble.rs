@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::workbench::{ROWS, Ran, Workbench, csv, json, rows};
-use hysid::elementary::{exp, ln};
+use hysid_core::elementary::{exp, ln};
 use serde_json::Value;
 
 /// An ensemble that takes well below a second.

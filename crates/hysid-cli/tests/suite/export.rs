@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use hysid::elementary::{cos, sin};
+use hysid_core::elementary::{cos, sin};
 
 use crate::workbench::{Workbench, cases, must_contain};
 

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use hysid::elementary::sin;
+use hysid_core::elementary::sin;
 
 use crate::workbench::{self, Ran, Workbench, must_contain};
 

@@ -1,6 +1,6 @@
 //! `hysid fit --inverse`: a model of the inverse.
 
-use hysid::elementary::sin;
+use hysid_core::elementary::sin;
 
 use crate::workbench::Workbench;
 

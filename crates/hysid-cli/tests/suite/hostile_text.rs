@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use hysid::elementary::sin;
+use hysid_core::elementary::sin;
 
 use crate::workbench::{Ran, Workbench, csv, rows};
 

@@ -7,7 +7,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hysid::elementary::powi;
+use hysid_core::elementary::powi;
 
 use crate::workbench::Workbench;
 

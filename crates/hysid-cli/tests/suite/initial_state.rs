@@ -1,7 +1,7 @@
 //! The initial state of records, as a user gives it or lets it be found.
 
 use crate::workbench::{Workbench, csv, json};
-use hysid::elementary::sin;
+use hysid_core::elementary::sin;
 use serde_json::Value;
 
 /// Rows of a play of threshold 0.5 that was driven to `past` before the record begins at 0.

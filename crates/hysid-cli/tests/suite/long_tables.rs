@@ -1,6 +1,6 @@
 //! Tables longer than any block that `simulate` and `evaluate` work on: as if they were read at once.
 
-use hysid::elementary::{cos, sin};
+use hysid_core::elementary::{cos, sin};
 
 use crate::workbench;
 use std::fmt::Write;

@@ -7,9 +7,9 @@ use std::time::Duration;
 use crate::workbench::Workbench;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::elementary::sin;
 use hysid::fit::memory_need;
 use hysid::options::chosen::NamedOptions;
+use hysid_core::elementary::sin;
 use serde_json::json;
 
 /// Largest ratio between estimate and measured peak, either way.

@@ -2,7 +2,7 @@
 //! candidates, inputs that are measured from elsewhere than 0.
 
 use crate::workbench::{Workbench, csv, must_contain};
-use hysid::elementary::{cos, sin};
+use hysid_core::elementary::{cos, sin};
 use serde_json::Value;
 
 /// Some cycles of one loop.

@@ -1,6 +1,6 @@
 //! `hysid plan`: drives from data and for kinds of specimens, their files, and what is refused.
 
-use hysid::elementary::sin;
+use hysid_core::elementary::sin;
 
 use crate::workbench::{Workbench, columns};
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::workbench::Workbench;
-use hysid::elementary::sin;
+use hysid_core::elementary::sin;
 use serde_json::Value;
 
 /// Numbers that look random, between -1 and 1.

@@ -1,7 +1,7 @@
 //! `hysid restoring-force`: restoring forces from tables of measured motion and force, what other commands make of them, and what is
 //! refused.
 
-use hysid::elementary::{cos, sin};
+use hysid_core::elementary::{cos, sin};
 
 use crate::workbench::{Ran, Workbench, cases, columns};
 

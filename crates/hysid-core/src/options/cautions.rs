@@ -6,37 +6,39 @@ use crate::data::warning::Warning;
 use crate::law::facts::Origin;
 use crate::options::{FitSpec, ModelName};
 use crate::significant::Significant;
+use crate::words::{Hint, Words};
 
 /// Half ranges that the middle of the field may lie away from 0.
 const FAR: f64 = 2.0;
 
 impl FitSpec {
     /// Cautions for a fit of this model to these data, in sentences.
-    pub fn cautions(&self, data: &Dataset) -> Vec<String> {
+    pub fn cautions(&self, data: &Dataset) -> Vec<Words> {
         let model = self.model();
         let mut cautions = Vec::new();
         if self.rate().is_some() && !model.uses_rate() {
-            cautions.push(format!("{} ignores the rate (xpnn and xpnn+ use it)", model.name()));
+            cautions.push(format!("{} ignores the rate (xpnn and xpnn+ use it)", model.name()).into());
         }
         cautions.extend(self.rate_not_shown(data));
-        cautions.extend(far_from_zero(model, data));
-        cautions.extend(self.larger_than(data).map(|warning| warning.to_string()));
+        cautions.extend(far_from_zero(model, data).map(Words::from));
+        cautions.extend(self.larger_than(data).map(|warning| warning.to_string().into()));
         cautions
     }
 }
 
 impl FitSpec {
     /// A rate that is used although the data pass each place at one speed; `auto` tries models without it too.
-    fn rate_not_shown(&self, data: &Dataset) -> Option<String> {
+    fn rate_not_shown(&self, data: &Dataset) -> Option<Words> {
         let model = self.model();
         let is_used = matches!(self.rate(), Some(method) if method != RateMethod::Given) && model.uses_rate();
         (is_used && data.speeds() == SpeedEvidence::One).then(|| {
-            format!(
+            let words = Words::from(format!(
                 "{} uses the rate, but the data pass each place of {} at one speed: at other speeds the model is \
-                 arbitrary (--rate none leaves the rate out)",
+                 arbitrary",
                 model.name(),
                 data.names().inputs[0]
-            )
+            ));
+            words.advised(Words::from(Hint::Value("rate", "none".into())) + " leaves the rate out")
         })
     }
 
@@ -88,6 +90,7 @@ mod tests {
         assert!(cautions(jiles_atherton, 0.0).is_empty());
         assert!(cautions(jiles_atherton, 1.5).is_empty());
         let [caution] = &cautions(jiles_atherton, 200.0)[..] else { panic!("one caution") };
+        let caution = format!("{caution:?}");
         assert!(caution.contains("199") && caution.contains("201"), "{caution}");
         assert!(cautions(ModelName::Classical(ClassicalModel::Preisach), 200.0).is_empty());
     }
@@ -100,6 +103,6 @@ mod tests {
             ..crate::options::classical::ClassicalOptions::of(rival)
         };
         let cautions = FitSpec::Classical(options).cautions(&data(0.0));
-        assert_eq!(cautions, ["preisach ignores the rate (xpnn and xpnn+ use it)"]);
+        assert_eq!(cautions, [Words::from("preisach ignores the rate (xpnn and xpnn+ use it)")]);
     }
 }

@@ -7,6 +7,7 @@ use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::unit;
 use hysid_core::elementary::log10;
 use hysid_core::significant::Significant;
+use hysid_core::words::Hint;
 
 /// Numbers that mark missing values, or are the full scale of an integer or of a number of single precision.
 const MARKS: [f64; 22] = [
@@ -164,9 +165,11 @@ impl<'d> NamedColumn<'d> {
         let name = self.name;
         let statement =
             format!("\"{name}\" {which} in {how_many}{place}: {what} If it was not measured, {help}");
+        let value = if apart.low.abs() > apart.high.abs() { apart.low } else { apart.high };
         DataIssue {
-            value: Some(if apart.low.abs() > apart.high.abs() { apart.low } else { apart.high }),
+            value: Some(value),
             unit,
+            advice: self.is_output.then(|| Hint::MissingWord(value.to_string()).into()),
             ..DataIssue::of_rows(DataIssueKind::MissingValueMark, Severity::Warning, statement, rows)
         }
     }

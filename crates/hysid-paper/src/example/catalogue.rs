@@ -1,6 +1,6 @@
 //! The paper's examples as data: specimens, rivals, what the paper reports and what is to be reached.
 
-use hysid::network::Family;
+use hysid_core::network::Family;
 
 use crate::chapter::TargetSource;
 use crate::fitting::FoldKind;

@@ -2,10 +2,10 @@
 
 use hysid::Result;
 use hysid::data::record::Dataset;
-use hysid::elementary::{exp, ln};
-use hysid::network::Family;
 use hysid::options::network::Regularisation;
 use hysid::validation::{Fold, folds, folds_of_cycles};
+use hysid_core::elementary::{exp, ln};
+use hysid_core::network::Family;
 use hysid_document::{Cell, Table, number};
 use rayon::prelude::*;
 

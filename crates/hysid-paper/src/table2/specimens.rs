@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::elementary::{sin, tanh};
 use hysid::operator::{DeterioratingStop, Operator, Stop};
+use hysid_core::elementary::{sin, tanh};
 
 /// A property and the specimen that has just that.
 pub struct SpecimenProperty {

@@ -1,8 +1,8 @@
 //! Result of the comparison of trainers: tables, figures, and the sentence on the paper's claim.
 
-use hysid::elementary::square;
 use hysid::options::network::Trainer;
-use hysid::significant::Significant;
+use hysid_core::elementary::square;
+use hysid_core::significant::Significant;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number};
 
 use super::{EPOCHS, Moment, Repetition, TRAINERS, TrainerRun, TrainingProtocol};

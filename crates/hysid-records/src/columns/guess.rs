@@ -4,14 +4,14 @@
 
 use std::ops::Range;
 
-use anyhow::{Result, anyhow, bail};
 use hysid_core::data::column::{Course, one_signal};
 use hysid_core::data::unit;
 use hysid_core::data::usual_role::Domain;
-use hysid_document::shell::option;
+use hysid_core::words::{Hint, Words};
 use hysid_document::visible::{clipped, listed};
-use hysid_tables::Table;
+use hysid_tables::{Problem, Result, Table};
 
+use super::NO_TIME;
 use super::kind::{self, ColumnKind};
 use super::values::{self, TimeCheck, ValueStatistics, numbers};
 
@@ -41,11 +41,11 @@ pub struct Guess<'t> {
     /// Inputs that options name.
     pub inputs: Vec<String>,
     /// Columns that are left out, each with the reason.
-    pub set_aside: Vec<(String, String)>,
+    pub set_aside: Vec<(String, Words)>,
     /// A condition that divides the rows into records.
     pub condition: Option<String>,
     /// Roles that contradict the names, in a sentence.
-    pub note: Option<String>,
+    pub note: Option<Words>,
 }
 
 /// Why a column is set aside, the surest reason first. The last ones are by name alone.
@@ -69,7 +69,7 @@ enum Rank {
 struct DoubtfulColumn<'t> {
     name: &'t String,
     rank: Rank,
-    reason: String,
+    reason: Words,
     /// Its values divide the rows into records.
     divides: bool,
 }
@@ -143,9 +143,12 @@ impl<'t> Guess<'t> {
                     self.free.retain(|other| other != name);
                 }
                 (true, false) if is_named => {
-                    let reason =
-                        if self.no_time { "time, which --time none leaves out" } else { "a second time" };
-                    self.set_aside(name, reason.into());
+                    let none = || Hint::Value("time", NO_TIME.into());
+                    let reason = match self.no_time {
+                        true => Words::from("time, which ") + none() + " leaves out",
+                        false => "a second time".into(),
+                    };
+                    self.set_aside(name, reason);
                 }
                 (true, false) => {}
             }
@@ -173,9 +176,9 @@ impl<'t> Guess<'t> {
 
     fn doubt(&self, name: &'t String, seen: Option<ValueStatistics>) -> Option<DoubtfulColumn<'t>> {
         let kind = ColumnKind::of(name);
-        let doubt = |rank: Rank, reason: &str| {
-            Some(DoubtfulColumn { name, rank, reason: reason.into(), divides: false })
-        };
+        let doubtful =
+            |rank: Rank, reason: Words| Some(DoubtfulColumn { name, rank, reason, divides: false });
+        let doubt = |rank: Rank, reason: &str| doubtful(rank, reason.into());
         let by_name = |rank: Rank| doubt(rank, kind.accompanies().unwrap_or_default());
         let Some(seen) = seen else {
             let is_time = unit::may_be_time(name) && self.time.is_none() && !self.no_time;
@@ -191,11 +194,9 @@ impl<'t> Guess<'t> {
             Course::Constant => return doubt(Rank::Constant, "constant"),
             Course::Counts => return doubt(Rank::Counts, "counts the rows"),
             Course::CountsInSteps => {
-                let record = option("record", name);
-                return doubt(
-                    Rank::CountsInSteps,
-                    &format!("counts up in steps (to divide the rows into records: {record})"),
-                );
+                let record = Hint::Value("record", name.clone());
+                let advice = Words::from("to divide the rows into records: ") + record;
+                return doubtful(Rank::CountsInSteps, Words::from("counts up in steps").advised(advice));
             }
             Course::Grows | Course::Varies => {}
         }
@@ -210,14 +211,15 @@ impl<'t> Guess<'t> {
             ColumnKind::Counter if seen.may_count() => by_name(Rank::Counter),
             ColumnKind::Integral => by_name(Rank::Integral),
             ColumnKind::Derived if kind::is_rate(name) => {
-                doubt(Rank::Derived, "a rate, not an input (use it with --rate)")
+                let advice = Words::from("use it with ") + Hint::Option("rate");
+                doubtful(Rank::Derived, Words::from("a rate, not an input").advised(advice))
             }
             ColumnKind::Derived => by_name(Rank::Derived),
             ColumnKind::Condition if seen.is_kept => {
                 let divides = self.record.is_none() && self.records.len() == 1;
                 let more = if divides { ", which divide the rows into records" } else { "" };
                 let reason = format!("a condition of the test, with few values{more}");
-                Some(DoubtfulColumn { name, rank: Rank::Kept, reason, divides })
+                Some(DoubtfulColumn { name, rank: Rank::Kept, reason: reason.into(), divides })
             }
             ColumnKind::Condition => by_name(Rank::Condition),
             ColumnKind::Unknown
@@ -261,15 +263,12 @@ impl<'t> Guess<'t> {
             seen.iter().find(|(name, seen)| self.free.contains(name) && seen.as_ref().is_some_and(grows));
         let Some((name, _)) = unclear else { return Ok(()) };
         let time = match self.time {
-            None => format!("name it with {}, or ", option("time", name)),
-            Some(_) => String::new(),
+            None => Words::from("name it with ") + Hint::Value("time", (*name).clone()) + ", or ",
+            Some(_) => Words::default(),
         };
-        bail!(
-            "{}: column \"{}\" grows from row to row: {time}name input and output with --input and --output{}",
-            self.table.file,
-            clipped(name),
-            self.columns()
-        )
+        let words = Words::from(format!("column \"{}\" grows from row to row: ", clipped(name))) + time;
+        let words = words + "name input and output with " + Hint::Option("input") + " and ";
+        Err(Problem::in_file(&self.table.file, words + Hint::Option("output") + self.columns()))
     }
 
     /// Refuses more than two columns that have no more than numbers for names.
@@ -333,34 +332,35 @@ impl<'t> Guess<'t> {
         Ok(())
     }
 
-    fn against_the_order(&self, one: &str, last: &str) -> anyhow::Error {
-        anyhow!(
-            "{}: \"{}\" is the last column, but \"{}\" looks more like the output: choose with {} or {}",
+    fn against_the_order(&self, one: &str, last: &str) -> Problem {
+        let words = Words::from(format!(
+            "\"{}\" is the last column, but \"{}\" looks more like the output: choose with ",
+            clipped(last),
+            clipped(one),
+        ));
+        let output = |name: &str| Hint::Value("output", name.into());
+        Problem::in_file(&self.table.file, words + output(one) + " or " + output(last))
+    }
+
+    fn order_believed(&self, one: &str, last: &str) -> Words {
+        let words = Words::from(format!(
+            "{}: output \"{}\", because it is the last column, although \"{}\" looks more like an output",
             self.table.file,
             clipped(last),
             clipped(one),
-            option("output", one),
-            option("output", last),
-        )
+        ));
+        words.advised(Words::from("to change it: ") + Hint::Value("output", one.into()))
     }
 
-    fn order_believed(&self, one: &str, last: &str) -> String {
-        format!(
-            "{}: output \"{}\", because it is the last column, although \"{}\" looks more like an output (to change it: {})",
-            self.table.file,
-            clipped(last),
-            clipped(one),
-            option("output", one),
-        )
-    }
-
-    fn taken_by_place(&self, last: &str) -> String {
-        format!(
+    fn taken_by_place(&self, last: &str) -> Words {
+        let words = Words::from(format!(
             "{}: the names do not tell input and output: \"{}\" is taken for the output, because it is the last column, and \
-             the others for inputs (to change it: --input, --output)",
+             the others for inputs",
             self.table.file,
             clipped(last)
-        )
+        ));
+        let change = Words::from("to change it: ") + Hint::Option("input") + ", " + Hint::Option("output");
+        words.advised(change)
     }
 
     /// Other outputs beside the one that is known are no inputs if another column is.
@@ -388,7 +388,7 @@ impl<'t> Guess<'t> {
             && self.table.header.first().is_some_and(|first| first == name)
     }
 
-    fn set_aside(&mut self, name: &str, reason: String) -> bool {
+    fn set_aside(&mut self, name: &str, reason: Words) -> bool {
         let is_more = self.free.len() > self.needed();
         if is_more {
             self.free.retain(|other| *other != name);
@@ -401,12 +401,9 @@ impl<'t> Guess<'t> {
         if self.free.len() <= MOST_INPUTS {
             return Ok(());
         }
-        bail!(
-            "{}: {} columns could be inputs: name them with --input ({})",
-            self.table.file,
-            self.free.len(),
-            listed(&self.free)
-        )
+        let words = Words::from(format!("{} columns could be inputs: name them with ", self.free.len()));
+        let words = (words + Hint::Option("input")).advised(listed(&self.free));
+        Err(Problem::in_file(&self.table.file, words))
     }
 
     fn refuse_alike(&self) -> Result<()> {
@@ -415,15 +412,15 @@ impl<'t> Guess<'t> {
         for (place, (name, values)) in columns.iter().enumerate() {
             for (other, other_values) in &columns[..place] {
                 if let Some(correlation) = one_signal(other_values, values) {
-                    bail!(
-                        "{}: columns \"{}\" and \"{}\" are nearly the same signal (correlation {correlation:.4}), such as \
-                         a command and its measurement: name the input with {} or {}",
-                        self.table.file,
+                    let words = Words::from(format!(
+                        "columns \"{}\" and \"{}\" are nearly the same signal (correlation {correlation:.4}), such as \
+                         a command and its measurement: name the input with ",
                         clipped(other),
                         clipped(name),
-                        option("input", other),
-                        option("input", name),
-                    );
+                    ));
+                    let input = |name: &str| Hint::Value("input", name.into());
+                    let words = words + input(other) + " or " + input(name);
+                    return Err(Problem::in_file(&self.table.file, words));
                 }
             }
         }
@@ -517,26 +514,26 @@ impl<'t> Guess<'t> {
     }
 
     /// A question, with the options that decide it.
-    fn question(&self, words: &str) -> anyhow::Error {
-        anyhow!("{}: {words}: name input and output{}", self.table.file, self.columns())
+    fn question(&self, words: &str) -> Problem {
+        let words = Words::from(format!("{words}: name input and output")) + self.columns();
+        Problem::in_file(&self.table.file, words)
     }
 
     /// Options that name likely columns, ready to be pasted, or all columns.
-    fn columns(&self) -> String {
+    fn columns(&self) -> Words {
         let free = || self.free.iter().copied();
         let input = self.inputs.first().or(free().find(|name| ColumnKind::of(name).drives()));
         let output = self.output.as_ref().or(free().rfind(|name| ColumnKind::of(name).follows()));
         match (input, output) {
             (Some(input), Some(output)) if input != output => {
-                format!(", for instance {} {}", option("input", input), option("output", output))
+                let (input, output) =
+                    (Hint::Value("input", input.clone()), Hint::Value("output", output.clone()));
+                Words::from(", for instance ") + input + " " + output
             }
             _ => {
-                let names: Vec<String> = free().map(|name| option("input", name)).collect();
-                format!(
-                    ", for instance {} (columns: {})",
-                    names.first().cloned().unwrap_or_default(),
-                    listed(&self.table.header)
-                )
+                let first = free().next().map(|name| Hint::Value("input", name.clone()).into());
+                let words = Words::from(", for instance ") + first.unwrap_or(Words::default());
+                words.advised(format!("columns: {}", listed(&self.table.header)))
             }
         }
     }

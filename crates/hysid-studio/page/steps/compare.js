@@ -1,7 +1,7 @@
 // Step 5: all models side by side, and some of them over one file.
 
 import { button, element, Region } from "../elements.js";
-import { Notice, problem } from "../notices.js";
+import { Notice, failure, problem } from "../notices.js";
 import { counted, duration, percent } from "../numbers.js";
 import { RecordFigures } from "../plots/record-figures.js";
 import { project, startsOf } from "../project.js";
@@ -60,7 +60,7 @@ export class CompareStep {
       element("caption", { class: "hidden", text: "Models" }),
       element("thead", {}, element("tr", {}, ...heads.map((text) => element("th", { scope: "col", text })), element("td"))),
       element("tbody", {}, ...models.map(row)))),
-    ...project.state.models.filter((model) => model.problem).map((model) => problem(`Model ${model.id}, ${model.file}: ${model.problem}`)),
+    ...project.state.models.filter((model) => model.problem).map((model) => problem([`Model ${model.id}, ${model.file}: `, model.problem].flat())),
     element("p", { class: "note", text: "Errors are NRMSE, in % of the standard deviation of the output; the lowest of each column is bold. Files are shown for models that were not fitted to them." })];
   }
 
@@ -80,7 +80,7 @@ export class CompareStep {
       this.figures.setOverlays(chosen.map((model, k) => ({ name: model.title, role: `series ${project.models.indexOf(model)}`, y: simulated[k].y })));
       this.error.update(null, () => []);
     } catch (error) {
-      this.error.update(error.message, () => [problem(error.message)]);
+      this.error.update(error.message, () => [failure(error)]);
     }
   }
 }

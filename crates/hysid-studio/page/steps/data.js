@@ -114,7 +114,7 @@ export class DataStep {
       const role = element("select", { id, "aria-label": `Role of ${column.name} in ${file.name}`, on: { change: () => this.chooseRole(file, column.name, role.value) } },
         ...ROLES.map((name) => element("option", { value: name, text: name })));
       role.value = column.role ?? "unused";
-      // Words such as --input in a problem lead to the select of the first column that fits.
+      // A role that a problem names leads to the select of the first column that has it.
       const flag = FLAG_OF_ROLE[column.role];
       if (isFirst && flag && !flagged.has(flag)) { role.dataset.flag = flag; flagged.add(flag); }
       return [column.name, role, column.unit ?? "", written(column.minimum), written(column.maximum), counted(column.missing ?? 0), column.note ?? ""];
@@ -200,7 +200,7 @@ export class DataStep {
   finding(finding) {
     const isWarning = finding.severity === "warning";
     const places = finding.evidence.map((one) => ({ one, file: project.files.find((file) => file.records.some((record) => record.name === one.record)) })).filter(({ file }) => file);
-    return element("li", {}, element("span", { class: isWarning ? "badge warning" : "badge", text: finding.severity }), linked(finding.statement),
+    return element("li", {}, element("span", { class: isWarning ? "badge warning" : "badge", text: finding.severity }), linked(finding.words ?? finding.statement),
       places.length > 0 ? button("Show", () => this.showFinding(places), { "aria-label": `Show: ${finding.statement}` }) : null);
   }
 

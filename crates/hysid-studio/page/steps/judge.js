@@ -2,7 +2,7 @@
 
 import { tick } from "../controls.js";
 import { documentOf, element, Region, table } from "../elements.js";
-import { linked, problem } from "../notices.js";
+import { failure, linked } from "../notices.js";
 import { counted, duration, percent, sentence, written } from "../numbers.js";
 import { Figure } from "../plots/figure.js";
 import { goingOn, RecordFigures } from "../plots/record-figures.js";
@@ -57,7 +57,7 @@ export class JudgeStep {
       this.residuals.update([key, judged.residuals], () => this.buildResiduals(columns, simulated, file, judged));
       this.facts.update(model.id, () => [this.factsOf(model)]);
     } catch (error) {
-      this.errors.update(error.message, () => [problem(error.message)]);
+      this.errors.update(error.message, () => [failure(error)]);
     }
   }
 
@@ -70,7 +70,7 @@ export class JudgeStep {
       try {
         facts.replaceChildren(documentOf((await project.ofModel(model, "facts")).html));
       } catch (error) {
-        facts.replaceChildren(problem(error.message));
+        facts.replaceChildren(failure(error));
       }
     } } }, element("summary", { text: "Model diagnosis: properties, equations" }), facts);
     this.told = null;

@@ -1,7 +1,7 @@
 // Step 6: files to keep, and the commands that do the same without the page.
 
 import { button, element, Region } from "../elements.js";
-import { Notice, problem } from "../notices.js";
+import { Notice, failure, problem } from "../notices.js";
 import { download } from "../plots/save.js";
 import { project } from "../project.js";
 import { getFile } from "../server.js";
@@ -62,7 +62,7 @@ export class TakeAwayStep {
       const { shell, python, note } = await project.ofModel(model, "commands");
       if (modelOr(this.model) === model) this.commands.update([model.id, shell, python], () => [element("h2", { text: "Without this page" }), note ? problem(note) : null, copyable("Command line", shell), python ? copyable("Python", python, `Run in the folder ${folder}.`) : element("p", { class: "note", text: "Python code is not available for several training files, files other than CSV, and reading options." })]);
     } catch (error) {
-      this.commands.update(error.message, () => [problem(error.message)]);
+      this.commands.update(error.message, () => [failure(error)]);
     }
   }
 }

@@ -1,7 +1,7 @@
 // Steps that show a page of the server on the training data: the diagnosis and the cycles.
 
 import { documentOf, element, emptyState, Region } from "../elements.js";
-import { problem } from "../notices.js";
+import { failure, problem } from "../notices.js";
 import { project } from "../project.js";
 import { getJson } from "../server.js";
 
@@ -23,7 +23,7 @@ class TrainingPage {
       const { html } = await project.once(`${this.address} ${key}`, () => getJson(this.address));
       this.region.update(key, () => [this.cards(html)]);
     } catch (error) {
-      this.region.update(`failed ${error.message}`, () => [problem(error.message)]);
+      this.region.update(`failed ${error.message}`, () => [failure(error)]);
     }
     return undefined;
   }

@@ -1,10 +1,10 @@
 //! State of a fit, for the page.
 
-use anyhow::Result;
 use hysid::options::FitSpec;
+use hysid_document::Problem;
 use serde::Serialize;
 
-use crate::words::said;
+use crate::words::{Said, said};
 
 /// State of a fit. Errors are in percent of the standard deviation of the output.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -36,7 +36,7 @@ pub struct FitState {
     /// Number of the newest picture; 0 if there is none.
     pub preview: u64,
     /// Why there is no model.
-    pub problem: Option<String>,
+    pub problem: Option<Said>,
     /// Number of the model that was made.
     pub made: Option<u64>,
     /// True if the model could not be stored and is in memory alone.
@@ -45,17 +45,14 @@ pub struct FitState {
     pub was_interrupted: bool,
 }
 
-/// A model that could not be stored, with the reason.
-#[derive(Debug)]
-pub struct Unsaved(pub String);
-
-impl std::fmt::Display for Unsaved {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
+/// How a fit has ended.
+pub enum FitEnd {
+    /// With a stored model, by its number.
+    Stored(u64),
+    /// With a model that could not be stored, and the reason.
+    Unsaved(Problem),
+    Failed(Problem),
 }
-
-impl std::error::Error for Unsaved {}
 
 /// A candidate of `auto`.
 #[derive(Debug, Clone, Serialize)]
@@ -131,14 +128,14 @@ impl FitState {
     }
 
     /// Takes how the fit has ended.
-    pub(super) fn end(&mut self, ended: Result<u64>) {
-        self.is_unsaved = ended.as_ref().is_err_and(|problem| problem.is::<Unsaved>());
+    pub(super) fn end(&mut self, ended: FitEnd) {
+        self.is_unsaved = matches!(ended, FitEnd::Unsaved(_));
         self.is_running = false;
         self.remaining = None;
         self.remaining_seconds = None;
         match ended {
-            Ok(model) => self.made = Some(model),
-            Err(problem) => self.problem = Some(said(&problem)),
+            FitEnd::Stored(model) => self.made = Some(model),
+            FitEnd::Unsaved(problem) | FitEnd::Failed(problem) => self.problem = Some(said(&problem)),
         }
     }
 }

@@ -4,9 +4,8 @@ use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 
-use anyhow::{Result, anyhow, bail};
-
 use super::Folder;
+use hysid_document::{Result, problem};
 
 /// Opens the page in a browser.
 pub(super) const ENTRANCE: &str = "studio.html";
@@ -24,10 +23,13 @@ impl Folder {
     pub fn write_entrance(&self, body: &str) -> Result<()> {
         let path = self.entrance();
         let stored = |error: std::io::Error| {
-            anyhow!("{}: cannot be written: {}", path.display(), hysid_files::reason(&error))
+            problem!("{}: cannot be written: {}", path.display(), hysid_files::reason(&error))
         };
         if fs::symlink_metadata(&path).is_ok() && !self.remove_entrance() {
-            bail!("{}: a file is there already that the studio did not write", path.display());
+            return Err(problem!(
+                "{}: a file is there already that the studio did not write",
+                path.display()
+            ));
         }
         let mut options = fs::OpenOptions::new();
         options.write(true).create_new(true);

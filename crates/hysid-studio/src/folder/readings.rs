@@ -6,9 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard};
 
-use anyhow::{Result, bail};
-
 use super::{Folder, ProjectFolder};
+use hysid_document::{Result, problem};
 
 /// Begins the names of empty files that mark which data were being read. The number of the file follows.
 const READING: &str = ".reading-";
@@ -40,7 +39,7 @@ impl Folder {
             let readings = self.readings();
             if readings.held_back.contains(&id) {
                 let words = "the studio was killed while it read this file: remove it, or read it again";
-                bail!("{name}: {words}");
+                return Err(problem!("{name}: {words}"));
             }
             if !readings.is_ending {
                 let _ = fs::File::create_new(&mark);

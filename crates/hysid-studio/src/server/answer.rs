@@ -8,28 +8,31 @@ use axum::body::Body;
 use axum::http::StatusCode;
 use axum::http::header::{self, HeaderName, HeaderValue};
 use axum::response::{IntoResponse, Response};
+use hysid_document::Problem;
 use serde::Serialize;
 use serde_json::json;
 use tokio::sync::OwnedSemaphorePermit;
 
 use super::Shared;
 use crate::studio::Studio;
-use crate::words::shortened;
+use crate::words::{Said, said};
 
 /// Why something cannot be done, in words.
 #[derive(Debug)]
-pub struct Problem {
+pub struct Refusal {
     status: StatusCode,
-    words: String,
+    words: Said,
 }
 
-impl Problem {
+impl Refusal {
     /// A problem with this HTTP status.
-    pub fn new(status: StatusCode, words: impl Into<String>) -> Self {
-        let words: String = words.into();
-        let words = match words.trim().is_empty() {
-            true => format!("this is not possible: {}", status.canonical_reason().unwrap_or("refused")),
-            false => shortened(&words).into_owned(),
+    pub fn new(status: StatusCode, words: impl Into<Said>) -> Self {
+        let words: Said = words.into();
+        let words = match words.text().trim().is_empty() {
+            true => {
+                format!("this is not possible: {}", status.canonical_reason().unwrap_or("refused")).into()
+            }
+            false => words,
         };
         Self { status, words }
     }
@@ -40,25 +43,24 @@ impl Problem {
     }
 }
 
-impl From<anyhow::Error> for Problem {
-    fn from(error: anyhow::Error) -> Self {
-        let words = format!("{error:#}");
-        let status = match words.starts_with("a fit is running") {
-            true => StatusCode::CONFLICT,
-            false => StatusCode::BAD_REQUEST,
+impl From<Problem> for Refusal {
+    fn from(problem: Problem) -> Self {
+        let status = match problem {
+            Problem::Busy(_) => StatusCode::CONFLICT,
+            _ => StatusCode::BAD_REQUEST,
         };
-        Self::new(status, words)
+        Self::new(status, said(&problem))
     }
 }
 
-impl IntoResponse for Problem {
+impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
         (self.status, Json(json!({"error": self.words}))).into_response()
     }
 }
 
 /// A response, or why there is none.
-pub type Answer<T> = Result<T, Problem>;
+pub type Answer<T> = Result<T, Refusal>;
 
 /// Time after which a response is given up.
 pub const LONGEST_COMPUTATION: Duration = Duration::from_secs(600);
@@ -66,7 +68,7 @@ pub const LONGEST_COMPUTATION: Duration = Duration::from_secs(600);
 /// Computes a response on a thread of its own: reads tables or runs models, one of few at a time.
 pub async fn computed<T: Send + 'static>(
     shared: Shared,
-    compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
+    compute: impl FnOnce(&Arc<Studio>) -> hysid_document::Result<T> + Send + 'static,
 ) -> Answer<T> {
     let permit = Arc::clone(&shared.computing).acquire_owned().await;
     on_a_thread(shared, permit.ok(), compute).await
@@ -75,7 +77,7 @@ pub async fn computed<T: Send + 'static>(
 /// As [`computed`], for diagnoses: those that nobody waits for any more hold up only other diagnoses.
 pub async fn diagnosed<T: Send + 'static>(
     shared: Shared,
-    compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
+    compute: impl FnOnce(&Arc<Studio>) -> hysid_document::Result<T> + Send + 'static,
 ) -> Answer<T> {
     let permit = Arc::clone(&shared.diagnosing).acquire_owned().await;
     on_a_thread(shared, permit.ok(), compute).await
@@ -84,7 +86,7 @@ pub async fn diagnosed<T: Send + 'static>(
 /// Computes a quick response, which waits for no other.
 pub async fn at_once<T: Send + 'static>(
     shared: Shared,
-    compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
+    compute: impl FnOnce(&Arc<Studio>) -> hysid_document::Result<T> + Send + 'static,
 ) -> Answer<T> {
     on_a_thread(shared, None, compute).await
 }
@@ -102,7 +104,7 @@ impl Drop for Turn {
 async fn on_a_thread<T: Send + 'static>(
     shared: Shared,
     permit: Option<OwnedSemaphorePermit>,
-    compute: impl FnOnce(&Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
+    compute: impl FnOnce(&Arc<Studio>) -> hysid_document::Result<T> + Send + 'static,
 ) -> Answer<T> {
     let (studio, longest) = (shared.studio, shared.longest);
     let permit = Turn(Arc::new(Mutex::new(permit)));
@@ -116,12 +118,12 @@ async fn on_a_thread<T: Send + 'static>(
         compute(&studio)
     });
     let words = "this takes more than ten minutes: use fewer rows";
-    let late = |_| Problem::new(StatusCode::GATEWAY_TIMEOUT, words);
+    let late = |_| Refusal::new(StatusCode::GATEWAY_TIMEOUT, words);
     let outcome = tokio::time::timeout(longest, result).await;
     timer.abort();
     match outcome.map_err(late)? {
         Ok(result) => Ok(result?),
-        Err(_) => Err(Problem::new(
+        Err(_) => Err(Refusal::new(
             StatusCode::INTERNAL_SERVER_ERROR,
             "internal error in this computation; the project is unchanged",
         )),

@@ -8,7 +8,7 @@ use axum::response::{Html, IntoResponse, Response};
 use hysid_document::html;
 use sha2::{Digest, Sha256};
 
-use super::answer::{Answer, Problem};
+use super::answer::{Answer, Refusal};
 
 const PAGE: &str = include_str!("../../page/index.html");
 
@@ -111,7 +111,7 @@ pub async fn asset(Path(path): Path<String>) -> Answer<Response> {
         return Ok(([(header::CONTENT_TYPE, "text/css; charset=utf-8")], document_style()).into_response());
     }
     let found = FILES.iter().find(|(name, _)| *name == path);
-    let missing = || Problem::new(axum::http::StatusCode::NOT_FOUND, "the page has no such file");
+    let missing = || Refusal::new(axum::http::StatusCode::NOT_FOUND, "the page has no such file");
     let (name, content) = found.ok_or_else(missing)?;
     Ok(([(header::CONTENT_TYPE, kind(name))], *content).into_response())
 }

@@ -13,12 +13,14 @@ use axum::response::Response;
 use futures_util::StreamExt;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Record;
-use hysid_records::{Data, ReadingChoice, Usage as Wrong};
+use hysid_core::words::{Hint, Words};
+use hysid_document::Problem;
+use hysid_records::{Data, ReadingChoice};
 use serde::Deserialize;
 use serde_json::json;
 
 use super::Shared;
-use super::answer::{Answer, Arrays, Problem, at_once, computed, diagnosed, done, value};
+use super::answer::{Answer, Arrays, Refusal, at_once, computed, diagnosed, done, value};
 use crate::choices::MOST_FILE_BYTES;
 use crate::project::{ChosenColumns, Use};
 
@@ -55,14 +57,14 @@ pub async fn upload(
     let mut upload = Upload(Some(place.clone()));
     let stored = |error: std::io::Error| {
         let words = format!("{}: cannot be stored: {}", named.name, hysid_files::reason(&error));
-        Problem::new(StatusCode::INSUFFICIENT_STORAGE, words)
+        Refusal::new(StatusCode::INSUFFICIENT_STORAGE, words)
     };
     let mut file = File::create(&place).map_err(stored)?;
     let mut stream = body.into_data_stream();
     let mut bytes = 0;
     loop {
         let words = "the upload stopped: drop the file again";
-        let late = || Problem::new(StatusCode::REQUEST_TIMEOUT, words);
+        let late = || Refusal::new(StatusCode::REQUEST_TIMEOUT, words);
         let next = tokio::time::timeout(LONGEST_PAUSE, stream.next()).await.map_err(|_| late())?;
         let Some(chunk) = next else { break };
         let chunk = chunk.map_err(|_| late())?;
@@ -84,10 +86,10 @@ pub async fn upload(
     Ok(value(json!({"id": id})))
 }
 
-fn too_large() -> Problem {
+fn too_large() -> Refusal {
     let most = MOST_FILE_BYTES / 1_000_000_000;
     let words = format!("the file is larger than {most} GB: make it smaller, or fit on the command line");
-    Problem::new(StatusCode::PAYLOAD_TOO_LARGE, words)
+    Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, words)
 }
 
 /// Removes a file.
@@ -159,11 +161,14 @@ pub struct AskedColumns {
 }
 
 impl AskedColumns {
-    fn chosen(self) -> anyhow::Result<ChosenColumns> {
+    fn chosen(self) -> hysid_document::Result<ChosenColumns> {
         let Self { record, time, inputs, rate, output } = self;
-        let missing = |what: &str| Wrong(format!("no column has the role {what}: choose one (--{what})"));
+        let missing = |role| {
+            let words = Words::from(format!("no column has the role {role}: choose one"));
+            Problem::Request(words.advised(Hint::Option(role)))
+        };
         if inputs.is_empty() {
-            return Err(missing("input").into());
+            return Err(missing("input"));
         }
         let output = output.ok_or_else(|| missing("output"))?;
         Ok(ChosenColumns { record, time, inputs, rate, output })

@@ -14,7 +14,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
-use super::answer::{Problem, value};
+use super::answer::{Refusal, value};
 use super::assets;
 use super::connections::Proof;
 use super::keys::Keys;
@@ -62,10 +62,10 @@ impl Guard {
     }
 
     /// Why a request is refused before its key is looked at; `None` if it is not.
-    fn refusal(&self, request: &Request) -> Option<Problem> {
+    fn refusal(&self, request: &Request) -> Option<Refusal> {
         let headers = request.headers();
         if text(headers, &header::HOST) != Some(&self.0.host) {
-            return Some(Problem::refused(&format!("request refused: the studio is at {}", self.0.origin)));
+            return Some(Refusal::refused(&format!("request refused: the studio is at {}", self.0.origin)));
         }
         let origin = text(headers, &header::ORIGIN);
         let is_reading = matches!(*request.method(), Method::GET | Method::HEAD);
@@ -73,7 +73,7 @@ impl Guard {
         let site = text(headers, &HeaderName::from_static("sec-fetch-site"));
         let is_opening = request.uri().path() == "/";
         if is_foreign || (!is_opening && site.is_some_and(|site| site != "same-origin" && site != "none")) {
-            return Some(Problem::refused("request refused: it did not come from the page of this studio"));
+            return Some(Refusal::refused("request refused: it did not come from the page of this studio"));
         }
         None
     }
@@ -133,7 +133,7 @@ pub async fn check_key(
         return next.run(request).await;
     }
     let words = "The studio was restarted, or did not open this page. Open the file studio.html in the folder of the project.";
-    Problem::refused(words).into_response()
+    Refusal::refused(words).into_response()
 }
 
 /// Refuses requests of other pages, opens the page, and adds the headers to every response.

@@ -8,9 +8,8 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use anyhow::{Result, anyhow};
-
 use crate::studio::Studio;
+use hysid_document::{Result, problem};
 
 /// Bytes of a token, a ticket or the key.
 const BYTES: usize = 24;
@@ -113,7 +112,7 @@ impl Keys {
 
 fn random() -> Result<String> {
     let mut random = [0; BYTES];
-    getrandom::fill(&mut random).map_err(|error| anyhow!("no random numbers: {error}"))?;
+    getrandom::fill(&mut random).map_err(|error| problem!("no random numbers: {error}"))?;
     Ok(random.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::Shared;
-use super::answer::{Answer, Arrays, Problem, at_once, computed, diagnosed, done, download, encoded, value};
+use super::answer::{Answer, Arrays, Refusal, at_once, computed, diagnosed, done, download, encoded, value};
 use super::assets::report_text;
 use crate::drive;
 use crate::judgement;
@@ -42,7 +42,7 @@ pub async fn unsaved(State(shared): State<Shared>) -> Answer<Response> {
 
 /// Simulation of the best model so far.
 pub async fn preview(State(shared): State<Shared>) -> Answer<Arrays> {
-    let nothing = || Problem::new(axum::http::StatusCode::NOT_FOUND, "there is no model so far");
+    let nothing = || Refusal::new(axum::http::StatusCode::NOT_FOUND, "there is no model so far");
     let preview = shared.studio.preview().ok_or_else(nothing)?;
     let rows = preview.output.len();
     Ok(Arrays::of(&[("simulated", preview.output.as_slice())])
@@ -87,7 +87,7 @@ pub struct Driven {
 
 impl Driven {
     /// The path whose numbers are a body.
-    fn path(&self, model: &Model, body: &Bytes) -> anyhow::Result<drive::Path> {
+    fn path(&self, model: &Model, body: &Bytes) -> hysid_document::Result<drive::Path> {
         let number = |bytes: &[u8]| Some(f64::from_le_bytes(bytes.try_into().ok()?));
         let numbers: Vec<f64> = body.chunks_exact(8).filter_map(number).collect();
         drive::Path::of(model, &numbers, self.rows)

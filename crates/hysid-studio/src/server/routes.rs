@@ -7,7 +7,7 @@ use axum::middleware::{from_fn_with_state, map_response};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{delete, get, post};
 
-use super::answer::{Answer, Problem, at_once, value};
+use super::answer::{Answer, Refusal, at_once, value};
 use super::guard::{self, Guard};
 use super::{Shared, assets, events, files, models};
 use crate::choices;
@@ -58,7 +58,7 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
         .route("/api/session", post(guard::session).with_state(guard.clone()))
         .route("/{*path}", get(assets::asset))
         .nest("/api", api)
-        .fallback(async || Problem::new(StatusCode::NOT_FOUND, "there is no such address"))
+        .fallback(async || Refusal::new(StatusCode::NOT_FOUND, "there is no such address"))
         .layer(DefaultBodyLimit::max(MOST_BODY_BYTES))
         .layer(map_response(in_words))
         .layer(from_fn_with_state(guard, guard::check))
@@ -80,5 +80,5 @@ async fn in_words(response: Response) -> Response {
     let bytes = axum::body::to_bytes(response.into_body(), MOST_BODY_BYTES).await.unwrap_or_default();
     let words = String::from_utf8_lossy(&bytes)
         .replace("Failed to deserialize the JSON body into the target type", "the request is not valid");
-    Problem::new(status, words).into_response()
+    Refusal::new(status, words).into_response()
 }

@@ -4,16 +4,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use anyhow::{Result, anyhow, bail};
 use hysid::data::record::Dataset;
 use hysid::data::summary::Summary;
 use hysid::diagnosis::cycles::CycleOptions;
-use hysid::diagnosis::{Diagnosis, DiagnosisOptions, before_a_fit};
+use hysid::diagnosis::{DataIssue, Diagnosis, DiagnosisOptions, before_a_fit};
 use hysid::specimens::{Specimen, with_noise};
 use hysid_app::cycles::{self, Cycles};
 use hysid_app::diagnosis::DataDiagnosis;
-use hysid_document::html;
 use hysid_document::visible::clipped;
+use hysid_document::{Face, Problem, html, object};
+use hysid_document::{Result, problem};
 use hysid_records::{Data, ReadingChoice, Roles, csv_text, summarised, understanding};
 use hysid_tables::Table;
 use serde_json::{Value, json};
@@ -22,14 +22,14 @@ use super::Studio;
 use crate::folder::{ProjectFolder, UPLOAD, cannot_read};
 use crate::project::{ChosenColumns, Project, ProjectFile, Use};
 use crate::view::{View, read};
-use crate::words::said;
+use crate::words::{Said, said};
 
 const MOST_FILES: usize = 200;
 
 /// Refuses one more file in a full project.
 fn check_room(project: &Project) -> Result<()> {
     if project.files.len() >= MOST_FILES {
-        bail!("a project has at most {MOST_FILES} files: remove some that are not used");
+        return Err(problem!("a project has at most {MOST_FILES} files: remove some that are not used"));
     }
     Ok(())
 }
@@ -39,7 +39,7 @@ impl Studio {
     pub fn place_for_upload(&self) -> Result<PathBuf> {
         check_room(&self.project())?;
         let mut random = [0; 8];
-        getrandom::fill(&mut random).map_err(|error| anyhow!("no random name: {error}"))?;
+        getrandom::fill(&mut random).map_err(|error| problem!("no random name: {error}"))?;
         Ok(self.folder.data(&format!("{UPLOAD}{:016x}", u64::from_le_bytes(random))))
     }
 
@@ -50,7 +50,7 @@ impl Studio {
         let name = self.folder.free_name(ProjectFolder::Data, given)?;
         let content = fs::read(place).map_err(|error| cannot_read(Path::new(&name), &error))?;
         let bytes = content.len() as u64;
-        let checksum = hysid_files::checksum(&content[..])?;
+        let checksum = hysid_files::checksum(&content[..]).map_err(|error| problem!("{name}: {error}"))?;
         let table = Table::from_bytes(Path::new(&name), content, &reading.reading()?);
         let mut stored = None;
         let entered = self.change(|project| {
@@ -58,7 +58,7 @@ impl Studio {
             let name = self.folder.free_name(ProjectFolder::Data, given)?;
             let path = self.folder.data(&name);
             fs::rename(place, &path)
-                .map_err(|error| anyhow!("{name}: cannot be stored: {}", hysid_files::reason(&error)))?;
+                .map_err(|error| problem!("{name}: cannot be stored: {}", hysid_files::reason(&error)))?;
             stored = Some(path);
             let id = project.next_id();
             project.files.push(ProjectFile { id, name, bytes, checksum, usage });
@@ -75,7 +75,7 @@ impl Studio {
     pub fn take_content(&self, given: &str, content: &[u8], usage: Use) -> Result<u64> {
         let place = self.place_for_upload()?;
         let stored = fs::write(&place, content)
-            .map_err(|error| anyhow!("{given}: cannot be stored: {}", hysid_files::reason(&error)));
+            .map_err(|error| problem!("{given}: cannot be stored: {}", hysid_files::reason(&error)));
         let taken = stored.and_then(|()| self.take_file(given, &place, usage));
         if taken.is_err() {
             self.folder.remove(&place);
@@ -139,14 +139,14 @@ impl Studio {
 
     /// Takes the training and the test data of a specimen.
     pub fn take_specimen(&self, name: &str, seed: u64, noise_percent: f64) -> Result<Vec<u64>> {
-        let specimen = Specimen::named(name).ok_or_else(|| anyhow!("there is no specimen \"{name}\""))?;
+        let specimen = Specimen::named(name).ok_or_else(|| problem!("there is no specimen \"{name}\""))?;
         // As of `hysid generate`: test data have a noise of their own.
         let sets = [
             (format!("{name}-train.csv"), specimen.train_with_seed(seed), seed, Use::Training),
             (format!("{name}-test.csv"), specimen.test_with_seed(seed), !seed, Use::Unseen),
         ];
         let take = |(name, data, seed, usage): (String, Dataset, u64, Use)| {
-            let text = csv_text(&with_noise(&data, noise_percent, seed)?)?;
+            let text = csv_text(&with_noise(&data, noise_percent, seed)?);
             self.take_content(&name, text.as_bytes(), usage)
         };
         sets.into_iter().map(take).collect()
@@ -175,7 +175,9 @@ impl Studio {
         };
         self.change_reading(|project| {
             if project.files != before.files || project.understanding != before.understanding {
-                bail!("the files or their reading changed meanwhile: choose the columns again");
+                return Err(problem!(
+                    "the files or their reading changed meanwhile: choose the columns again"
+                ));
             }
             project.understanding.columns = columns;
             Ok(())
@@ -226,7 +228,11 @@ impl Studio {
             Err(_) => before_a_fit(&data.set).unwrap_or_default(),
         };
         // The issues with the rows that show them.
-        Ok(json!({"warnings": warnings, "issues": issues}))
+        let issue = |issue: DataIssue| {
+            let words = Said::from(issue.words());
+            object! { words: words, #[serde(flatten)] issue: issue }
+        };
+        Ok(json!({"warnings": warnings, "issues": issues.into_iter().map(issue).collect::<Vec<_>>()}))
     }
 
     /// The diagnosis of the training data, as HTML. It is made once, also if who asked for it does not wait.
@@ -241,24 +247,25 @@ impl Studio {
 
     fn made_once(
         &self,
-        kept: impl Fn(&View) -> &OnceLock<std::result::Result<String, String>>,
+        kept: impl Fn(&View) -> &OnceLock<std::result::Result<String, Said>>,
         make: fn(&Data) -> Result<String>,
     ) -> Result<String> {
         let (project, view) = self.current();
         let made = || view.training(&project, &self.folder).and_then(|data| make(&data));
         let page = kept(&view).get_or_init(|| made().map_err(|error| said(&error)));
-        page.clone().map_err(|words| anyhow!(words))
+        page.clone().map_err(Problem::from)
     }
 }
 
 fn diagnosis_of(data: &Data) -> Result<String> {
-    let understood = understanding::of_data(data, &Summary::of(&data.set));
-    let diagnosed = DataDiagnosis::of(data, &DiagnosisOptions::default(), &understood, String::new())?;
+    let understood = understanding::of_data(data, &Summary::of(&data.set), Face::Studio);
+    let diagnosed =
+        DataDiagnosis::of(data, &DiagnosisOptions::default(), &understood, String::new(), Face::Studio)?;
     Ok(html::parts(&diagnosed.page().parts))
 }
 
 fn cycles_of(data: &Data) -> Result<String> {
-    let understood = understanding::of_data(data, &Summary::of(&data.set));
+    let understood = understanding::of_data(data, &Summary::of(&data.set), Face::Studio);
     let cycles = Cycles::of_data(&data.set, &CycleOptions::default(), &[], None, ("", understood));
     Ok(html::parts(&cycles::page(&cycles.map_err(|error| data.explain(error))?).parts))
 }

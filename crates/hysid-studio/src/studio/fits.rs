@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, MutexGuard, PoisonError};
 
-use anyhow::{Context, Result, anyhow, bail};
 use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::options::chosen::NamedOptions;
 use hysid_app::{Beforehand, Identified, date, origin, page_text};
+use hysid_document::{Face, Problem, Result, problem};
 use hysid_files::Kind;
-use hysid_records::{Data, Usage};
+use hysid_records::Data;
 
 use super::Studio;
-use crate::fitting::{Finish, FitPreview, FitState, FitWork, Unsaved, caught};
+use crate::fitting::{Finish, FitEnd, FitPreview, FitState, FitWork, caught, is_running};
 use crate::folder::ProjectFolder;
 use crate::project::{Begun, ChosenColumns, FitRequest, ProjectModel, Use};
 use crate::words::said;
@@ -36,24 +36,24 @@ impl Studio {
     pub fn begin_fit(self: &Arc<Self>, request: FitRequest) -> Result<u64> {
         let _only = self.beginning.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if self.fits.state().is_some_and(|state| state.is_running) {
-            bail!("a fit is running: stop it, or wait until it ends");
+            return Err(is_running());
         }
         let limit = request.time_limit.map(hysid::time_limit).transpose();
-        limit.map_err(|needed| Usage(format!("--time-limit: {needed}")))?;
+        limit.map_err(|needed| Problem::option("time_limit", needed))?;
         self.save_again()
             .and_then(|()| self.take_up_the_unfinished())
-            .context("the model of the last fit cannot be stored")?;
+            .map_err(|problem| problem.within("the model of the last fit cannot be stored"))?;
         let request = request.with_values()?;
         let (seen, _) = self.current();
         let data = self.training_data()?;
         let spec = self.spec(&request, &data)?;
         // What can be refused is refused before anything is stored.
-        let beforehand = Beforehand::of(&data, &spec)?;
+        let beforehand = Beforehand::of(&data, &spec, Face::Studio)?;
         let best = self.folder.best_so_far();
         self.folder.remove(&best);
         let begun = self.change(|project| {
             if project.files != seen.files || project.understanding != seen.understanding {
-                bail!("the files or their reading changed meanwhile: start the fit again");
+                return Err(problem!("the files or their reading changed meanwhile: start the fit again"));
             }
             let id = project.next_id();
             let files = project.files_for(Use::Training).map(|file| file.name.clone()).collect();
@@ -77,7 +77,7 @@ impl Studio {
                 let text = identified.model.to_json();
                 finishing.take_model(Found { begun, identified, data, text, rescued: None })
             }
-            Err(problem) => Err(finishing.keep_the_best(problem)),
+            Err(problem) => FitEnd::Failed(finishing.keep_the_best(problem)),
         });
         let tell = Arc::new(move || news.send_modify(|news| news.fit += 1));
         let begun = self.fits.begin(work, finish, tell);
@@ -88,7 +88,8 @@ impl Studio {
     }
 
     fn spec(&self, request: &FitRequest, data: &Data) -> Result<FitSpec> {
-        let chosen = NamedOptions::of(request.options.clone()).map_err(|error| Usage(error.to_string()))?;
+        let chosen =
+            NamedOptions::of(request.options.clone()).map_err(|error| Problem::request(error.to_string()))?;
         request.rate(&self.project().understanding)?.request(&chosen, &data.set)
     }
 
@@ -113,25 +114,26 @@ impl Studio {
     pub fn end(&self) -> Result<()> {
         self.folder.end_readings();
         self.fits.end();
-        self.save_again().map_err(|error| {
+        self.save_again().map_err(|problem| {
             let place = self.unsaved().as_ref().and_then(|found| found.rescued.clone());
             let place = place.map_or_else(|| "lost".into(), |place| format!("in {}", place.display()));
-            anyhow!("{error:#}; the model is {place}")
+            Problem::Other(problem.words() + format!("; the model is {place}"))
         })
     }
 
     /// Saves what a fit has found. If that fails, it stays in memory, and a copy is put elsewhere if there is room.
-    fn take_model(&self, found: Found) -> Result<u64> {
+    fn take_model(&self, found: Found) -> FitEnd {
         let id = found.begun.id;
         // From here on a studio that is killed finds this model, and not an earlier one.
         let _ = self.folder.write(&self.folder.finished(id), Kind::Model, found.text.as_bytes());
-        let Err(error) = self.store_model(&found) else { return Ok(id) };
+        let Err(problem) = self.store_model(&found) else { return FitEnd::Stored(id) };
         // Beside the file of the project: the folder of models may be what cannot be written to, or a link elsewhere.
         let named = self.folder.root().join(format!("{}.json", found.identified.model.name().name()));
         let rescued = hysid_files::rescue(&named, found.text.as_bytes());
         let place = rescued.as_ref().map_or_else(String::new, |place| format!(" and in {}", place.display()));
         *self.unsaved() = Some(Found { rescued, ..found });
-        Err(Unsaved(format!("{error:#}; the model is in the memory of the studio{place}")).into())
+        let place = format!("; the model is in the memory of the studio{place}");
+        FitEnd::Unsaved(Problem::Other(problem.words() + place))
     }
 
     /// Stores the model that could not be stored at the end of its fit.
@@ -149,7 +151,7 @@ impl Studio {
     /// Name and text of the model that could not be stored.
     pub fn unsaved_model(&self) -> Result<(String, String)> {
         let unsaved = self.unsaved();
-        let found = unsaved.as_ref().ok_or_else(|| anyhow!("all models are stored"))?;
+        let found = unsaved.as_ref().ok_or_else(|| problem!("all models are stored"))?;
         Ok((format!("{}.json", found.stem()), found.text.clone()))
     }
 
@@ -221,11 +223,11 @@ impl Studio {
     }
 
     /// Keeps the best model so far of a fit that ends without a model, and reports it.
-    fn keep_the_best(&self, problem: anyhow::Error) -> anyhow::Error {
+    fn keep_the_best(&self, problem: Problem) -> Problem {
         let Some(begun) = self.project().unfinished.clone() else { return problem };
         match self.model_in(&self.folder.best_so_far()) {
             Some((model, text)) if self.keep_unfinished(begun, &model, &text, true).is_ok() => {
-                problem.context("the best model so far was kept")
+                problem.within("the best model so far was kept")
             }
             _ => {
                 self.forget_the_unfinished();
@@ -281,12 +283,12 @@ impl Studio {
         let words = "the studio was closed";
         let Some((model, text)) = self.model_in(&self.folder.best_so_far()) else {
             self.forget_the_unfinished();
-            state.problem = Some(format!("{words} before this fit had a model: start it again"));
+            state.problem = Some(format!("{words} before this fit had a model: start it again").into());
             return Ok(());
         };
         self.keep_unfinished(begun, &model, &text, true)?;
         state.made = Some(id);
-        state.problem = Some(format!("{words} during this fit; the best model so far was kept"));
+        state.problem = Some(format!("{words} during this fit; the best model so far was kept").into());
         Ok(())
     }
 }

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
-use anyhow::{Result, anyhow};
 use hysid::model::Model;
 use hysid_app::diagnosis::DiagnosedModel;
-use hysid_document::{Page, html};
+use hysid_document::{Page, Problem, html};
+use hysid_document::{Result, problem};
 use hysid_records::{ColumnChoice, Data};
 use serde_json::Value;
 
@@ -56,10 +56,10 @@ impl Models {
     pub fn of(&self, id: u64, path: &Path, text: impl FnOnce() -> Result<String>) -> Result<Arc<Model>> {
         let state = FileStamp::of(path);
         if let Some(known) = self.kept().get(&id).filter(|known| Some(&known.of) == state.as_ref()) {
-            return known.model.clone().map_err(anyhow::Error::msg);
+            return known.model.clone().map_err(Problem::from);
         }
         let parsed =
-            |text: String| Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display()));
+            |text: String| Model::from_json(&text).map_err(|error| problem!("{}: {error}", path.display()));
         let model = text().and_then(parsed).map(Arc::new).map_err(|error| error.to_string());
         let mut kept = self.kept();
         if kept.len() >= MOST_MODELS {
@@ -68,7 +68,7 @@ impl Models {
         if let Some(of) = state {
             kept.insert(id, ReadModel { of, model: model.clone() });
         }
-        model.map_err(anyhow::Error::msg)
+        model.map_err(Problem::from)
     }
 }
 
@@ -90,14 +90,14 @@ impl Studio {
     pub fn report(&self, id: u64) -> Result<String> {
         let report = self.project().model(id)?.report.clone();
         let report = report.ok_or_else(|| {
-            anyhow!("this model has no report: the fit was interrupted, or the report could not be written")
+            problem!("this model has no report: the fit was interrupted, or the report could not be written")
         })?;
         let path = self.folder.models(&report);
         self.text(&path)
     }
 
     fn text(&self, path: &Path) -> Result<String> {
-        String::from_utf8(self.folder.read(path)?).map_err(|_| anyhow!("{}: is no text", path.display()))
+        String::from_utf8(self.folder.read(path)?).map_err(|_| problem!("{}: is no text", path.display()))
     }
 
     /// Removes a model from the project. Gives the names of its files that stay in the folder, because Hysid did not write

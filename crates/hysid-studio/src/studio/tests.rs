@@ -8,6 +8,8 @@ use serde_json::{Value, json};
 use super::*;
 use crate::fitting::FitState;
 use crate::project::{FitRequest, Use};
+use crate::words::said;
+use hysid_records::ReadingChoice;
 
 const TABLE: &str = "t,x,y\n0,0,0\n1,1,1.1\n2,2,2.1\n3,1,1.2\n4,0,0.1\n5,1,1.1\n";
 
@@ -98,6 +100,22 @@ fn a_project_with_3000_files_opens_in_a_second() {
 }
 
 #[test]
+fn a_problem_names_the_control_that_helps_and_not_an_option_of_the_terminal() {
+    let place = tempfile::tempdir().unwrap();
+    let studio = opened(&place.path().join("p"));
+    let text = TABLE.replacen("\n", "\n0,0,over\n", 1);
+    let id = studio.take_content("a.csv", text.as_bytes(), Use::Training).unwrap();
+    let problem = studio.data_of(id).map(drop).unwrap_err();
+    let at_end = |words: &str, ending: &str| assert!(words.ends_with(ending), "{words}");
+    at_end(&problem.to_string(), "(if it stands for a missing value: --missing over)");
+    at_end(&said(&problem).text(), "(if it stands for a missing value: \"Missing\" over)");
+    let shown = shown(&studio)["files"][0]["problem"].clone();
+    assert_eq!(shown[1], json!({"flag": "--missing", "words": "\"Missing\" over"}));
+    studio.read_as(ReadingChoice { missing: vec!["over".into()], ..ReadingChoice::default() }).unwrap();
+    assert_eq!(studio.data_of(id).unwrap().set.scored(), 6);
+}
+
+#[test]
 fn a_file_that_killed_the_studio_is_held_back_until_it_is_read_again() {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("p");
@@ -133,7 +151,7 @@ fn a_model_that_cannot_be_stored_stays_until_it_is() {
     fs::rename(&models, &away).unwrap();
     fs::write(&models, "").unwrap();
     let state = fit(&studio);
-    let words = state.problem.clone().unwrap();
+    let words = state.problem.clone().unwrap().text();
     assert!(state.is_unsaved && words.contains("is in the memory of the studio"), "{words}");
     let (name, text) = studio.unsaved_model().unwrap();
     assert!(name.ends_with("-prandtl-ishlinskii.json") && Model::from_json(&text).is_ok());
@@ -173,7 +191,7 @@ fn a_studio_that_was_killed_between_model_and_project_takes_the_finished_model()
     let elsewhere = text.replacen(&format!("{field},"), "", 1);
     fs::write(&file, format!("{}, {field}}}", elsewhere.trim_end().trim_end_matches('}'))).unwrap();
     let state = opened(&path).fit().unwrap();
-    assert!(state.made.is_none() && state.problem.unwrap().contains("project.json"));
+    assert!(state.made.is_none() && state.problem.unwrap().text().contains("project.json"));
     fs::write(&file, text).unwrap();
     let studio = opened(&path);
     let project = studio.project().clone();

@@ -71,19 +71,19 @@ impl Budget {
     ///
     /// # Errors
     /// Those of the library, a panic, and more time than the budget.
-    pub fn run<T: Send + 'static>(
+    pub fn run<T: Send + 'static, E: From<String> + Send + 'static>(
         self,
-        read: impl FnOnce() -> Result<T, String> + Send + 'static,
-    ) -> Result<T, String> {
+        read: impl FnOnce() -> Result<T, E> + Send + 'static,
+    ) -> Result<T, E> {
         let (sender, receiver) = mpsc::channel();
         let work = move || drop(sender.send(read()));
         let started = thread::Builder::new().name(THREAD.into()).spawn(work);
         started.map_err(|error| format!("no thread: {error}"))?;
         match receiver.recv_timeout(self.time()) {
             Ok(result) => result,
-            Err(mpsc::RecvTimeoutError::Disconnected) => Err("it is damaged".into()),
+            Err(mpsc::RecvTimeoutError::Disconnected) => Err("it is damaged".to_string().into()),
             Err(mpsc::RecvTimeoutError::Timeout) => {
-                Err(format!("it takes more than {} s, as damaged files do", self.time().as_secs()))
+                Err(format!("it takes more than {} s, as damaged files do", self.time().as_secs()).into())
             }
         }
     }
@@ -146,8 +146,8 @@ mod tests {
     #[test]
     fn panics_and_loops_of_libraries_are_errors() {
         let budget = Budget::of(100);
-        assert_eq!(budget.run(|| Ok(3)), Ok(3));
-        assert_eq!(budget.run::<()>(|| panic!("capacity overflow")), Err("it is damaged".into()));
+        assert_eq!(budget.run::<_, String>(|| Ok(3)), Ok(3));
+        assert_eq!(budget.run::<(), String>(|| panic!("capacity overflow")), Err("it is damaged".into()));
     }
 
     #[test]

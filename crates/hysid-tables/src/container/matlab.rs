@@ -5,6 +5,8 @@ mod version_5;
 use hdf5_reader::group::Group;
 use hdf5_reader::{Dataset, Datatype, Hdf5File, OpenOptions};
 
+use hysid_core::words::{Hint, Words};
+
 use super::budget::Budget;
 use crate::number::shortest;
 
@@ -45,12 +47,12 @@ impl MatVariable {
 
 /// The variables of a MATLAB file as text, and what kind of file it is. Without a choice, all numeric variables of the
 /// most common length are the columns.
-pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<(String, String), String> {
+pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<(String, String), Words> {
     let budget = Budget::of(bytes.len());
     budget.run(move || text_within(budget, bytes, chosen.as_deref()))
 }
 
-fn text_within(budget: Budget, bytes: Vec<u8>, chosen: Option<&str>) -> Result<(String, String), String> {
+fn text_within(budget: Budget, bytes: Vec<u8>, chosen: Option<&str>) -> Result<(String, String), Words> {
     let (mut variables, kind) = match is_hdf5(&bytes) {
         true => (of_hdf5(bytes, budget)?, "MATLAB file 7.3"),
         false => (version_5::variables(&bytes, budget)?, "MATLAB file 5"),
@@ -63,7 +65,8 @@ fn text_within(budget: Budget, bytes: Vec<u8>, chosen: Option<&str>) -> Result<(
             return Err(format!(
                 "there is no numeric variable \"{chosen}\" (variables: {})",
                 names.join(", ")
-            ));
+            )
+            .into());
         }
     }
     if variables.is_empty() {
@@ -73,14 +76,14 @@ fn text_within(budget: Budget, bytes: Vec<u8>, chosen: Option<&str>) -> Result<(
     }
     let length = variables[0].rows();
     if let Some(other) = variables.iter().find(|variable| variable.rows() != length) {
-        return Err(format!(
-            "its variables have different lengths, such as {length} of {} and {} of {} (choose one, or a structure, \
-             with --sheet; variables: {})",
+        let words = format!(
+            "its variables have different lengths, such as {length} of {} and {} of {}",
             variables[0].name,
             other.rows(),
-            other.name,
-            names.join(", ")
-        ));
+            other.name
+        );
+        let choice = Words::from("choose one, or a structure, with ") + Hint::Option("sheet");
+        return Err(Words::from(words).advised(choice + format!("; variables: {}", names.join(", "))));
     }
     Ok((lines(&variables), format!("{kind}, {}", names_of(&variables))))
 }

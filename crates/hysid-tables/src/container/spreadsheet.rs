@@ -7,7 +7,7 @@ mod tests;
 
 use std::io::Cursor;
 
-use calamine::{Data, ExcelDateTime, Ods, Range, Reader, Xls, Xlsx};
+use calamine::{Data, ExcelDateTime, Ods, OdsError, Range, Reader, Xls, XlsError, Xlsx, XlsxError};
 
 use super::budget::{Budget, DAMAGED};
 use crate::number::shortest;
@@ -29,12 +29,16 @@ pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<Sheet, String> {
             if bytes.windows(ENCRYPTED_PART.len()).any(|part| part == ENCRYPTED_PART) {
                 return Err(ENCRYPTED.into());
             }
-            return sheet::<Xls<_>, _>(bytes, chosen.as_deref());
+            return sheet::<Xls<_>, _>(bytes, chosen.as_deref(), |error| matches!(error, XlsError::Password));
         }
         let (bytes, kind) = archive::checked(&bytes)?;
         match kind {
-            archive::SpreadsheetKind::Excel => sheet::<Xlsx<_>, _>(bytes, chosen.as_deref()),
-            archive::SpreadsheetKind::OpenDocument => sheet::<Ods<_>, _>(bytes, chosen.as_deref()),
+            archive::SpreadsheetKind::Excel => {
+                sheet::<Xlsx<_>, _>(bytes, chosen.as_deref(), |error| matches!(error, XlsxError::Password))
+            }
+            archive::SpreadsheetKind::OpenDocument => {
+                sheet::<Ods<_>, _>(bytes, chosen.as_deref(), |error| matches!(error, OdsError::Password))
+            }
         }
     })
 }
@@ -43,15 +47,12 @@ pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<Sheet, String> {
 pub type Sheet = (String, String, Vec<String>);
 
 /// As [`text`], of a file whose declared sizes do not exceed its content.
-fn sheet<R, E>(bytes: Vec<u8>, chosen: Option<&str>) -> Result<Sheet, String>
+fn sheet<R, E>(bytes: Vec<u8>, chosen: Option<&str>, is_encrypted: fn(&E) -> bool) -> Result<Sheet, String>
 where
     R: Reader<Cursor<Vec<u8>>, Error = E>,
     E: std::fmt::Debug + std::fmt::Display + From<std::io::Error>,
 {
-    let in_words = |error: E| {
-        let is_encrypted = error.to_string().to_lowercase().contains("password");
-        if is_encrypted { ENCRYPTED } else { DAMAGED }
-    };
+    let in_words = |error: E| if is_encrypted(&error) { ENCRYPTED } else { DAMAGED };
     let mut book = R::new(Cursor::new(bytes)).map_err(in_words)?;
     let names = book.sheet_names();
     let listed = || names.join(", ");

@@ -2,15 +2,16 @@
 
 use std::collections::{HashMap, HashSet};
 
-use anyhow::{Result, bail};
 use hysid_core::data::unit;
+use hysid_core::words::{Hint, Words};
 
 use super::cells::{CellKind, LineCell, split};
-use super::cells_and_names;
 use super::lines::TextLine;
 use super::run::LineRun;
+use super::{DECIMAL_COMMAS, cells_and_names};
 use crate::number::is_missing;
 use crate::reading::Delimiter;
+use hysid_document::{Problem, Result};
 
 /// Lines with names above a table.
 const MOST_LINES: usize = 4;
@@ -68,10 +69,8 @@ impl Header {
             }
         }
         if rows.is_empty() && is_quoted_header(lines, run) {
-            bail!(
-                "{file}, line {}: the names of the columns are numbers in quotation marks (rename them)",
-                lines[run.lines.start].number
-            );
+            let words = Words::from("the names of the columns are numbers in quotation marks");
+            return Err(Problem::at(file, lines[run.lines.start].number, words.advised("rename them")));
         }
         rows.reverse();
         Ok(Self::of(rows, run.width, has_units))
@@ -190,15 +189,16 @@ fn other_width(
     cells: &[LineCell<'_>],
     run: &LineRun,
     first: &TextLine<'_>,
-) -> anyhow::Error {
+) -> Problem {
     let (names, width) = (cells.len(), run.width);
-    let hint = match run.delimiter {
-        Delimiter::Character(b',') if width == 2 * names => {
-            " (decimal commas? separate the columns by semicolons)".to_string()
+    let advice = match run.delimiter {
+        Delimiter::COMMA if width == 2 * names => DECIMAL_COMMAS.into(),
+        _ => {
+            let skip = Hint::Value("skip", line.number.to_string());
+            Words::from("skip the header with ") + skip + " " + Hint::Option("no_header")
         }
-        _ => format!(" (skip the header with --skip {} --no-header)", line.number),
     };
-    anyhow::anyhow!("{file}, line {}: {}{hint}", first.number, cells_and_names(width, names))
+    Problem::at(file, first.number, cells_and_names(width, names).advised(advice))
 }
 
 /// True if the first row is in quotation marks and the others are not: its numbers are names.

@@ -1,6 +1,7 @@
 //! Separators of thousands that look like decimal signs: 1.234 beside 987.
 
 use super::{CellReader, DecimalSign};
+use hysid_core::words::{Hint, Words};
 use hysid_document::visible::clipped;
 
 /// Numbers of each form that make a column one of thousands.
@@ -57,16 +58,18 @@ impl ThousandsWatch {
 
     /// Problem of the column, with the first line that shows it; `None` if there is none: if its thousands are not
     /// separated by what `cells` took for the decimal sign, or the user chose that sign.
-    pub fn problem(&self, cells: &CellReader) -> Option<(u64, String)> {
+    pub fn problem(&self, cells: &CellReader) -> Option<(u64, Words)> {
         let (cell, line) = self.first.as_ref()?;
         let separator = self.separator()?;
         (cells.sign() == Some(separator) && !cells.sign_is_chosen()).then(|| {
             let cell = clipped(cell);
             let problem = format!(
                 "\"{cell}\" seems to have a thousands separator: all numbers of this column are whole and \
-                 below 1000, or have exactly three digits after it (choose with --decimal point or --decimal comma)"
+                 below 1000, or have exactly three digits after it"
             );
-            (*line, problem)
+            let sign = |name: &str| Hint::Value("decimal", name.into());
+            let choice = Words::from("choose with ") + sign("point") + " or " + sign("comma");
+            (*line, Words::from(problem).advised(choice))
         })
     }
 }
@@ -79,8 +82,9 @@ fn is_whole(text: &str) -> bool {
 mod tests {
     use super::super::NumberFormat;
     use super::*;
+    use hysid_document::Face;
 
-    fn problem(cells: &[&str]) -> Option<(u64, String)> {
+    fn problem(cells: &[&str]) -> Option<(u64, Words)> {
         let mut watch = ThousandsWatch::default();
         cells.iter().zip(2..).for_each(|(cell, line)| watch.take(cell, line));
         let mut reader = CellReader::new(&NumberFormat::default());
@@ -92,6 +96,7 @@ mod tests {
     fn thousands_are_told_from_decimals() {
         let (line, words) = problem(&["850", "-920", "", "990", "1.012", "1.234", "-1.100"]).unwrap();
         assert_eq!(line, 6);
+        let words = Face::Terminal.told(&words);
         assert!(words.starts_with("\"1.012\" seems to have a thousands separator"), "{words}");
         assert!(problem(&["850", "920", "990", "1,012", "12,234", "1,100"]).is_some());
         for decimals in [

@@ -1,9 +1,9 @@
 //! Inputs of the benchmarks: an input, networks of any size, and data to fit.
 
 use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::elementary::{cos, ln, sin};
-use hysid::network::{Architecture, Family, Network, ParameterLayout, Sizes};
 use hysid::options::network::{FitOptions, Trainer};
+use hysid_core::elementary::{cos, ln, sin};
+use hysid_core::network::{Architecture, Family, Network, ParameterLayout, Sizes};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 

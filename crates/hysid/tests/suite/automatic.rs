@@ -3,10 +3,10 @@
 use crate::scaffold::*;
 use std::sync::OnceLock;
 
-use hysid::elementary::exp;
 use hysid::fit::progress::Observer;
 use hysid::model::{Ensemble, Group, Node, NodeKind, Predictor, Weights};
 use hysid::validation::folds;
+use hysid_core::elementary::exp;
 
 use crate::noisy_record::{noisy, waved};
 
@@ -166,7 +166,7 @@ fn decisions_are_obeyed() {
     let data = data();
     let rate = Some(RateMethod::Central);
     let members = |options: AutoOptions| fitted(&data, options).ensemble().unwrap().members().to_vec();
-    let networks = |members: &[Model]| -> Vec<hysid::network::Architecture> {
+    let networks = |members: &[Model]| -> Vec<hysid_core::network::Architecture> {
         members.iter().filter_map(|member| member.network().map(|network| *network.architecture())).collect()
     };
     let without = members(AutoOptions {

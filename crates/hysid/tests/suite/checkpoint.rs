@@ -2,10 +2,10 @@
 //! every trainer and any number of threads.
 
 use crate::scaffold::*;
-use hysid::elementary::{powi, sin};
 use hysid::fit::network::{fit, resume};
 use hysid::fit::progress::Checkpoint;
 use hysid::options::network::{Method, Trainer};
+use hysid_core::elementary::{powi, sin};
 
 fn data() -> Dataset {
     let x: Vec<f64> = (0..160).map(|k| sin(0.21 * k as f64) * (0.4 + 0.6 * sin(0.013 * k as f64))).collect();

@@ -5,13 +5,13 @@ use crate::scaffold::*;
 use std::f64::consts::TAU;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use hysid::elementary::{cos, exp, powf, sin};
 use hysid::law::bouc_wen::{BoucWen, Degradation};
 use hysid::law::generalized_prandtl_ishlinskii::{Envelope, GeneralizedPrandtlIshlinskii, PlayWeights};
 use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid::law::neuro_madelung::NeuroMadelung;
 use hysid::law::rate_dependent_prandtl_ishlinskii::{RateDependentPrandtlIshlinskii, Thresholds};
 use hysid::law::series::run;
+use hysid_core::elementary::{cos, exp, powf, sin};
 
 fn shape_memory_actuator() -> GeneralizedPrandtlIshlinskii {
     GeneralizedPrandtlIshlinskii {

@@ -4,8 +4,8 @@ use crate::scaffold::*;
 use std::f64::consts::TAU;
 
 use hysid::diagnosis::{DataIssue, DataIssueKind, Diagnosis, DiagnosisOptions};
-use hysid::elementary::{exp, sin, square};
 use hysid::specimens::{Ferromagnet, Specimen};
+use hysid_core::elementary::{exp, sin, square};
 
 /// Springs and sliders: a Prandtl-Ishlinskii law, as a force.
 fn sliders(x: &[f64]) -> Vec<f64> {

@@ -6,7 +6,7 @@ mod subjects;
 use crate::data_doctor::noisy;
 use crate::scaffold::*;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
-use hysid::elementary::{sin, tanh};
+use hysid_core::elementary::{sin, tanh};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 

@@ -2,9 +2,9 @@
 //! quotients, and its identification.
 
 use crate::scaffold::*;
-use hysid::elementary::{cos, exp, powf, sin};
 use hysid::law::duhem_nn::{Cell, CellLayout, CellRun, CellShape, DuhemNn, Input};
 use hysid::law::series::run;
+use hysid_core::elementary::{cos, exp, powf, sin};
 
 /// A law without offset and scales, of one state that starts at `s_0` and is the output.
 fn relaxation(c: f64, tau: f64, q: f64, s_0: f64) -> DuhemNn {

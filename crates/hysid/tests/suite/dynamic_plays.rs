@@ -2,11 +2,12 @@
 
 use crate::scaffold::*;
 use approx::assert_relative_eq;
-use hysid::elementary::{exp, sin};
+use hysid::data::record::ColumnNames;
 use hysid::law::dynamic_prandtl_ishlinskii::{DeadZone, DynamicPrandtlIshlinskii, Relaxation, Resonance};
 use hysid::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use hysid::law::series::{run, samples};
-use hysid::{ColumnNames, Dataset, Fit, Model, Record};
+use hysid::{Dataset, Fit, Model, Record};
+use hysid_core::elementary::{exp, sin};
 use serde_json::json;
 
 const STEP: f64 = 0.01;

@@ -1,7 +1,7 @@
 //! Derivatives against difference quotients of the whole simulation, and the gradient of the
 //! objective against those of its value.
 
-use hysid::elementary::{ln, powi, sin, square};
+use hysid_core::elementary::{ln, powi, sin, square};
 
 use crate::scaffold::*;
 

@@ -2,10 +2,10 @@
 
 use crate::scaffold::*;
 use hysid::Fit;
-use hysid::elementary::{exp, sin};
 use hysid::law::hysteretic_oscillator::HystereticOscillator;
 use hysid::law::hysteretic_state_space::HystereticStateSpace;
 use hysid::specimens::{BoucWenOscillator, DuffingOscillator, PiezoStage};
+use hysid_core::elementary::{exp, sin};
 
 /// Rows a second, and steps of the integration in a row.
 const RATE: f64 = 750.0;

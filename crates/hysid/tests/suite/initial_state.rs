@@ -4,9 +4,9 @@
 use crate::model_file::with_fitting_checksum;
 use crate::scaffold::*;
 use hysid::data::initial_state::lead_in_of_period;
-use hysid::elementary::{exp, ln, sin, square};
 use hysid::law::preisach::{Preisach, PreisachWeights};
 use hysid::law::series::run;
+use hysid_core::elementary::{exp, ln, sin, square};
 
 fn untimed(records: Vec<Record>) -> Dataset {
     Dataset::new(ColumnNames { time: None, ..ColumnNames::plain(1) }, records).unwrap()
@@ -145,7 +145,7 @@ fn whole_blocks_and_steps_begin_alike_and_a_record_can_begin_otherwise() {
         assert_eq!(bits(&also.simulate(&told).unwrap()), bits(&whole), "{what}");
         assert_eq!(bits(&in_blocks(&also, &told, &[5])), bits(&whole), "{what}");
         let mut stepper = model.stepper();
-        let step = |stepper: &mut hysid::Stepper<'_>| -> Vec<f64> {
+        let step = |stepper: &mut hysid::model::Stepper<'_>| -> Vec<f64> {
             let rows = unseen.inputs()[0].iter().zip(unseen.time().unwrap()).zip(&rates);
             rows.map(|((&x, &t), &rate)| stepper.step(&[x], t, Some(rate)).unwrap()).collect()
         };

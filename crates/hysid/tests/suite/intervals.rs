@@ -2,7 +2,6 @@
 
 use crate::scaffold::*;
 use hysid::Dataset;
-use hysid::elementary::{cos, ln, sin, square};
 use hysid::fit::intervals::{IntervalStatus, ParameterIntervals};
 use hysid::law::Parameter;
 use hysid::law::bouc_wen::BoucWen;
@@ -10,6 +9,7 @@ use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid::law::menegotto_pinto::MenegottoPinto;
 use hysid::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use hysid::law::series::run;
+use hysid_core::elementary::{cos, ln, sin, square};
 
 const ROWS: usize = 1500;
 

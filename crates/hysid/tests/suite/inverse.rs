@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use hysid::diagnosis::{ModelDiagnosis, Verdict};
-use hysid::elementary::{cos, sin};
 use hysid::model::{BandLevel, MOST_TRIALS};
+use hysid::model::{Reach, Reference};
 use hysid::specimens::Specimen;
-use hysid::{Fit, Model, Reach, Reference};
+use hysid::{Fit, Model};
+use hysid_core::elementary::{cos, sin};
 
 use crate::models::time_step;
 

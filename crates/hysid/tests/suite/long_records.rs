@@ -1,6 +1,6 @@
 //! Searches look at some of many rows. Whatever the rows of a cycle, what they find there holds for all rows.
 
-use hysid::elementary::sin;
+use hysid_core::elementary::sin;
 
 use crate::scaffold::*;
 

@@ -3,8 +3,8 @@
 use crate::scaffold::*;
 use hysid::diagnosis::model::TimeScale;
 use hysid::diagnosis::{ModelDiagnosis, Property, Verdict};
-use hysid::elementary::sin;
 use hysid::operator::Stop;
+use hysid_core::elementary::sin;
 
 fn data() -> Dataset {
     Dataset::new(ColumnNames::plain(1), vec![record(180, "a"), record(120, "b")]).unwrap()

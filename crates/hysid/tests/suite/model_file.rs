@@ -5,9 +5,9 @@ use crate::scaffold::*;
 use std::sync::LazyLock;
 
 use hysid::data::warning::Warning;
-use hysid::elementary::{cos, sin};
 use hysid::fit::network::fit;
 use hysid::model::FORMAT_VERSION;
+use hysid_core::elementary::{cos, sin};
 
 /// Uneven steps in time, so that no two rows are alike.
 fn record(inputs: usize, rows: usize) -> Record {

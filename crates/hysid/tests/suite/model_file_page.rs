@@ -7,9 +7,9 @@ use crate::small_models;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use hysid::elementary::tanh;
 use hysid::options::input_options::InputOptions;
 use hysid::options::table::FitOption;
+use hysid_core::elementary::tanh;
 use serde_json::{Value, json};
 
 /// The fields of each object, by the path of the object from the root.

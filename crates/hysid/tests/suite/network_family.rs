@@ -3,8 +3,8 @@
 
 use crate::gradient::run;
 use crate::scaffold::*;
-use hysid::elementary::{exp, tanh};
 use hysid::operator::Relaxation;
+use hysid_core::elementary::{exp, tanh};
 
 /// Every family; one and three inputs, rate and time on and off where the family has them.
 fn architectures(sizes: Sizes) -> Vec<Architecture> {

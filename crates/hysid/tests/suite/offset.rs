@@ -1,7 +1,7 @@
 //! Where the input is measured from does not matter: the same data at 198 to 202 mm in place of -2 to 2 give
 //! the same model.
 
-use hysid::elementary::sin;
+use hysid_core::elementary::sin;
 
 use crate::scaffold::*;
 

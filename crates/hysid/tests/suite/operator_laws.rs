@@ -5,8 +5,8 @@ use crate::scaffold::*;
 use std::f64::consts::TAU;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use hysid::elementary::{acos, exp, sin};
 use hysid::operator::{Play, Relaxation, relaxation};
+use hysid_core::elementary::{acos, exp, sin};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -3,11 +3,11 @@
 
 use crate::scaffold::*;
 use hysid::diagnosis::Verdict;
-use hysid::elementary::{exp, sin};
 use hysid::plan::{DrivePath, Leg, LimitOptions, Limits, Plan, PlanOptions, SegmentKind, Wave};
-use hysid::property::Property;
 use hysid::specimens::Ferromagnet;
 use hysid::{Fit, diagnose};
+use hysid_core::elementary::{exp, sin};
+use hysid_core::property::Property;
 use proptest::prelude::*;
 
 fn cycles(amplitude: f64, mean: f64, rows: usize, step: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {

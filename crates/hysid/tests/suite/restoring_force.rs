@@ -3,10 +3,11 @@
 
 use std::f64::consts::TAU;
 
-use hysid::elementary::{cos, hypot, sin, square};
+use hysid::data::record::ColumnNames;
 use hysid::restoring_force::{Acceleration, Motion, RestoringForce, restoring_force};
 use hysid::specimens::{BoucWenOscillator, ShearBuilding};
-use hysid::{ColumnNames, Dataset, Error, Fit, Record};
+use hysid::{Dataset, Error, Fit, Record};
+use hysid_core::elementary::{cos, hypot, sin, square};
 
 fn times(rows: usize, step: f64) -> Vec<f64> {
     (0..rows).map(|row| row as f64 * step).collect()

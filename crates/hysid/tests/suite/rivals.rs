@@ -2,11 +2,11 @@
 //! stepping and simulating agree, its parameters are named.
 
 use crate::scaffold::*;
-use hysid::elementary::sin;
 use hysid::law::Dimension;
 use hysid::law::lugre::Lugre;
 use hysid::law::series::samples;
 use hysid::model::Predictor;
+use hysid_core::elementary::sin;
 
 fn data() -> Dataset {
     let names = ColumnNames::of(Some("t_s"), &["current_A"], "displacement_um");

@@ -1,8 +1,8 @@
 //! Free runs in blocks: however a record is cut, the outputs are those of the whole to the last bit.
 
 use crate::scaffold::*;
-use hysid::elementary::cos;
 use hysid::model::{Prediction, Simulation};
+use hysid_core::elementary::cos;
 
 use crate::noisy_record::waved;
 

@@ -2,8 +2,8 @@
 //! are about those of an independent implementation, with room for another starting point.
 
 use crate::scaffold::*;
-use hysid::elementary::powf;
 use hysid::optimise::space_dilatation::{DilatationOptions, Minimum, SpaceDilatation};
+use hysid_core::elementary::powf;
 
 /// The lowest point found in so many iterations from `x`, and why the search ended by itself, if it did.
 fn search(

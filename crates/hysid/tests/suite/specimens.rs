@@ -6,13 +6,13 @@ use crate::scaffold::*;
 use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use hysid::elementary::{atan, atan2, cos, exp, hypot, powf, sin, square};
 use hysid::specimens::generalized_play::{Envelope, GeneralizedPlays, PlayStart, PlayWeights};
 use hysid::specimens::{
     BoucWenBaberNoori, Concrete, ConcreteParameters, Ferromagnet, MagnetostrictiveActuator, PiezoActuator,
     ReinforcedConcreteJoint, Specimen, shape_memory_actuator, terfenol_actuator, terfenol_rod,
     two_wire_actuator,
 };
+use hysid_core::elementary::{atan, atan2, cos, exp, hypot, powf, sin, square};
 
 /// Area that a closed curve encloses, counterclockwise counted positive.
 fn enclosed(x: &[f64], y: &[f64]) -> f64 {

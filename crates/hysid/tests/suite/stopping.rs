@@ -4,9 +4,9 @@ use crate::scaffold::*;
 use std::time::{Duration, Instant};
 
 use hysid::Error;
-use hysid::elementary::sin;
 use hysid::fit::network::{fit, resume};
 use hysid::fit::progress::Checkpoint;
+use hysid_core::elementary::sin;
 use serde_json::json;
 
 /// After so long a fit is asked to stop.
@@ -109,7 +109,7 @@ fn a_search_that_is_stopped_early_gives_its_best_point() {
 #[test]
 fn a_fit_broken_off_in_the_midst_of_a_round_goes_on_as_if_nothing_had_happened() {
     let data = noisy(6000, 1);
-    let sizes = hysid::network::Sizes { stops: 12, hidden: 12, relaxation: 2 };
+    let sizes = hysid_core::network::Sizes { stops: 12, hidden: 12, relaxation: 2 };
     let options =
         FitOptions { starts: 2, epochs: 3, sizes, rate: Some(RateMethod::Central), ..FitOptions::default() };
     let mut calls = 0;

@@ -1,10 +1,10 @@
 //! Fits of synthetic data that the library's own operators generate, and what every fit promises.
 
 use crate::scaffold::*;
-use hysid::elementary::{cos, exp, ln, sin, tanh};
 use hysid::fit::network::fit;
 use hysid::model::history::{Phase, Run};
 use hysid::options::network::Regularisation;
+use hysid_core::elementary::{cos, exp, ln, sin, tanh};
 
 /// A path between random turning points, in unequal steps.
 fn path(rows: usize, amplitude: f64, seed: u64) -> Vec<f64> {

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-use hysid::elementary::{cos, sin};
+use hysid_core::elementary::{cos, sin};
 use tempfile::TempDir;
 
 /// A folder of its own for one test.

@@ -4,7 +4,8 @@
 
 mod dynamics;
 
-use hysid::{ColumnNames, Dataset, Fit, Model, Record};
+use hysid::data::record::ColumnNames;
+use hysid::{Dataset, Fit, Model, Record};
 use hysid_core::elementary::{cos, ln, sin};
 use serde_json::{Value, json};
 

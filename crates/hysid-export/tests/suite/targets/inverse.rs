@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use hysid::Reach;
 use hysid::model::MOST_TRIALS;
+use hysid::model::Reach;
 use hysid_export::description::{Argument, RateSource};
 use hysid_export::{Error, InverseOptions, Options, Precision, Target, export};
 

@@ -1,6 +1,7 @@
 //! Wanted outputs of all kinds, and what the inverse of the library gives for them.
 
-use hysid::{Model, Reach};
+use hysid::Model;
+use hysid::model::Reach;
 use hysid_core::elementary::{cos, sin};
 use hysid_export::InverseOptions;
 use hysid_export::description::{Argument, Description, RateSource};

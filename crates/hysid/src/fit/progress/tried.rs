@@ -12,7 +12,7 @@ pub struct Tried<'a> {
     pub name: String,
     /// Error on the rows held out of the folds so far, in percent of the standard deviation, inside and outside the
     /// trained range, as in [`CandidateResult`](crate::model::selection::CandidateResult); `None` before any fold. For a
-    /// law that was dropped before, [`train_nrmse_percent`](crate::Progress::train_nrmse_percent) is the error on the
+    /// law that was dropped before, [`train_nrmse_percent`](crate::fit::progress::Progress::train_nrmse_percent) is the error on the
     /// few rows that it was fitted to.
     pub error_percent: Option<(f64, f64)>,
     /// Folds that count in the error.

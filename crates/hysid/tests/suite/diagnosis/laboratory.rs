@@ -4,7 +4,7 @@
 use super::subjects::{bouc_wen, m330, prandtl_ishlinskii, protocol};
 use super::*;
 use hysid::diagnosis::DataIssueKind;
-use hysid::elementary::{cos, exp, ln, sin};
+use hysid_core::elementary::{cos, exp, ln, sin};
 
 /// A record of the protocol's law, with what happens to each output.
 fn record_of(x: &[f64], y: Vec<f64>, dt: f64) -> Dataset {

@@ -4,10 +4,10 @@ use crate::scaffold::*;
 use std::f64::consts::TAU;
 
 use hysid::diagnosis::Property;
-use hysid::elementary::{ln, sin};
 use hysid::law::bouc_wen::BoucWen;
 use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid::specimens::{Ferromagnet, Specimen, shape_memory_actuator};
+use hysid_core::elementary::{ln, sin};
 
 const TURNING: [f64; 30] = [
     0.0, 1.0, -1.0, 1.0, -1.0, 1.0, -0.3, 0.3, -0.3, 1.0, -1.0, 0.3, -0.3, 0.3, -1.0, 1.0, 0.6, -0.6, 0.6,

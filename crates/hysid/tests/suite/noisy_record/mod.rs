@@ -1,7 +1,7 @@
 //! A record with an error that no model can represent, so that several candidates of `auto` count.
 
 use hysid::data::record::Record;
-use hysid::elementary::sin;
+use hysid_core::elementary::sin;
 
 use crate::small_models::record;
 

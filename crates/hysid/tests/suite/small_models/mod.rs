@@ -2,13 +2,13 @@
 
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Record;
-use hysid::elementary::sin;
-use hysid::network::Sizes;
 use hysid::operator::{Operator, Stop};
 use hysid::options::classical::ClassicalOptions;
 use hysid::options::fit_spec::AutoOptions;
 use hysid::options::network::FitOptions;
 use hysid::options::{FitSpec, ModelName};
+use hysid_core::elementary::sin;
+use hysid_core::network::Sizes;
 
 /// A play-like output that lags behind its input; another name is another measurement.
 pub fn record(rows: usize, name: &str) -> Record {

@@ -3,19 +3,16 @@
 use std::mem;
 use std::ops::ControlFlow;
 
-use anyhow::{Result, anyhow, bail};
 use hysid::data::likeness::Likeness;
 use hysid::data::record::{Fingerprint, Record};
 use hysid::data::warning::Warning;
 use hysid::model::{BandLevel, Model, Prediction, Simulation};
+use hysid_document::{Problem, Result};
 use hysid_records::{
     CellNeed, MOST_ROWS_OF_ZERO, RecordNames, Roles, UnitFactors, checked, equal_stamps, explained,
     offset_of, place_of,
 };
 use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, spread_equal, starts_again};
-
-use crate::messages::warning;
-use crate::terminal::clipped;
 
 /// Rows that are simulated together.
 const BLOCK: usize = MOST_ROWS_OF_ZERO;
@@ -88,24 +85,33 @@ impl Drive {
 }
 
 /// Takes rows that are simulated; breaks to end the run.
-pub type Take<'t> = dyn FnMut(&Simulated<'_>) -> Result<ControlFlow<()>> + 't;
+pub type Take<'t, E> = dyn FnMut(&Simulated<'_>) -> Result<ControlFlow<()>, E> + 't;
 
-/// Runs a model over all rows of a table. Gives what to warn of; `None` if the run was ended before its end.
-pub fn run(
+/// How a run has ended.
+pub struct TableRunEnd {
+    /// True if it was ended before the end of the table.
+    pub is_early: bool,
+    /// What was changed in the table as it was read, in words.
+    pub note: Option<String>,
+    pub warnings: Vec<Warning>,
+}
+
+/// Runs a model over all rows of a table.
+pub fn run<E: From<Problem>>(
     model: &Model,
     rows: &mut Rows,
     roles: &Roles,
     factors: &UnitFactors,
     wanted: KeptColumns,
-    take: &mut Take<'_>,
-) -> Result<Option<Vec<Warning>>> {
+    take: &mut Take<'_, E>,
+) -> Result<TableRunEnd, E> {
     let mut run = TableRun::new(model, &rows.head, roles, factors, wanted)?;
     while let Some((head, row)) = rows.next_row_of()? {
         let begins = run.begins_record(head, &row)?;
         if begins || run.is_full() {
             let ends_record = begins && run.is_begun;
             if run.simulate(ends_record, take)?.is_break() {
-                return Ok(None);
+                return Ok(TableRunEnd { is_early: true, note: None, warnings: Vec::new() });
             }
         }
         if begins {
@@ -114,14 +120,13 @@ pub fn run(
         run.push(head, &row)?;
     }
     if !run.is_begun {
-        bail!(rows.head.no_rows());
+        return Err(rows.head.no_rows().into());
     }
     run.check_thousands(&rows.head)?;
-    let end = run.simulate(true, take)?;
-    if run.spread > 0 {
-        warning(equal_stamps(&run.file, run.spread));
-    }
-    Ok(end.is_continue().then(|| run.simulation.range_warnings().into_iter().chain(run.known).collect()))
+    let is_early = run.simulate(true, take)?.is_break();
+    let note = (run.spread > 0).then(|| equal_stamps(&run.file, run.spread));
+    let warnings = if is_early { Vec::new() } else { run.simulation.range_warnings() };
+    Ok(TableRunEnd { is_early, note, warnings: warnings.into_iter().chain(run.known).collect() })
 }
 
 struct TableRun<'r, 'm> {
@@ -249,7 +254,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
             let Clock { first, previous, now, .. } = self.clock;
             return Ok(!self.is_begun || self.columns.time.is_some() && starts_again(first, previous, now));
         };
-        let at = || format!("{}, line {}, column \"{}\"", self.file, row.line, clipped(column));
+        let at = |words| Problem::in_cell(&self.file, row.line, column, words);
         self.names.begins(row.cell(place), at)
     }
 
@@ -267,8 +272,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         match all.find_map(|column| Some((column.place(), column.problem(&self.numbers)?))) {
             None => Ok(()),
             Some((place, (line, problem))) => {
-                let name = clipped(&head.header[place]);
-                bail!("{}, line {line}, column \"{name}\": {problem}", self.file)
+                Err(Problem::in_cell(&self.file, line, &head.header[place], problem))
             }
         }
     }
@@ -292,7 +296,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         let is_first = self.waiting.lines.is_empty() && self.simulated == 0;
         let mut number = |column: &mut ColumnReader, name: &str, kind: CellNeed, factor: Option<f64>| {
             let number = read(column, &mut self.numbers, head, row, (name, kind, is_first))?;
-            anyhow::Ok(factor.map_or(number, |factor| factor * number))
+            Ok::<_, Problem>(factor.map_or(number, |factor| factor * number))
         };
         let factors = self.factors;
         if self.columns.time.is_some() {
@@ -342,7 +346,11 @@ impl<'r, 'm> TableRun<'r, 'm> {
     }
 
     /// Simulates the block, and the rest of the record if it ends.
-    fn simulate(&mut self, ends_record: bool, take: &mut Take<'_>) -> Result<ControlFlow<()>> {
+    fn simulate<E: From<Problem>>(
+        &mut self,
+        ends_record: bool,
+        take: &mut Take<'_, E>,
+    ) -> Result<ControlFlow<()>, E> {
         if self.block.rows > 0 {
             self.prepare_block(ends_record);
             let first = self.waiting.lines.len() - self.block.rows;
@@ -364,12 +372,12 @@ impl<'r, 'm> TableRun<'r, 'm> {
         Ok(ControlFlow::Continue(()))
     }
 
-    fn hand_on(
+    fn hand_on<E: From<Problem>>(
         &mut self,
         prediction: hysid::Result<Prediction>,
         ends_record: bool,
-        take: &mut Take<'_>,
-    ) -> Result<ControlFlow<()>> {
+        take: &mut Take<'_, E>,
+    ) -> Result<ControlFlow<()>, E> {
         let prediction = prediction.map_err(|error| self.explain_in_record(error))?;
         let rows = prediction.output.len();
         let flow = take(&Simulated {
@@ -387,7 +395,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
     }
 
     /// An error of rows that wait from `first` on.
-    fn explain(&self, error: hysid::Error, first: usize) -> anyhow::Error {
+    fn explain(&self, error: hysid::Error, first: usize) -> Problem {
         let row = match &error {
             hysid::Error::Data(defect) => defect.row,
             _ => None,
@@ -397,7 +405,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
     }
 
     /// An error with its row in the present record.
-    fn explain_in_record(&self, mut error: hysid::Error) -> anyhow::Error {
+    fn explain_in_record(&self, mut error: hysid::Error) -> Problem {
         if let hysid::Error::Data(defect) = &mut error {
             defect.row = defect.row.map(|row| row.saturating_sub(self.simulated));
         }
@@ -416,9 +424,8 @@ fn read(
     let (name, kind, is_first) = what;
     let cell = row.cell(column.place());
     let number = column.number(head, numbers, cell, row.line);
-    checked(number, cell, kind, is_first).map_err(|problem| {
-        anyhow!("{}, line {}, column \"{}\": {problem}", head.file, row.line, clipped(name))
-    })
+    let at = |words| Problem::in_cell(&head.file, row.line, name, words);
+    checked(number, cell, kind, is_first).map_err(at)
 }
 
 impl RowBlock {

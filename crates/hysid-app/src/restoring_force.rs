@@ -2,33 +2,45 @@
 
 mod acceleration;
 mod columns;
+mod mass;
 mod table;
 mod text;
 mod units;
 
 use std::ops::Range;
 
-use anyhow::{Result, anyhow};
 use hysid::error::{DataProblem, MotionColumn, MotionError};
 use hysid::restoring_force::{Acceleration, Motion, RestoringForce, restoring_force};
+use hysid_document::Problem;
 use hysid_document::visible::clipped;
-use hysid_records::{Usage, column_of, equal_stamps, offset_of, places_of};
-use hysid_tables::{CellReader, DecimalSign, Table, spread_equal};
+use hysid_records::{column_of, data_words, equal_stamps, offset_of, places_of};
+use hysid_tables::{CellReader, DecimalSign, Result, Table, spread_equal};
 
-pub use columns::MotionColumns;
-use columns::{COLUMNS, kind};
-pub use table::Written;
-pub use text::{Printed, summary, understood, warnings};
-pub use units::MotionUnits;
+pub use columns::MotionChoice;
+use columns::{COLUMNS, MotionColumns, kind};
+pub use mass::Mass;
+pub use table::ForceTable;
+pub use text::{PrintedForce, summary, understood, warnings};
+use units::MotionUnits;
 
-use crate::arguments::{self, Mass};
+/// The restoring force of an element from the motion of a mass.
+pub struct RestoringForceRequest {
+    pub columns: MotionChoice,
+    pub mass: Mass,
+    /// True to convert no units.
+    pub same_units: bool,
+    /// Rows of the window of the filter that differentiates; `None` to choose it.
+    pub window: Option<usize>,
+    /// Over how many rows at the beginning of each record displacement and force are to be zero in the mean.
+    pub zero: Option<usize>,
+}
 
 pub struct MeasuredMotion {
-    pub names: MotionColumns,
-    pub units: MotionUnits,
-    pub records: Vec<MotionRecord>,
+    names: MotionColumns,
+    units: MotionUnits,
+    records: Vec<MotionRecord>,
     /// How the numbers of the table are written.
-    pub sign: DecimalSign,
+    sign: DecimalSign,
     /// Changes of the data on reading, in words.
     pub warnings: Vec<String>,
     file: String,
@@ -36,15 +48,15 @@ pub struct MeasuredMotion {
 }
 
 /// The motion of a record, in the units of the table.
-pub struct MotionRecord {
-    pub name: String,
-    pub rows: Range<usize>,
+struct MotionRecord {
+    name: String,
+    rows: Range<usize>,
     columns: [Option<Vec<f64>>; 6],
 }
 
 impl MotionRecord {
     /// Values of a column; none if it is not there.
-    pub fn column(&self, column: MotionColumn) -> Option<&[f64]> {
+    fn column(&self, column: MotionColumn) -> Option<&[f64]> {
         let place = COLUMNS.iter().position(|known| *known == column)?;
         self.columns[place].as_deref()
     }
@@ -52,9 +64,9 @@ impl MotionRecord {
 
 impl MeasuredMotion {
     /// Reads the columns of a motion.
-    pub fn of(table: &Table, arguments: &arguments::RestoringForce) -> Result<Self> {
-        let names = MotionColumns::find(table, &arguments.columns)?;
-        let units = MotionUnits::of(&table.file, &names, &arguments.mass, arguments.columns.same_units)?;
+    pub fn of(table: &Table, request: &RestoringForceRequest) -> Result<Self> {
+        let names = MotionColumns::find(table, &request.columns)?;
+        let units = MotionUnits::of(&table.file, &names, &request.mass, request.same_units)?;
         let mut cells = CellReader::new(table.numbers());
         let mut read = |column: MotionColumn| -> Result<Option<Vec<f64>>> {
             names.name_of(column).map(|name| column_of(table, name, kind(column), &mut cells)).transpose()
@@ -85,14 +97,8 @@ impl MeasuredMotion {
         })
     }
 
-    /// The restoring force, in the unit of the result. `zero` is over how many rows at the beginning of each record it is
-    /// to be zero in the mean.
-    pub fn restoring_force(
-        &self,
-        mass: &Mass,
-        window: Option<usize>,
-        zero: Option<usize>,
-    ) -> Result<RestoringForce> {
+    /// The restoring force, in the unit of the result.
+    pub fn restoring_force(&self, request: &RestoringForceRequest) -> Result<RestoringForce> {
         let in_si = |record: &MotionRecord| {
             COLUMNS.map(|column| {
                 let factor = self.units.factor(column);
@@ -103,13 +109,14 @@ impl MeasuredMotion {
         };
         let columns: Vec<[Option<Vec<f64>>; 6]> = self.records.iter().map(in_si).collect();
         let motions: Vec<Motion<'_>> = columns.iter().map(|columns| self.motion(columns)).collect();
-        let mass = mass.number * self.units.mass;
-        let mut found = restoring_force(&motions, mass, window).map_err(|error| self.explained(error))?;
+        let mass = request.mass.number * self.units.mass;
+        let mut found =
+            restoring_force(&motions, mass, request.window).map_err(|error| self.explained(error))?;
         let (force, velocity) = (self.units.force, self.units.velocity());
         for record in &mut found.records {
             record.force.iter_mut().for_each(|r| *r /= force);
             record.velocity.iter_mut().for_each(|v| *v /= velocity);
-            if let Some(rows) = zero {
+            if let Some(rows) = request.zero {
                 let offset = offset_of(&record.force, rows);
                 record.force.iter_mut().for_each(|r| *r -= offset);
             }
@@ -139,7 +146,7 @@ impl MeasuredMotion {
     }
 
     /// An error of the library in the user's words: file, line, column.
-    fn explained(&self, error: hysid::Error) -> anyhow::Error {
+    fn explained(&self, error: hysid::Error) -> Problem {
         let file = &self.file;
         match error {
             hysid::Error::Motion(MotionError { record, row, column, problem }) => {
@@ -149,16 +156,19 @@ impl MeasuredMotion {
                 match row {
                     Some(row) => {
                         let line = self.lines[record.rows.start + row];
-                        anyhow!("{file}, line {line}, column \"{name}\": {problem}")
+                        Problem::in_cell(file, line, &name, data_words(&problem))
                     }
                     None if self.records.len() > 1 => {
-                        anyhow!("{file}, record \"{}\": column \"{name}\" {problem}", clipped(&record.name))
+                        hysid_document::problem!(
+                            "{file}, record \"{}\": column \"{name}\" {problem}",
+                            clipped(&record.name)
+                        )
                     }
-                    None => anyhow!("{file}: column \"{name}\" {problem}"),
+                    None => Problem::in_file(file, format!("column \"{name}\" {problem}")),
                 }
             }
-            hysid::Error::Option(error) => Usage(error.to_string()).into(),
-            other => anyhow!("{file}: {other}"),
+            hysid::Error::Option(error) => Problem::request(error.to_string()),
+            other => Problem::in_file(file, other.to_string()),
         }
     }
 }

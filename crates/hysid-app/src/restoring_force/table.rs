@@ -1,18 +1,18 @@
 //! The table of a restoring force, which `hysid fit` reads without options.
 
-use anyhow::{Result, ensure};
 use hysid::data::unit;
 use hysid::error::MotionColumn;
 use hysid::restoring_force::RestoringForce;
+use hysid_core::words::Words;
 use hysid_document::visible::clipped;
-use hysid_records::{header_line, offset_of};
-use hysid_tables::{Table, push_shortest};
+use hysid_records::{IN_MEMORY, header_line, offset_of};
+use hysid_tables::{Problem, Result, Table, push_shortest};
 
 use super::MeasuredMotion;
 use super::units::named;
 
 /// The columns that are written, by name.
-pub struct Written {
+pub struct ForceTable {
     /// Record, if the table has such a column.
     pub record: Option<String>,
     pub time: String,
@@ -24,7 +24,7 @@ pub struct Written {
     delimiter: u8,
 }
 
-impl Written {
+impl ForceTable {
     /// The names of the columns for a motion from a table.
     pub fn of(table: &Table, motion: &MeasuredMotion) -> Result<Self> {
         let (names, units) = (&motion.names, &motion.units);
@@ -44,12 +44,10 @@ impl Written {
         };
         let all: Vec<&String> = written.all().collect();
         for (place, name) in all.iter().enumerate() {
-            ensure!(
-                !all[..place].contains(name),
-                "{}: there would be two columns \"{}\" (rename the one in the table)",
-                table.file,
-                clipped(name)
-            );
+            if all[..place].contains(name) {
+                let words = Words::from(format!("there would be two columns \"{}\"", clipped(name)));
+                return Err(Problem::in_file(&table.file, words.advised("rename the one in the table")));
+            }
         }
         Ok(written)
     }
@@ -60,7 +58,7 @@ impl Written {
     }
 
     /// The line of the header.
-    pub fn header(&self) -> Result<Vec<u8>> {
+    pub fn header(&self) -> Vec<u8> {
         header_line(self.delimiter, self.all().map(String::as_str))
     }
 
@@ -71,7 +69,7 @@ impl Written {
         motion: &MeasuredMotion,
         found: &RestoringForce,
         zero: Option<usize>,
-    ) -> Result<Vec<u8>> {
+    ) -> Vec<u8> {
         let mut writer = csv::WriterBuilder::new().delimiter(self.delimiter).from_writer(Vec::new());
         let place = |name: &String| table.column(name);
         let keep: Vec<usize> = self.keep.iter().filter_map(place).collect();
@@ -88,18 +86,20 @@ impl Written {
             let offset = zero.map_or(0.0, |rows| offset_of(column(MotionColumn::Displacement), rows));
             for row in 0..record.rows.len() {
                 if self.record.is_some() {
-                    writer.write_field(&record.name)?;
+                    writer.write_field(&record.name).expect(IN_MEMORY);
                 }
-                writer.write_field(number(column(MotionColumn::Time)[row]))?;
-                writer.write_field(number(column(MotionColumn::Displacement)[row] - offset))?;
-                writer.write_field(number(found.velocity[row]))?;
+                writer.write_field(number(column(MotionColumn::Time)[row])).expect(IN_MEMORY);
+                writer
+                    .write_field(number(column(MotionColumn::Displacement)[row] - offset))
+                    .expect(IN_MEMORY);
+                writer.write_field(number(found.velocity[row])).expect(IN_MEMORY);
                 for &place in &keep {
-                    writer.write_field(table.cell(record.rows.start + row, place))?;
+                    writer.write_field(table.cell(record.rows.start + row, place)).expect(IN_MEMORY);
                 }
-                writer.write_field(number(found.force[row]))?;
-                writer.write_record(None::<&[u8]>)?;
+                writer.write_field(number(found.force[row])).expect(IN_MEMORY);
+                writer.write_record(None::<&[u8]>).expect(IN_MEMORY);
             }
         }
-        Ok(writer.into_inner()?)
+        writer.into_inner().expect(IN_MEMORY)
     }
 }

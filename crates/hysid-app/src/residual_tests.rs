@@ -1,10 +1,10 @@
 //! Tests of the residual of a run over a table, and their text for a terminal.
 
+use crate::residual_words::{name, p_value, verdict};
 use hysid::data::record::ColumnNames;
 use hysid::data::warning::Warning;
 use hysid::diagnosis::residuals::{ResidualFinding, ResidualOptions, Residuals};
 use hysid::model::Model;
-use hysid_app::residual_words::{name, p_value, verdict};
 use hysid_document::plain::{aligned, indented};
 
 use crate::gathered::{Gathered, Gatherer};

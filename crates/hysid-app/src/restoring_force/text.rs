@@ -5,15 +5,16 @@ use std::path::{Path, PathBuf};
 use hysid::data::unit;
 use hysid::error::MotionColumn;
 use hysid::restoring_force::{Filter, RestoringForce};
-use hysid::significant::Significant;
-use hysid_document::count;
+use hysid_core::significant::Significant;
+use hysid_core::words::{Hint, Words};
+use hysid_document::shell::shown;
 use hysid_document::visible::{clipped, listed};
+use hysid_document::{Face, count};
 use hysid_tables::Table;
 use serde::Serialize;
 
 use super::MeasuredMotion;
-use crate::arguments::Mass;
-use crate::files::shown;
+use super::mass::Mass;
 
 /// Noise or a smoothing error above this share of the standard deviation of the force is warned of, in percent.
 const LARGE: f64 = 10.0;
@@ -24,6 +25,7 @@ pub fn understood(
     motion: &MeasuredMotion,
     mass: &Mass,
     found: &RestoringForce,
+    face: Face,
 ) -> Vec<(String, String)> {
     let names = &motion.names;
     let name = |name: &String| clipped(name).into_owned();
@@ -48,14 +50,16 @@ pub fn understood(
     let is_base_moving = names.is_absolute || names.base_acceleration.is_some();
     let inertia = if is_base_moving { "(y'' + a)" } else { "y''" };
     lines.push(("r", format!("u - m {inertia}: of a spring, positive where y is positive")));
-    lines.push(units(motion));
+    lines.push(units(motion, face));
     if !names.guessed.is_empty() {
-        lines.push(("guessed", names.guessed.join("; ")));
+        let told = names.guessed.iter().map(|words| face.told(words));
+        lines.push(("guessed", told.collect::<Vec<String>>().join("; ")));
     }
     if !names.unused_accelerations.is_empty() {
-        let advice = "name it with --acceleration (relative to the base) or --absolute-acceleration (as accelerometers \
-                      measure it)";
-        lines.push(("unused", format!("{}: {advice}", listed(&names.unused_accelerations))));
+        let words = format!("{}: name it with ", listed(&names.unused_accelerations));
+        let words = Words::from(words) + Hint::Option("acceleration") + " (relative to the base) or ";
+        let words = words + Hint::Option("absolute_acceleration") + " (as accelerometers measure it)";
+        lines.push(("unused", face.told(&words)));
     }
     lines.into_iter().map(|(label, text)| (label.to_string(), text)).collect()
 }
@@ -107,11 +111,11 @@ fn shown_mass(mass: &Mass, motion: &MeasuredMotion) -> String {
 }
 
 /// Conversions of units, and assumptions on them.
-fn units(motion: &MeasuredMotion) -> (&'static str, String) {
+fn units(motion: &MeasuredMotion, face: Face) -> (&'static str, String) {
     let units = &motion.units;
     let known = units.known();
     let text = if units.is_same {
-        "not converted (--same-units)".into()
+        face.told(&Words::from("not converted").advised(Hint::Option("same_units")))
     } else if known.is_empty() {
         "none known, nothing is converted: mass times acceleration must be a force".into()
     } else if units.without.is_empty() {
@@ -133,17 +137,29 @@ fn force_unit(motion: &MeasuredMotion) -> String {
 }
 
 /// Warnings on the force.
-pub fn warnings(motion: &MeasuredMotion, found: &RestoringForce, window: Option<usize>) -> Vec<String> {
+pub fn warnings(
+    motion: &MeasuredMotion,
+    found: &RestoringForce,
+    window: Option<usize>,
+    face: Face,
+) -> Vec<String> {
     let suffix = unit::suffix(motion.units.force_unit.as_deref());
     // A chosen window has the least of both errors.
     let (measure, of_noise, of_smoothing) = match (found.acceleration_filter, window) {
-        (None, _) => ("", "use sensors with less noise", ""),
-        (Some(_), None) => ("measure the acceleration, or ", "sample more often", "sample more often"),
+        (None, _) => ("", "use sensors with less noise".into(), String::new()),
+        (Some(_), None) => {
+            ("measure the acceleration, or ", "sample more often".into(), "sample more often".into())
+        }
         (Some(_), Some(_)) => {
-            ("measure the acceleration, or ", "use a longer --window", "use a shorter --window")
+            let window = face.hint(&Hint::Option("window"));
+            (
+                "measure the acceleration, or ",
+                format!("use a longer {window}"),
+                format!("use a shorter {window}"),
+            )
         }
     };
-    let mut all = Vec::new();
+    let mut all: Vec<String> = motion.warnings.clone();
     if let Some(percent) = found.noise_percent().filter(|percent| *percent > LARGE) {
         all.push(format!(
             "the noise of the restoring force is about {:.3}{}, {percent:.0} % of its standard deviation: \
@@ -167,7 +183,7 @@ pub fn warnings(motion: &MeasuredMotion, found: &RestoringForce, window: Option<
 pub fn summary(motion: &MeasuredMotion, found: &RestoringForce, table: Option<&Path>) -> String {
     let suffix = unit::suffix(motion.units.force_unit.as_deref());
     let suffix = clipped(&suffix);
-    let printed = Printed::of(motion, found, None);
+    let printed = PrintedForce::of(motion, found, None);
     let (low, high) = printed.force_range;
     let percent = |percent: Option<f64>| {
         percent.map_or_else(String::new, |percent| {
@@ -193,7 +209,7 @@ pub fn summary(motion: &MeasuredMotion, found: &RestoringForce, table: Option<&P
 
 /// The object that `--json` prints.
 #[derive(Serialize)]
-pub struct Printed<'a> {
+pub struct PrintedForce<'a> {
     table: Option<PathBuf>,
     rows: usize,
     records: usize,
@@ -219,7 +235,7 @@ struct PrintedFilter {
     window: usize,
 }
 
-impl<'a> Printed<'a> {
+impl<'a> PrintedForce<'a> {
     pub fn of(motion: &'a MeasuredMotion, found: &RestoringForce, table: Option<&Path>) -> Self {
         let forces = || found.records.iter().flat_map(|record| &record.force).filter(|force| !force.is_nan());
         let filter = |filter: Filter| PrintedFilter { degree: filter.degree, window: filter.window() };

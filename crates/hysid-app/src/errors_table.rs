@@ -1,12 +1,12 @@
 //! Errors as a small table, in the user's units.
 
 use hysid::data::metrics::Errors;
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use hysid_document::plain::aligned;
 
 use hysid::data::unit;
 
-use crate::terminal::clipped;
+use hysid_document::visible::clipped;
 
 /// Heading of errors without the rows of a warm-up.
 pub const AFTER_WARM_UP: &str = "after warm-up";

@@ -1,14 +1,15 @@
 //! Units of a motion: numbers in known units become kg, m, s and N, and the restoring force gets the unit of the applied
 //! force. A number without a known unit is taken as it is.
 
-use anyhow::{Result, bail};
 use hysid::data::unit;
 use hysid::error::MotionColumn;
+use hysid_core::words::{Hint, Words};
 use hysid_document::visible::clipped;
+use hysid_tables::{Problem, Result};
 
 use super::acceleration::of_acceleration;
 use super::columns::{COLUMNS, MotionColumns};
-use crate::arguments::Mass;
+use super::mass::Mass;
 
 /// Factors to SI units, and what the result is in.
 #[derive(Debug, Clone)]
@@ -100,12 +101,12 @@ fn known(file: &str, column: MotionColumn, name: &str) -> Result<(f64, Option<St
     let (si, wanted) = quantity(column);
     match if si == "m/s2" { of_acceleration(&found) } else { unit::factor(&found, si) } {
         Some(factor) => Ok((factor, Some(found))),
-        None if unit::is_unit(&found) => bail!(
-            "{file}: column \"{}\" is in {}, which is not {wanted} (name another column, or convert nothing with \
-             --same-units)",
-            clipped(name),
-            clipped(&found)
-        ),
+        None if unit::is_unit(&found) => {
+            let (name, found) = (clipped(name), clipped(&found));
+            let words = Words::from(format!("column \"{name}\" is in {found}, which is not {wanted}"));
+            let advice = Words::from("name another column, or convert nothing with ");
+            Err(Problem::in_file(file, words.advised(advice + Hint::Option("same_units"))))
+        }
         None => Ok((1.0, None)),
     }
 }
