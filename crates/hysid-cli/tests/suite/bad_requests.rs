@@ -84,7 +84,7 @@ fn command_lines() {
             2 fit => the following required arguments were not provided: <TRAIN.csv>...
             2 fot data.csv => unrecognized subcommand 'fot'; some similar subcommands exist: 'plot', 'fit'
             2 fit data.csv --start 2 => unexpected argument '--start' found; a similar argument exists: '--starts'
-            2 fit data.csv --model nn => invalid value 'nn' for '--model <NAME>' [possible values: auto, pnn, gpnn, preisach-nn, xpnn, xpnn+, masing, prandtl-ishlinskii, modified-prandtl-ishlinskii, generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii, dynamic-prandtl-ishlinskii, preisach, neuro-madelung, bouc-wen, peak-oriented, menegotto-pinto, jiles-atherton, lugre, duhem-nn, hysteretic-oscillator, hysteretic-state-space, random-stops]
+            2 fit data.csv --model nn => invalid value 'nn' for '--model <NAME>' [possible values: auto, pnn, gpnn, preisach-nn, xpnn, xpnn+, masing, prandtl-ishlinskii, modified-prandtl-ishlinskii, generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii, dynamic-prandtl-ishlinskii, preisach, neuro-madelung, bouc-wen, peak-oriented, menegotto-pinto, ramberg-osgood, jiles-atherton, lugre, duhem-nn, hysteretic-oscillator, hysteretic-state-space, random-stops]
             2 fit data.csv --stops 0 => invalid value '0' for '--stops <N>': choose a whole number from 1 to 1000
             2 fit data.csv --starts 0 => invalid value '0' for '--starts <N>': choose a whole number from 1 to 10000
             2 fit data.csv --validation 2 => invalid value '2' for '--validation <SHARE>': a number between 0 and 1 is needed
