@@ -4,7 +4,7 @@ use std::mem;
 use std::ops::ControlFlow;
 
 use hysid::data::likeness::Likeness;
-use hysid::data::record::{Fingerprint, Record};
+use hysid::data::record::{Fingerprint, KnownBeginning, Record};
 use hysid::data::warning::Warning;
 use hysid::model::{BandLevel, Model, Prediction, Simulation};
 use hysid_document::{Problem, Result};
@@ -16,6 +16,9 @@ use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, spread_equal, star
 
 /// Rows that are simulated together.
 const BLOCK: usize = MOST_ROWS_OF_ZERO;
+
+/// Rows of a known beginning at most.
+const MOST_KNOWN: usize = 1_000_000;
 
 /// Blocks that rows with one time stamp may fill.
 const MOST_EQUAL: usize = 16;
@@ -262,6 +265,15 @@ impl<'r, 'm> TableRun<'r, 'm> {
     /// they can be spread.
     fn is_full(&self) -> bool {
         let rows = self.block.rows;
+        let is_beginning = self.simulated == 0 && self.waiting.lines.len() == rows;
+        let is_known = match self.model.known_beginning() {
+            KnownBeginning::Rows(known) => rows < known,
+            KnownBeginning::Time(duration) => self.clock.previous - self.clock.first <= duration,
+            KnownBeginning::Share(_) => false,
+        };
+        if is_beginning && is_known && rows < MOST_KNOWN {
+            return false;
+        }
         let goes_on = self.columns.time.is_some() && self.clock.now == self.clock.previous;
         rows >= BLOCK && (!goes_on || rows >= MOST_EQUAL * BLOCK)
     }
@@ -355,7 +367,13 @@ impl<'r, 'm> TableRun<'r, 'm> {
             self.prepare_block(ends_record);
             let first = self.waiting.lines.len() - self.block.rows;
             let record = self.block.record(&self.columns, &self.name);
-            let record = record.map_err(|error| self.explain(error, first))?;
+            let mut record = record.map_err(|error| self.explain(error, first))?;
+            if self.simulated == 0 && first == 0 {
+                let known = self.model.known_beginning().rows(&record);
+                record = record.with_known_beginning(known);
+                let measured = known.min(self.waiting.measured.len());
+                self.waiting.measured[..measured].fill(f64::NAN);
+            }
             let prediction = self.simulation.take(&record.excitation());
             if self.hand_on(prediction, false, take)?.is_break() {
                 return Ok(ControlFlow::Break(()));

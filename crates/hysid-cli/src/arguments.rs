@@ -15,10 +15,13 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use anyhow::{Result, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use hysid::Model;
 use hysid::data::initial_state::InitialState;
+use hysid::data::record::KnownBeginning;
+use hysid::data::unit::of_column;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::model::{BAND_OF_TEN, BAND_PROBABILITIES, BandLevel};
 use hysid::options::ModelName;
@@ -228,15 +231,64 @@ pub struct BeginningOptions {
     /// demagnetised and periodic (after one period of the record itself). The default is the state of most training records.
     #[arg(long, value_name = "NAME", value_parser = known_state)]
     pub initial_state: Option<InitialState>,
+
+    /// Find the state from the measured outputs of so many rows, or of so much time, at the beginning of each record
+    ///
+    /// A number of rows, such as 100, or a time with its unit, such as 0.5s. For records that are cut out of a longer past.
+    /// These rows are not scored. The rows behind them need no output.
+    #[arg(long, value_name = "ROWS|TIME", value_parser = known_beginning, conflicts_with = "initial_state")]
+    pub known: Option<KnownText>,
 }
 
 impl BeginningOptions {
-    /// The model with this initial state.
-    pub fn of(&self, model: Model) -> hysid::Result<Model> {
-        match self.initial_state {
-            Some(state) => model.with_initial_state(state),
-            None => Ok(model),
+    /// The model with this initial state, or with this known beginning.
+    pub fn of(&self, model: Model) -> Result<Model> {
+        match (self.initial_state, &self.known) {
+            (Some(state), _) => Ok(model.with_initial_state(state)?),
+            (None, Some(known)) => {
+                let beginning = known.beginning(model.names().time.as_deref())?;
+                Ok(model.with_known_beginning(beginning))
+            }
+            (None, None) => Ok(model),
         }
+    }
+}
+
+/// A known beginning as it was typed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum KnownText {
+    Rows(usize),
+    /// A time and its unit.
+    Time(f64, String),
+}
+
+impl KnownText {
+    /// The beginning in the unit of a column of time.
+    pub fn beginning(&self, time: Option<&str>) -> Result<KnownBeginning> {
+        let (duration, unit) = match self {
+            Self::Rows(rows) => return Ok(KnownBeginning::Rows(*rows)),
+            Self::Time(duration, unit) => (*duration, unit.as_str()),
+        };
+        match time.and_then(of_column) {
+            Some(of_time) if of_time == unit => Ok(KnownBeginning::Time(duration)),
+            Some(of_time) => bail!("--known {duration}{unit}: the unit of time is {of_time}"),
+            None => bail!("--known {duration}{unit}: no unit of time is known; give a number of rows"),
+        }
+    }
+}
+
+fn known_beginning(text: &str) -> Result<KnownText, String> {
+    let advice = || "give a number of rows, such as 100, or a time with its unit, such as 0.5s".to_string();
+    if let Ok(rows) = text.parse() {
+        return if rows > 0 { Ok(KnownText::Rows(rows)) } else { Err(advice()) };
+    }
+    let end = text.find(|letter: char| letter.is_alphabetic()).ok_or_else(advice)?;
+    let (number, unit) = text.split_at(end);
+    match number.trim().parse() {
+        Ok(duration) if duration > 0.0 && f64::is_finite(duration) => {
+            Ok(KnownText::Time(duration, unit.into()))
+        }
+        _ => Err(advice()),
     }
 }
 
@@ -245,6 +297,7 @@ fn known_state(name: &str) -> Result<InitialState, String> {
     let advice = || format!("choose one of {}", InitialState::known().join(", "));
     match state {
         Ok(InitialState::Unknown) => Err(format!("{}: only a fit finds an unknown state", advice())),
+        Ok(InitialState::Free) => Err("--known finds a state from the outputs of the first rows".into()),
         Ok(state) => Ok(state),
         Err(_) => Err(advice()),
     }
@@ -332,6 +385,11 @@ pub struct Validate {
     /// A single record always gives five folds, cut in time.
     #[arg(long, value_name = "N", default_value = "5", value_parser = folds)]
     pub folds: usize,
+    /// Find the state of each held-out record from so many rows, or so much time, at its beginning
+    ///
+    /// As for `hysid evaluate`. With free initial states, a tenth of the rows by default.
+    #[arg(long, value_name = "ROWS|TIME", value_parser = known_beginning)]
+    pub known: Option<KnownText>,
     #[command(flatten)]
     pub columns: ColumnOptions,
     #[command(flatten)]

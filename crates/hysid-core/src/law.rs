@@ -93,6 +93,35 @@ pub trait Law: Sized {
     /// Advances the state to the next sample and returns the output there, in its unit.
     fn step(&self, state: &mut Self::State, sample: Sample) -> f64;
 
+    /// Number of inputs beside the first.
+    fn further_inputs(&self) -> usize {
+        0
+    }
+
+    /// As [`Law::step`], with the inputs beside the first, in their units; a law without them ignores these.
+    fn step_with(&self, state: &mut Self::State, sample: Sample, further: &[f64]) -> f64 {
+        let _ = further;
+        self.step(state, sample)
+    }
+
+    /// The states before the first of these samples, from the outputs there, NaN where they are not known; `None` for a law
+    /// whose states follow from a past of the input. `further` has the columns of the inputs beside the first.
+    fn found_states(&self, samples: &[Sample], further: &[&[f64]], known: &[f64]) -> Option<Vec<f64>> {
+        let _ = (samples, further, known);
+        None
+    }
+
+    /// The state before the first sample of a record with these [found states](Law::found_states).
+    fn begun_with(&self, states: &[f64]) -> Self::State {
+        let _ = states;
+        self.virgin()
+    }
+
+    /// Rows within which the residual at the end of a known beginning falls to 1/e; 0 for a residual that does not remain.
+    fn residual_rows(&self) -> f64 {
+        0.0
+    }
+
     /// The next input for `output`, from `state`; `None` without a closed inverse or where its conditions do not hold.
     fn input_for(&self, state: &Self::State, output: f64) -> Option<f64> {
         let _ = (state, output);
@@ -298,14 +327,42 @@ macro_rules! any_of {
                 }
             }
 
-            /// As [`Law::step`].
+            /// As [`Law::step_with`].
             ///
             /// # Panics
             /// A state of another law.
-            pub fn step(&self, state: &mut ClassicalState, sample: Sample) -> f64 {
+            pub fn step(&self, state: &mut ClassicalState, sample: Sample, further: &[f64]) -> f64 {
                 match (self, state) {
-                    $((Self::$law(law), ClassicalState::$law(state)) => law.step(state, sample),)*
+                    $((Self::$law(law), ClassicalState::$law(state)) => law.step_with(state, sample, further),)*
                     (law, state) => panic!("{state:?} is no state of {law:?}"),
+                }
+            }
+
+            /// As [`Law::found_states`].
+            pub fn found_states(&self, samples: &[Sample], further: &[&[f64]], known: &[f64]) -> Option<Vec<f64>> {
+                match self {
+                    $(Self::$law(law) => law.found_states(samples, further, known),)*
+                }
+            }
+
+            /// As [`Law::begun_with`].
+            pub fn begun_with(&self, states: &[f64]) -> ClassicalState {
+                match self {
+                    $(Self::$law(law) => ClassicalState::$law(law.begun_with(states)),)*
+                }
+            }
+
+            /// As [`Law::residual_rows`].
+            pub fn residual_rows(&self) -> f64 {
+                match self {
+                    $(Self::$law(law) => law.residual_rows(),)*
+                }
+            }
+
+            /// As [`Law::further_inputs`].
+            pub fn further_inputs(&self) -> usize {
+                match self {
+                    $(Self::$law(law) => law.further_inputs(),)*
                 }
             }
 
@@ -376,11 +433,17 @@ macro_rules! any_of {
                 }
             }
 
-            /// Continues a free run from a state of this law.
-            pub(crate) fn run_on(&self, state: &mut ClassicalState, samples: &[Sample], outputs: &mut [f64]) {
+            /// Continues a free run from a state of this law, with the columns of the inputs beside the first.
+            pub(crate) fn run_on(
+                &self,
+                state: &mut ClassicalState,
+                samples: &[Sample],
+                further: &[&[f64]],
+                outputs: &mut [f64],
+            ) {
                 match (self, state) {
                     $((Self::$law(law), ClassicalState::$law(state)) => {
-                        series::run_on(law, state, samples, outputs);
+                        series::run_on(law, state, samples, further, outputs);
                     })*
                     (law, state) => panic!("{state:?} is no state of {law:?}"),
                 }

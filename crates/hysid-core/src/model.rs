@@ -12,6 +12,7 @@
 //! | get a prediction band | [`Model::predict`] |
 
 mod band;
+mod beginning;
 mod ensemble;
 mod file;
 pub mod history;
@@ -32,7 +33,7 @@ use crate::data::initial_state::InitialState;
 use crate::data::likeness::Likeness;
 use crate::data::metrics::{ErrorSums, Errors};
 use crate::data::rate::RateMethod;
-use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, Record};
+use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, KnownBeginning, Record};
 use crate::data::unit::{of_column, pure_quotient};
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, OptionError, Result};
@@ -48,6 +49,7 @@ use crate::termination::Termination;
 
 pub use band::{BAND_OF_TEN, BAND_PROBABILITIES, Band, BandLevel, Prediction};
 pub use band::{HeldOutRow, disagreement};
+use beginning::judged;
 pub use ensemble::{Ensemble, Group, Node, NodeKind, Weights};
 pub use ensemble::{Excursion, MedianBuffers, Predictions};
 pub use file::FORMAT_VERSION;
@@ -69,12 +71,15 @@ pub struct Model {
     lead_in: Vec<f64>,
     /// Records that have no lead-in begin after one period of themselves.
     is_periodic: bool,
+    /// Known beginning of records that have none of their own. It is not stored.
+    beginning: KnownBeginning,
     band: Option<Band>,
     provenance: Provenance,
 }
 
 /// Network, law or ensemble that simulates.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a model has one, not many of them side by side")]
 pub enum Predictor {
     /// A network in scaled units, with its scale factors.
     Network {
@@ -327,8 +332,9 @@ impl Model {
             Predictor::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.rate.is_some()),
         };
         let rate = rate.filter(|_| uses_rate);
-        let train = errors(Runner::of_body(&body, Some(&preprocessing), rate), data)?;
-        let train_after_warm_up = match behind(data, warm_up(&body, &found.options)) {
+        let judged = judged(data, &found.options);
+        let train = errors(Runner::of_body(&body, Some(&preprocessing), rate), &judged)?;
+        let train_after_warm_up = match behind(&judged, warm_up(&body, &found.options)) {
             Some(behind) => Some(errors(Runner::of_body(&body, Some(&preprocessing), rate), &behind)?),
             None => None,
         };
@@ -347,6 +353,7 @@ impl Model {
             },
             lead_in: if is_periodic { Vec::new() } else { data.most_frequent_lead_in().to_vec() },
             is_periodic,
+            beginning: KnownBeginning::default(),
             band: None,
             provenance,
         };
@@ -452,7 +459,9 @@ impl Model {
     pub(crate) fn inputs(&self) -> usize {
         match &self.body {
             Predictor::Network { scaling, .. } => scaling.inputs.len() - self.preprocessing.added_inputs(),
-            Predictor::Law(_) => 1,
+            Predictor::Law(law) => {
+                (1 + law.further_inputs()).saturating_sub(self.preprocessing.added_inputs())
+            }
             Predictor::Ensemble(ensemble) => ensemble.members()[0].inputs(),
         }
     }
@@ -592,7 +601,7 @@ impl Model {
     /// # Errors
     /// A record without what the model needs: its number of inputs, time stamps, a given rate.
     pub fn simulate(&self, record: &Record) -> Result<Vec<f64>> {
-        self.response(&record.excitation())
+        self.response(&self.begun(record).excitation())
     }
 
     /// As [`Model::simulate`], from borrowed columns.
@@ -661,7 +670,7 @@ impl Model {
     pub fn with_band_over(self, band: Option<Band>, data: &Dataset) -> Result<Self> {
         let Some(band) = band else { return Ok(self.with_band(None)) };
         let mut errors = Predictions::default();
-        for record in data.records() {
+        for record in judged(data, &self.provenance.options).records() {
             let mut output = vec![0.0; record.len()];
             let mut spreads = vec![OutputSpread::default(); record.len()];
             Runner::of_model(&self).rows(&record.excitation(), 0, &mut output, Some(&mut spreads))?;
@@ -686,7 +695,7 @@ impl Model {
     /// As [`Model::simulate`], and data without any output.
     pub fn evaluate(&self, data: &Dataset) -> Result<Errors> {
         data.records().iter().try_for_each(|record| self.check_time(&record.excitation()))?;
-        errors(Runner::of_model(self), data)
+        errors(Runner::of_model(self), &self.begun_all(data))
     }
 
     /// True for a model with inertia, or an ensemble with one.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use hysid::data::initial_state::InitialState;
 use hysid::data::record::Excitation;
+use hysid::data::record::KnownBeginning;
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
@@ -200,9 +201,13 @@ impl Model {
         data: &Dataset,
         after_warm_up: bool,
         initial_state: Option<&str>,
+        known: usize,
     ) -> PyResult<String> {
         let set = Arc::clone(&data.set);
         let model = self.begun(initial_state)?;
+        let beginning = KnownBeginning::Rows(known);
+        let model =
+            if known == 0 { model } else { Arc::new((*model).clone().with_known_beginning(beginning)) };
         let evaluate = move || match after_warm_up && model.warm_up() > 0 {
             true => model.evaluate_after_warm_up(&set),
             false => model.evaluate(&set).map(Some),

@@ -13,10 +13,13 @@ pub(crate) mod sums;
 mod validate;
 
 use crate::data::FEWEST_ROWS;
+use crate::data::initial_state::InitialState;
 use crate::data::record::Dataset;
-use crate::error::{Channel, DataProblem, Result};
+use crate::error::{Channel, DataProblem, OptionError, Result};
 use crate::fit::progress::{Fitted, Observer};
-use crate::options::FitSpec;
+use crate::options::classical::ClassicalModel;
+use crate::options::fit_spec::AutoOptions;
+use crate::options::{FitSpec, ModelName};
 
 pub use memory_need::MemoryNeed;
 pub use validate::cross_validate;
@@ -28,6 +31,7 @@ pub use validate::cross_validate;
 /// Data from which no model can be identified, invalid options, or a stop before there was a model.
 pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
     check_warm_up(data, request)?;
+    check_free_states(request)?;
     match request {
         FitSpec::Auto(options) => auto::fit(data, options, observer),
         FitSpec::Network(_) | FitSpec::Classical(_) => one_model::identify(data, request, observer),
@@ -58,6 +62,27 @@ pub fn memory_need(data: &Dataset, request: &FitSpec, threads: usize) -> Result<
     }
 }
 
+/// Checks that a model has states that can be found together with its parameters, if they are to be.
+fn check_free_states(request: &FitSpec) -> Result<()> {
+    let model = match request {
+        FitSpec::Auto(AutoOptions { only: Some(only), .. }) => only.model(),
+        other => other.model(),
+    };
+    let can = match model {
+        ModelName::Network(_) => false,
+        ModelName::Classical(law) => law.facts().has_free_states,
+        ModelName::Auto(_) => true,
+    };
+    let free = InitialState::Free;
+    if can || request.initial_state() != Some(free) {
+        return Ok(());
+    }
+    let with_states = ClassicalModel::ALL.iter().filter(|law| law.facts().has_free_states);
+    let names: Vec<&str> = with_states.map(|law| law.name()).collect();
+    let needed = format!("{} has no such states; {} and auto have", model.name(), names.join(", "));
+    Err(OptionError::value("initial_state", free.name(), needed).into())
+}
+
 /// Checks that a warm-up leaves enough to train on.
 fn check_warm_up(data: &Dataset, request: &FitSpec) -> Result<()> {
     let warm_up = match request {
@@ -83,7 +108,6 @@ mod tests {
 
     use super::*;
     use crate::data::record::{ColumnNames, Record};
-    use crate::options::ModelName;
     use crate::options::chosen::NamedOptions;
 
     fn data(rows: usize, inputs: usize) -> Dataset {

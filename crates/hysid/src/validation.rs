@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::metrics::Errors;
-use crate::data::record::{Dataset, Record, RepeatedProtocol, protocols};
+use crate::data::record::{Dataset, KnownBeginning, Record, RepeatedProtocol, protocols};
 use crate::error::{Error, Result};
 use crate::model::Model;
 pub(crate) use pooled::PooledErrors;
@@ -358,6 +358,7 @@ pub struct CrossValidator<'d> {
     output: String,
     judged: Vec<FoldErrors>,
     pooled: PooledErrors,
+    beginning: KnownBeginning,
 }
 
 impl<'d> CrossValidator<'d> {
@@ -371,7 +372,13 @@ impl<'d> CrossValidator<'d> {
             return Err(Error::TooFewForFolds { rows: 4 * FEWEST_ROWS });
         }
         let output = data.names().output.clone();
-        Ok(Self { data, cuts, output, judged: Vec::new(), pooled: PooledErrors::default() })
+        let (pooled, beginning) = (PooledErrors::default(), KnownBeginning::default());
+        Ok(Self { data, cuts, output, judged: Vec::new(), pooled, beginning })
+    }
+
+    /// The same with a known beginning of each record that is held out as a whole.
+    pub fn with_known_beginning(self, beginning: KnownBeginning) -> Self {
+        Self { beginning, ..self }
     }
 
     /// Number of folds.
@@ -389,7 +396,12 @@ impl<'d> CrossValidator<'d> {
     /// # Panics
     /// If there are not so many folds.
     pub fn fold(&self, place: usize) -> Fold {
-        self.cuts[place].fold(self.data)
+        let fold = self.cuts[place].fold(self.data);
+        let is_part =
+            |record: &Record| fold.train.records().iter().any(|other| other.name() == record.name());
+        let rows = |record: &Record| if is_part(record) { 0 } else { self.beginning.rows(record) };
+        let held_out = fold.held_out.clone().with_known_beginnings(rows);
+        if held_out.scored() > 0 { Fold { held_out, ..fold } } else { fold }
     }
 
     /// Evaluates a model, which was fitted to the training data of a fold, on its held-out data.

@@ -49,16 +49,17 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
         check_outputs([out], &[&arguments.data, &arguments.model])?;
         interrupt::listen_briefly("stopping before the end of the table")?;
     }
-    let roles = Roles::of_model(&model, &rows.head, &arguments.columns.choice(), false)?;
+    let is_known = arguments.beginning.known.is_some();
+    let roles = Roles::of_model(&model, &rows.head, &arguments.columns.choice(), is_known)?;
 
-    let factors = factors(&model, &roles, &rows.head.file, false, arguments.units.same_units)?;
+    let factors = factors(&model, &roles, &rows.head.file, is_known, arguments.units.same_units)?;
     let sink = out.as_ref().map(Destination::create).transpose().map_err(files::explained)?;
     let numbers = Numbers { data: &arguments.data, reading: &reading, roles: &roles, delimiter };
     let mut output = Output { sink, numbers, sign: None, delimiter, text: header };
     let wanted = KeptColumns {
         drive: false,
         cells: true,
-        measured: false,
+        measured: is_known,
         band: arguments.data_sets.level(arguments.band),
         zero: arguments.columns.reading.zero,
     };

@@ -93,3 +93,34 @@ fn a_state_that_is_none_is_refused() {
         assert!(ran.stderr.contains(words), "{arguments}: {}", ran.stderr);
     }
 }
+
+#[test]
+fn a_state_is_found_from_a_known_beginning() {
+    let bench = bench();
+    bench.succeeds(&format!("fit train.csv -o found.json {MODEL} --initial-state virgin"));
+    // A record after a past of its own.
+    bench.put("cut.csv", csv("record,H_A_m,B_T", ",", "\n", &rows("t", -1.0, 0.4, 0.115)));
+    let evaluate = |options: &str| bench.json(&format!("evaluate found.json cut.csv --json {options}"));
+    let (virgin, known) = (evaluate(""), evaluate("--known 40"));
+    let rmse = |errors: &Value| errors["rmse"].as_f64().unwrap();
+    assert!(rmse(&known) < 0.3 * rmse(&virgin), "{known}, without {virgin}");
+    // The outputs of the known rows are not scored, and the others are not used.
+    assert_eq!((virgin["samples"].as_u64(), known["samples"].as_u64()), (Some(120), Some(80)));
+    let mut half = rows("t", -1.0, 0.4, 0.115);
+    half.iter_mut().skip(40).for_each(|row| row[2].clear());
+    bench.put("half.csv", csv("record,H_A_m,B_T", ",", "\n", &half));
+    let simulated = |table: &str| -> Vec<String> {
+        let text = bench.succeeds(&format!("simulate found.json {table} --known 40")).stdout;
+        text.lines().skip(1).map(|line| line.rsplit(',').next().unwrap().to_string()).collect()
+    };
+    assert_eq!(simulated("half.csv").len(), 120);
+    assert_eq!(simulated("half.csv"), simulated("cut.csv"));
+
+    bench.refuses_in_part(
+        "2 evaluate found.json cut.csv --known 0 => give a number of rows
+         1 evaluate found.json cut.csv --known 0.5s => no unit of time is known
+         2 evaluate found.json cut.csv --known 40 --initial-state virgin => cannot be used with
+         2 evaluate found.json cut.csv --initial-state free => --known finds a state
+         2 fit train.csv -o free.json --model masing --initial-state free => has no such states; duhem-nn and auto have",
+    );
+}

@@ -8,6 +8,9 @@
 //! periodic           the turning points of the record itself
 //! ```
 //!
+//! A *free* state is no lead-in: the states of a model before each record are found together with its parameters, and before a
+//! new record from its [known beginning](crate::data::record::Record::with_known_beginning).
+//!
 //! A *lead-in* is what the first input did before the first row of a record: its turning points, in its unit.
 //! `l` and `h` are the ends of the trained range of the first input, and `c` is its origin. A model is driven
 //! from its virgin state along the lead-in and then to the input of the first row, with one step for each
@@ -44,21 +47,24 @@ pub enum InitialState {
     Periodic,
     /// To be found for each record, from its output.
     Unknown,
+    /// Found for each record together with the parameters of the model.
+    Free,
 }
 
 named!(
     InitialState, "initial state":
     Virgin = "virgin", SaturatedUp = "saturated-up", SaturatedDown = "saturated-down",
-    Demagnetised = "demagnetised", Periodic = "periodic", Unknown = "unknown"
+    Demagnetised = "demagnetised", Periodic = "periodic", Unknown = "unknown", Free = "free"
 );
 
 impl InitialState {
     /// The names of those that need no output to be found.
     pub fn known() -> Vec<&'static str> {
-        Self::ALL.into_iter().filter(|state| *state != Self::Unknown).map(Self::name).collect()
+        let is_known = |state: &Self| !matches!(state, Self::Unknown | Self::Free);
+        Self::ALL.into_iter().filter(is_known).map(Self::name).collect()
     }
 
-    /// The lead-in for a trained range and an origin, in the unit of the input; `None` for periodic and unknown.
+    /// The lead-in for a trained range and an origin, in the unit of the input; `None` for one that depends on the record.
     pub fn lead_in(self, (low, high): (f64, f64), origin: f64) -> Option<Vec<f64>> {
         match self {
             Self::Virgin => Some(Vec::new()),
@@ -72,7 +78,7 @@ impl InitialState {
                 };
                 Some((0..HALF_CYCLES).map(turn).collect())
             }
-            Self::Periodic | Self::Unknown => None,
+            Self::Periodic | Self::Unknown | Self::Free => None,
         }
     }
 }
@@ -93,6 +99,73 @@ pub fn lead_ins_tried((low, high): (f64, f64)) -> Vec<Vec<f64>> {
     let after = |k: usize| vec![if 2 * k > LEVELS { low } else { high }, level(k)];
     let levels = (1..=LEVELS).map(after);
     [Vec::new(), vec![high], vec![low]].into_iter().chain(levels).collect()
+}
+
+/// Most turning points of a past that is found.
+const MOST_FOUND: usize = 3;
+
+/// Share of the misfit that a further turning point must take away.
+const WORTH_A_TURN: f64 = 0.05;
+
+/// Halvings of the step of the search.
+const HALVINGS: usize = 6;
+
+/// The past of the first input with the lowest misfit: a lead-in of up to three turning points within this range, in its
+/// unit. It begins from the states that are tried where the initial state is unknown.
+pub fn found_past((low, high): (f64, f64), mut misfit: impl FnMut(&[f64]) -> f64) -> Vec<f64> {
+    let mut best = Vec::new();
+    let mut least = f64::INFINITY;
+    if !(high - low).is_finite() {
+        return best;
+    }
+    for past in lead_ins_tried((low, high)) {
+        let found = misfit(&past);
+        if found < least {
+            (best, least) = (past, found);
+        }
+    }
+    let step = (high - low) / (LEVELS + 1) as f64;
+    descend(&mut best, &mut least, (low, high), step, &mut misfit);
+    while best.len() < MOST_FOUND {
+        let (mut longer, mut of_longer) = (Vec::new(), f64::INFINITY);
+        for k in 1..=LEVELS {
+            let past = [&best[..], &[low + step * k as f64]].concat();
+            let found = misfit(&past);
+            if found < of_longer {
+                (longer, of_longer) = (past, found);
+            }
+        }
+        descend(&mut longer, &mut of_longer, (low, high), 0.5 * step, &mut misfit);
+        if of_longer >= (1.0 - WORTH_A_TURN) * least {
+            break;
+        }
+        (best, least) = (longer, of_longer);
+    }
+    best
+}
+
+/// Moves one turning point at a time in ever smaller steps, as long as the misfit falls.
+fn descend(
+    past: &mut Vec<f64>,
+    least: &mut f64,
+    (low, high): (f64, f64),
+    mut step: f64,
+    misfit: &mut impl FnMut(&[f64]) -> f64,
+) {
+    for _ in 0..HALVINGS {
+        step *= 0.5;
+        for turn in 0..past.len() {
+            for by in [step, -step] {
+                let mut moved = past.clone();
+                moved[turn] = (moved[turn] + by).clamp(low, high);
+                let found = misfit(&moved);
+                if found < *least {
+                    (*past, *least) = (moved, found);
+                    break;
+                }
+            }
+        }
+    }
 }
 
 /// A lead-in in a few words, for this trained range of the first input.

@@ -35,6 +35,8 @@ pub struct Record {
     given_rate: Option<Values>,
     output: Vec<f64>,
     lead_in: Option<Vec<f64>>,
+    /// Outputs of the known beginning; the same rows of `output` are blank.
+    known: Vec<f64>,
 }
 
 impl Record {
@@ -46,7 +48,8 @@ impl Record {
     /// [`crate::error::LARGEST_VALUE`].
     pub fn new(name: impl Into<String>, inputs: Vec<Vec<f64>>, output: Vec<f64>) -> Result<Self> {
         let inputs = inputs.into_iter().map(Values::from).collect();
-        let record = Self { name: name.into(), time: None, inputs, given_rate: None, output, lead_in: None };
+        let (name, known) = (name.into(), Vec::new());
+        let record = Self { name, time: None, inputs, given_rate: None, output, lead_in: None, known };
         Excitation::new(&record.name, columns(&record.inputs))?;
         record.excitation().check_column(Channel::Output, &record.output, true)?;
         Ok(record)
@@ -102,7 +105,25 @@ impl Record {
             inputs: columns(&self.inputs),
             given_rate: self.given_rate(),
             lead_in: self.lead_in(),
+            known: &self.known,
         }
+    }
+
+    /// The same record with a known beginning: from the outputs of its first rows a model finds its state. These rows are
+    /// not scored.
+    pub fn with_known_beginning(mut self, rows: usize) -> Self {
+        let output = |row: usize| *self.known.get(row).unwrap_or(&self.output[row]);
+        let whole: Vec<f64> = (0..self.len()).map(output).collect();
+        let rows = rows.min(self.len());
+        self.known = whole[..rows].to_vec();
+        self.output = whole;
+        self.output[..rows].fill(f64::NAN);
+        self
+    }
+
+    /// Outputs of the known beginning; empty without.
+    pub fn known(&self) -> &[f64] {
+        &self.known
     }
 
     /// An error of this record at a row and a column.
@@ -169,6 +190,7 @@ impl Record {
     pub fn fingerprint(&self) -> Fingerprint {
         let mut fingerprint = Fingerprint::default();
         for (row, &output) in self.output.iter().enumerate() {
+            let output = *self.known.get(row).unwrap_or(&output);
             fingerprint.add(self.inputs.iter().map(|input| input[row]), output);
         }
         fingerprint
@@ -199,6 +221,7 @@ impl Record {
             given_rate: self.given_rate.as_ref().map(cut),
             output: self.output[..end].to_vec(),
             lead_in: self.lead_in.clone(),
+            known: self.known[..self.known.len().min(end)].to_vec(),
         }
     }
 
@@ -215,6 +238,45 @@ impl Record {
 
 fn columns(inputs: &[Values]) -> Vec<&[f64]> {
     inputs.iter().map(|input| &**input).collect()
+}
+
+/// Share of the rows of each record that a model with free initial states is judged with as the known beginning. Designed.
+pub const KNOWN_SHARE: f64 = 0.1;
+
+/// The known beginning of records: how many of their first rows have a known output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum KnownBeginning {
+    /// So many rows.
+    Rows(usize),
+    /// The rows up to so much time after the first, in the unit of time.
+    Time(f64),
+    /// A share of the rows.
+    Share(f64),
+}
+
+impl Default for KnownBeginning {
+    /// None.
+    fn default() -> Self {
+        Self::Rows(0)
+    }
+}
+
+impl KnownBeginning {
+    /// True if nothing is known.
+    pub fn is_none(self) -> bool {
+        matches!(self, Self::Rows(0))
+            || matches!(self, Self::Time(value) | Self::Share(value) if value <= 0.0)
+    }
+
+    /// Rows of a record; none for a time where the record has none.
+    pub fn rows(self, record: &Record) -> usize {
+        match (self, record.time()) {
+            (Self::Rows(rows), _) => rows.min(record.len()),
+            (Self::Share(share), _) => (share * record.len() as f64) as usize,
+            (Self::Time(duration), Some(time)) => time.partition_point(|t| t - time[0] <= duration),
+            (Self::Time(_), None) => 0,
+        }
+    }
 }
 
 /// Above this number of pairs, records are not compared with each other.
@@ -512,6 +574,19 @@ impl Dataset {
         let chosen = &order[first..first + count];
         let (held, kept) = self.partition(|index| chosen.iter().flatten().any(|held| *held == index));
         Some((kept, held))
+    }
+
+    /// The same data with a known beginning of these rows of each record ([`Record::with_known_beginning`]).
+    pub fn with_known_beginnings(mut self, rows: impl Fn(&Record) -> usize) -> Self {
+        self.records = self
+            .records
+            .into_iter()
+            .map(|record| {
+                let rows = rows(&record);
+                record.with_known_beginning(rows)
+            })
+            .collect();
+        self
     }
 
     /// Checks that some row has an output.

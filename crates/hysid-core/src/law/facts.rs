@@ -13,6 +13,10 @@ pub struct Facts {
     pub rate: Rate,
     /// True if it needs the time between samples.
     pub needs_time: bool,
+    /// True if it takes inputs beside the first.
+    pub takes_further_inputs: bool,
+    /// True if its states before a record can be found together with its parameters.
+    pub has_free_states: bool,
     /// The origin of its input.
     pub origin: Origin,
     /// How its parameters are found.
@@ -124,6 +128,8 @@ impl Facts {
             summary,
             rate: Rate::Ignored,
             needs_time: false,
+            takes_further_inputs: false,
+            has_free_states: false,
             origin: Origin::OfData,
             identification: Identification::LeastSquares,
             options,

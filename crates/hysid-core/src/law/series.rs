@@ -2,7 +2,7 @@
 //! units.
 
 use crate::data::rate::RateMethod;
-use crate::data::record::{Dataset, Excitation, Record};
+use crate::data::record::{Dataset, Excitation, Record, Values};
 use crate::error::Result;
 use crate::law::{Law, Sample};
 
@@ -13,6 +13,8 @@ pub struct Series {
     pub samples: Vec<Sample>,
     /// The measured output; NaN where it is blank, as in a lead-in.
     pub output: Vec<f64>,
+    /// Columns of the inputs beside the first.
+    pub further: Vec<Vec<f64>>,
 }
 
 impl Series {
@@ -21,12 +23,14 @@ impl Series {
     /// # Errors
     /// A rate that cannot be computed.
     pub fn of(record: &Record, rate: Option<RateMethod>) -> Result<Self> {
-        let mut of_record =
-            Self { samples: lead_in_samples(&record.lead_in_rows()).collect(), output: Vec::new() };
-        of_record.output.resize(of_record.samples.len(), f64::NAN);
-        of_record.samples.extend(samples(&record.excitation(), rate)?);
-        of_record.output.extend(record.output());
-        Ok(of_record)
+        let mut all: Vec<Sample> = lead_in_samples(&record.lead_in_rows()).collect();
+        let lead_in = all.len();
+        let mut output = vec![f64::NAN; lead_in];
+        all.extend(samples(&record.excitation(), rate)?);
+        output.extend(record.output());
+        let column = |values: &Values| [&vec![values[0]; lead_in], &values[..]].concat();
+        let further = record.inputs()[1..].iter().map(column).collect();
+        Ok(Self { samples: all, output, further })
     }
 
     /// All records of a data set that have an output.
@@ -67,13 +71,27 @@ pub fn samples_of(x: &[f64]) -> Vec<Sample> {
 /// Free run of a law from its virgin state.
 pub fn run<L: Law>(law: &L, samples: &[Sample]) -> Vec<f64> {
     let mut outputs = vec![0.0; samples.len()];
-    run_on(law, &mut law.virgin(), samples, &mut outputs);
+    run_on(law, &mut law.virgin(), samples, &[], &mut outputs);
     outputs
 }
 
-/// Free run of a law from a given state.
-pub(crate) fn run_on<L: Law>(law: &L, state: &mut L::State, samples: &[Sample], outputs: &mut [f64]) {
-    outputs.iter_mut().zip(samples).for_each(|(output, sample)| *output = law.step(state, *sample));
+/// Free run of a law from a given state, with the columns of the inputs beside the first.
+pub(crate) fn run_on<L: Law>(
+    law: &L,
+    state: &mut L::State,
+    samples: &[Sample],
+    further: &[&[f64]],
+    outputs: &mut [f64],
+) {
+    if further.is_empty() {
+        outputs.iter_mut().zip(samples).for_each(|(output, sample)| *output = law.step(state, *sample));
+        return;
+    }
+    let mut values = vec![0.0; further.len()];
+    for (row, (output, sample)) in outputs.iter_mut().zip(samples).enumerate() {
+        values.iter_mut().zip(further).for_each(|(value, column)| *value = column[row]);
+        *output = law.step_with(state, *sample, &values);
+    }
 }
 
 /// The work of all loops, `∮ y dx`, in the unit of the output times that of the input: positive for an output

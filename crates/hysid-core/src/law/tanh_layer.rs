@@ -40,6 +40,16 @@ pub(super) fn layer<S: Simd>(weights: &[f64], inputs: &[f64], neurons: &mut [f64
     }
 }
 
+/// Adds `Σ_k factor_k column_k`, with columns as long as `to`.
+#[inline(always)]
+pub(super) fn add_columns<S: Simd>(columns: &[f64], factors: &[f64], to: &mut [f64]) {
+    for (column, &factor) in columns.chunks_exact(to.len()).zip(factors) {
+        for (to, weight) in to.iter_mut().zip(column) {
+            *to = multiply_add::<S>(*weight, factor, *to);
+        }
+    }
+}
+
 /// Scalar product, in partial sums that become SIMD code.
 #[inline(always)]
 pub(super) fn product<S: Simd>(a: &[f64], b: &[f64]) -> f64 {

@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::rate::RateMethod;
-use crate::data::record::ColumnNames;
+use crate::data::record::{ColumnNames, KnownBeginning};
 use crate::data::unit;
 use crate::error::{Error, LARGEST_VALUE, MOST_TURNS, Result};
 use crate::law::Classical;
@@ -227,6 +227,7 @@ impl MemberParts {
             trained: self.trained_ranges,
             lead_in: Vec::new(),
             is_periodic: false,
+            beginning: KnownBeginning::default(),
             band: None,
             provenance: self.training,
         };
@@ -355,6 +356,7 @@ fn assemble(file: File) -> Result<Model> {
         trained: file.trained_ranges,
         lead_in: file.lead_in,
         is_periodic: file.periodic,
+        beginning: KnownBeginning::default(),
         band: file.band.map(Band::validated).transpose()?,
         provenance: file.training,
     };
@@ -388,7 +390,7 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
             network.architecture().inputs.saturating_sub(added)
         }
         Predictor::Network { .. } => 0,
-        Predictor::Law(_) => 1 - added.min(1),
+        Predictor::Law(law) => (1 + law.further_inputs()).saturating_sub(added),
         Predictor::Ensemble(_) => model.inputs(),
     };
     if inputs == 0 || [model.names.inputs.len(), model.trained.inputs.len()] != [inputs; 2] {

@@ -53,6 +53,13 @@ impl Model {
     fn initial_state_note(&self) -> Option<String> {
         let provenance = self.provenance();
         let found = provenance.selection.as_ref().and_then(|selection| selection.found_states);
+        if provenance.options.initial_state() == Some(InitialState::Free) {
+            return Some(
+                "initial state: found for each training record together with the parameters; a new record begins with the \
+                 mean of these states, unless its first outputs are known (known)"
+                    .into(),
+            );
+        }
         if found.is_none() && provenance.options.initial_state() != Some(InitialState::Unknown) {
             return None;
         }

@@ -4,10 +4,12 @@
 //! the outputs are the same to the last bit for any division of a record.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
-use crate::data::initial_state::lead_in_of_period;
+use crate::data::initial_state::{found_past, lead_in_of_period};
 use crate::data::rate::RateMethod;
 use crate::data::record::Excitation;
+use crate::elementary::exp;
 use crate::error::{DataProblem, Result};
 use crate::law::series::lead_in_samples;
 use crate::law::{Classical, ClassicalState, Sample};
@@ -41,6 +43,12 @@ pub(super) struct Runner<'m> {
     is_periodic: bool,
     /// The memory has been driven along the lead-in of the record.
     is_begun: bool,
+    /// Outputs of the known beginning of the record, and the rows that were simulated.
+    known: Vec<f64>,
+    simulated: usize,
+    /// Residual at the last known row, and how much of it remains from row to row.
+    residual: f64,
+    remaining: f64,
     /// Trained ranges to compare with, if requested, and the method for the rate.
     ranges: Option<(Ranges, Option<RateMethod>)>,
 }
@@ -124,6 +132,10 @@ impl<'m> Runner<'m> {
             lead_in: &[],
             is_periodic: false,
             is_begun: false,
+            known: Vec::new(),
+            simulated: 0,
+            residual: 0.0,
+            remaining: 0.0,
             ranges: None,
         }
     }
@@ -148,6 +160,8 @@ impl<'m> Runner<'m> {
     /// Back to the initial state, before another record.
     pub fn reset(&mut self) {
         self.is_begun = false;
+        self.known.clear();
+        (self.simulated, self.residual) = (0, 0.0);
         self.body.singles_mut().iter_mut().for_each(SingleRunner::reset);
         self.excursion = Excursion::beyond(self.range);
     }
@@ -185,9 +199,12 @@ impl<'m> Runner<'m> {
     }
 
     /// Drives the memory along the lead-in, before the first row of a record, which is here.
-    fn begin(&mut self, excitation: &Excitation<'_>, first: usize) {
+    fn begin(&mut self, excitation: &Excitation<'_>, first: usize) -> Result<()> {
         if std::mem::replace(&mut self.is_begun, true) {
-            return;
+            return Ok(());
+        }
+        if excitation.known().iter().any(|y| !y.is_nan()) {
+            return self.begin_known(excitation, first);
         }
         let lead_in = match excitation.lead_in() {
             Some(lead_in) => Cow::Borrowed(lead_in),
@@ -195,11 +212,58 @@ impl<'m> Runner<'m> {
             None => Cow::Borrowed(self.lead_in),
         };
         if lead_in.is_empty() {
-            return;
+            return Ok(());
         }
         let first_row: Vec<f64> = excitation.inputs().iter().map(|input| input[first]).collect();
         let rows: Vec<f64> = lead_in.iter().chain(&first_row[..1]).copied().collect();
         self.body.singles_mut().iter_mut().for_each(|single| single.lead_in(&rows, &first_row));
+        Ok(())
+    }
+
+    /// Finds the state before a record with a known beginning, each member of an ensemble its own.
+    fn begin_known(&mut self, excitation: &Excitation<'_>, first: usize) -> Result<()> {
+        self.known = excitation.known().to_vec();
+        self.known.truncate(excitation.len() - first);
+        let rows = first..first + self.known.len();
+        self.fill(excitation, rows.clone())?;
+        let inputs: Vec<&[f64]> = excitation.inputs().iter().map(|input| &input[rows.clone()]).collect();
+        let chunk =
+            Chunk { name: excitation.name(), inputs: &inputs, rates: &self.rates, steps: &self.steps };
+        for single in self.body.singles_mut() {
+            single.begin_known(&chunk, &self.known, self.range)?;
+        }
+        let rows: Vec<f64> = self.body.singles().iter().map(SingleRunner::residual_rows).collect();
+        self.remaining = remaining(median(rows));
+        Ok(())
+    }
+
+    /// Rates and steps of some rows.
+    fn fill(&mut self, excitation: &Excitation<'_>, rows: Range<usize>) -> Result<()> {
+        for (method, rates) in &mut self.rates {
+            rates.resize(rows.len(), 0.0);
+            method.fill(excitation, rows.start, rates)?;
+        }
+        self.steps.clear();
+        self.steps.extend(rows.map(|row| match excitation.time() {
+            Some(time) if row > 0 => time[row] - time[row - 1],
+            _ => 0.0,
+        }));
+        Ok(())
+    }
+
+    /// Adds what remains of the residual at the end of the known beginning.
+    fn correct(&mut self, outputs: &mut [f64]) {
+        for output in outputs {
+            match self.known.get(self.simulated) {
+                Some(known) if known.is_nan() => {}
+                Some(known) => self.residual = known - *output,
+                None => {
+                    self.residual *= self.remaining;
+                    *output += self.residual;
+                }
+            }
+            self.simulated += 1;
+        }
     }
 
     fn chunk(
@@ -210,16 +274,8 @@ impl<'m> Runner<'m> {
         spreads: Option<&mut [OutputSpread]>,
     ) -> Result<()> {
         let rows = first..first + outputs.len();
-        self.begin(excitation, first);
-        for (method, rates) in &mut self.rates {
-            rates.resize(rows.len(), 0.0);
-            method.fill(excitation, first, rates)?;
-        }
-        self.steps.clear();
-        self.steps.extend(rows.clone().map(|row| match excitation.time() {
-            Some(time) if row > 0 => time[row] - time[row - 1],
-            _ => 0.0,
-        }));
+        self.begin(excitation, first)?;
+        self.fill(excitation, rows.clone())?;
         let inputs: Vec<&[f64]> = excitation.inputs().iter().map(|input| &input[rows.clone()]).collect();
         let chunk =
             Chunk { name: excitation.name(), inputs: &inputs, rates: &self.rates, steps: &self.steps };
@@ -232,11 +288,25 @@ impl<'m> Runner<'m> {
                 for (spread, &x) in spreads.into_iter().flatten().zip(inputs[0]) {
                     *spread = OutputSpread { disagreement: 0.0, outside: self.excursion.take(x) };
                 }
-                Ok(())
             }
-            RunnerKind::Ensemble(members) => members.run(&chunk, &mut self.excursion, outputs, spreads),
+            RunnerKind::Ensemble(members) => members.run(&chunk, &mut self.excursion, outputs, spreads)?,
         }
+        if !self.known.is_empty() {
+            self.correct(outputs);
+        }
+        Ok(())
     }
+}
+
+/// Share of a residual that remains in the next row, for the rows within which it falls to 1/e; 0 for none.
+fn remaining(rows: f64) -> f64 {
+    if rows > 0.0 { exp(-1.0 / rows) } else { 0.0 }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let half = values.len() / 2;
+    if values.len() % 2 == 1 { values[half] } else { 0.5 * (values[half - 1] + values[half]) }
 }
 
 impl<'m> RunnerKind<'m> {
@@ -286,7 +356,7 @@ impl<'m> SingleRunner<'m> {
         let added = self.preprocessing.map_or(0, InputTransform::added_inputs);
         match &self.mechanism {
             Mechanism::Network(network) => network.inputs() - added,
-            Mechanism::Law(..) => 1,
+            Mechanism::Law(law, ..) => (1 + law.further_inputs()).saturating_sub(added),
         }
     }
 
@@ -307,8 +377,59 @@ impl<'m> SingleRunner<'m> {
             Mechanism::Network(network) => network.lead_in(&first, &others),
             Mechanism::Law(law, state, _) => {
                 let samples: Vec<Sample> = lead_in_samples(&first).collect();
-                law.run_on(state, &samples, &mut vec![0.0; samples.len()]);
+                let columns: Vec<Vec<f64>> = others.iter().map(|&value| vec![value; first.len()]).collect();
+                let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+                law.run_on(state, &samples, &columns, &mut vec![0.0; samples.len()]);
             }
+        }
+    }
+
+    /// Rows within which the residual at the end of a known beginning falls to 1/e.
+    fn residual_rows(&self) -> f64 {
+        match &self.mechanism {
+            Mechanism::Network(_) => 0.0,
+            Mechanism::Law(law, ..) => law.residual_rows(),
+        }
+    }
+
+    /// Begins with the state that suits the outputs of the first rows: free states of a law, or a past of the input.
+    fn begin_known(&mut self, chunk: &Chunk<'_>, known: &[f64], range: (f64, f64)) -> Result<()> {
+        let nothing = InputTransform::default();
+        let preprocessing = self.preprocessing.unwrap_or(&nothing);
+        if let Mechanism::Law(law, state, _) = &mut self.mechanism {
+            let mut seen = Vec::new();
+            see(preprocessing, chunk.inputs, &mut InputPast::default(), &mut seen);
+            let rate = self.rate.map(|method| chunk.rate(method));
+            let rate = |row: usize| rate.map_or(0.0, |rate| preprocessing.rate(rate[row]));
+            let sample = |(row, &x): (usize, &f64)| Sample { x, rate: rate(row), step: chunk.steps[row] };
+            let samples: Vec<Sample> = seen[0].iter().enumerate().map(sample).collect();
+            let further: Vec<&[f64]> = seen[1..].iter().map(Vec::as_slice).collect();
+            if let Some(states) = law.found_states(&samples, &further, known) {
+                **state = law.begun_with(&states);
+                return Ok(());
+            }
+        }
+        let first_row: Vec<f64> = chunk.inputs.iter().map(|input| input[0]).collect();
+        let mut outputs = vec![0.0; known.len()];
+        let misfit = |past: &[f64]| -> f64 {
+            let mut trial = self.clone();
+            trial.reset();
+            trial.begin_after(past, &first_row);
+            if trial.run(chunk, &mut outputs).is_err() {
+                return f64::INFINITY;
+            }
+            let errors = outputs.iter().zip(known).filter(|(_, y)| !y.is_nan());
+            errors.map(|(output, y)| (output - y) * (output - y)).sum()
+        };
+        let past = found_past(range, misfit);
+        self.begin_after(&past, &first_row);
+        Ok(())
+    }
+
+    fn begin_after(&mut self, past: &[f64], first_row: &[f64]) {
+        if !past.is_empty() {
+            let rows: Vec<f64> = past.iter().chain(&first_row[..1]).copied().collect();
+            self.lead_in(&rows, first_row);
         }
     }
 
@@ -359,7 +480,7 @@ impl Mechanism<'_> {
                 let rows = inputs[0].iter().zip(rates).zip(chunk.steps);
                 samples.clear();
                 samples.extend(rows.map(|((&x, rate), &step)| Sample { x, rate, step }));
-                law.run_on(state, samples, outputs);
+                law.run_on(state, samples, &inputs[1..], outputs);
                 Ok(())
             }
         }

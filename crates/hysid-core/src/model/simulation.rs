@@ -30,6 +30,8 @@ struct RowWindow {
     rate: Option<Vec<f64>>,
     /// Lead-in of the record, if it has one of its own.
     lead_in: Option<Vec<f64>>,
+    /// Outputs of the known beginning of the record.
+    known: Vec<f64>,
     /// Rows of the record before the window.
     before: usize,
     simulated: usize,
@@ -56,7 +58,9 @@ impl<'m> Simulation<'m> {
     pub fn take(&mut self, rows: &Excitation<'_>) -> Result<Prediction> {
         self.model.check_time(rows)?;
         self.window.append(rows)?;
-        let waits = self.model.is_periodic() && self.window.lead_in.is_none();
+        let is_in_beginning = self.window.simulated == 0 && self.window.before == 0;
+        let waits = self.model.is_periodic() && self.window.lead_in.is_none()
+            || is_in_beginning && self.window.len() < self.window.known.len() + self.runner.rows_around().1;
         let behind = if waits { usize::MAX } else { self.runner.rows_around().1 };
         self.simulate(self.window.len().saturating_sub(behind))
     }
@@ -131,6 +135,7 @@ impl RowWindow {
             self.time = rows.time().map(|_| Vec::new());
             self.rate = rows.given_rate().map(|_| Vec::new());
             self.lead_in = rows.lead_in().map(<[f64]>::to_vec);
+            self.known = rows.known().to_vec();
         }
         let (expected, found) = (self.inputs.len(), rows.inputs().len());
         if expected != found {
@@ -161,7 +166,7 @@ impl RowWindow {
     fn excitation<'a>(&'a self, name: &'a str) -> Excitation<'a> {
         let inputs = self.inputs.iter().map(Vec::as_slice).collect();
         let excitation = Excitation::unchecked(name, self.time.as_deref(), inputs, self.rate.as_deref());
-        excitation.after(self.lead_in.as_deref())
+        excitation.after(self.lead_in.as_deref()).knowing(&self.known)
     }
 
     /// Drops all rows that are simulated but so many, the last ones.

@@ -232,7 +232,7 @@ impl StepperState {
             }
             (Predictor::Law(law), StepperMemory::Law(state)) => {
                 for sample in lead_in_samples(&first) {
-                    law.step(state, sample);
+                    law.step(state, sample, &others);
                 }
             }
             _ => unreachable!("the memory was made for the body"),
@@ -259,7 +259,8 @@ impl StepperState {
             }
             (Predictor::Law(law), StepperMemory::Law(state)) => {
                 let step = if model.needs_time() { elapsed } else { 0.0 };
-                law.step(state, Sample { x: self.seen[0], rate: seen_rate.unwrap_or(0.0), step })
+                let sample = Sample { x: self.seen[0], rate: seen_rate.unwrap_or(0.0), step };
+                law.step(state, sample, &self.seen[1..])
             }
             (Predictor::Ensemble(ensemble), StepperMemory::Ensemble(memory)) => {
                 let EnsembleMemory { members, excursion, outputs, medians } = &mut **memory;

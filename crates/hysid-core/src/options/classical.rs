@@ -6,6 +6,7 @@ use crate::data::rate::RateMethod;
 use crate::for_each_law;
 use crate::law::Law;
 use crate::law::facts::{Advised, Behaviour, ErrorsInside, Facts, Identification, LawKind, Rate};
+use crate::named;
 use crate::options::input_options::InputOptions;
 use crate::options::network::SEED;
 
@@ -74,6 +75,11 @@ impl ClassicalModel {
     /// True for a network, with equations and inputs as of those that are trained.
     pub fn is_network(self) -> bool {
         self.facts().kind == LawKind::RandomNetwork
+    }
+
+    /// True if it takes more than one input.
+    pub fn takes_further_inputs(self) -> bool {
+        self.is_network() || self.facts().takes_further_inputs
     }
 
     /// True if it is a mass on springs: a model of a resonance.
@@ -153,6 +159,16 @@ pub struct ClassicalOptions {
     /// True for a dynamic Prandtl-Ishlinskii model with a lag before its plays.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub lagged_input: bool,
+    /// True for a Duhem neural network with the second derivative of the input.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub acceleration: bool,
+    /// True for a Duhem neural network without constants.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub odd: bool,
+    /// Error that a Duhem neural network is fitted to; that of each record if states are free, otherwise of the rows, if
+    /// `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<FittedError>,
     /// Whether random stops deteriorate; chosen by cross-validation if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deterioration: Option<bool>,
@@ -227,6 +243,18 @@ impl ClassicalOptions {
         Self { model, seed: SEED, ..Self::default() }
     }
 }
+
+/// Error that a model is fitted to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FittedError {
+    /// Of all rows alike.
+    Row,
+    /// Mean over the records of the error as a share of the root mean square output of the record.
+    Record,
+}
+
+named!(FittedError, "error": Row = "row", Record = "record");
 
 /// Sign constraint of weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -68,7 +68,7 @@ impl ModelName {
     pub fn takes_further_inputs(self) -> bool {
         match self {
             Self::Network(family) => family.takes_further_inputs(),
-            Self::Classical(rival) => rival.is_network(),
+            Self::Classical(rival) => rival.takes_further_inputs(),
             Self::Auto(_) => true,
         }
     }

@@ -10,7 +10,7 @@ use crate::law::duhem_nn::MOST_STATES;
 use crate::law::hysteretic_dynamics::MOST_PARTS;
 use crate::network::{Family, Sizes};
 use crate::options::ModelName;
-use crate::options::classical::Sign;
+use crate::options::classical::{FittedError, Sign};
 use crate::options::effort::Effort;
 use crate::options::fit_spec::{AutoOptions, MOST_MEMBERS};
 use crate::options::input_options::SHARES;
@@ -221,7 +221,8 @@ options! {
     initial_state: InitialState {
         meaning: "State of the memory at the beginning of each record: without history, after a visit of the upper or \
                   the lower end of the input range, demagnetised, periodic (each record is a period of a steady state), \
-                  or unknown and found for each record",
+                  unknown and found for each record, or free: found together with the parameters, for records that are \
+                  cut out of a longer past (duhem-nn, auto)",
         group: Training,
         values: OptionValues::Names(initial_states),
         default: |model, _| match model {
@@ -404,6 +405,23 @@ options! {
                   follows the integral of the input, as the voltage of a cell follows its charge",
         ..FLAG_OF_LAWS
     }
+    acceleration: bool {
+        meaning: "Use duhem-nn with the second derivative of the input, for data with time stamps and little noise in the \
+                  input",
+        ..FLAG_OF_LAWS
+    }
+    odd: bool {
+        meaning: "Use duhem-nn without constants: the opposite input gives the opposite output",
+        ..FLAG_OF_LAWS
+    }
+    error: FittedError {
+        meaning: "Error that duhem-nn is fitted to: that of all rows alike, or of each record as a share of its own size, for \
+                  records of very different sizes",
+        group: Classical,
+        values: OptionValues::Names(errors),
+        default: |_, _| Preset::Chosen,
+        used_by: of_none,
+    }
 }
 
 fn chosen_or_off(model: ModelName, _: Trainer) -> Preset {
@@ -427,6 +445,10 @@ fn trainers() -> Vec<&'static str> {
 
 fn initial_states() -> Vec<&'static str> {
     InitialState::ALL.map(InitialState::name).into()
+}
+
+fn errors() -> Vec<&'static str> {
+    FittedError::ALL.map(FittedError::name).into()
 }
 
 fn signs() -> Vec<&'static str> {

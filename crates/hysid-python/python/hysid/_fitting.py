@@ -68,6 +68,9 @@ def fit(
     differential_form: bool | None = None,
     resonance: bool | None = None,
     lagged_input: bool | None = None,
+    acceleration: bool | None = None,
+    odd: bool | None = None,
+    error: _options.ErrorName | None = None,
     # Run
     time_limit: float | None = None,
     threads: int | None = None,
@@ -132,10 +135,11 @@ def fit(
     warm_up : int, optional
         Rows at the beginning of each record that drive the memory and are not trained on, for records that do not begin
         in the virgin state. Default: chosen by cross-validation for auto; otherwise 0.
-    initial_state : {"virgin", "saturated-up", "saturated-down", "demagnetised", "periodic", "unknown"}, optional
+    initial_state : str, optional
         State of the memory at the beginning of each record: without history, after a visit of the upper or the lower
-        end of the input range, demagnetised, periodic (each record is a period of a steady state), or unknown and found
-        for each record. Default: chosen by cross-validation for auto; otherwise virgin.
+        end of the input range, demagnetised, periodic (each record is a period of a steady state), unknown and found
+        for each record, or free: found together with the parameters, for records that are cut out of a longer past
+        (duhem-nn, auto). Default: chosen by cross-validation for auto; otherwise virgin.
     training : {"subgradient", "levenberg-marquardt", "hybrid", "genetic"}, optional
         Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic algorithm,
         or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default: subgradient.
@@ -208,6 +212,14 @@ def fit(
     lagged_input : bool, optional
         Use dynamic-prandtl-ishlinskii with a lag before its plays and the input beside them, for an output that follows
         the integral of the input, as the voltage of a cell follows its charge. Default: off.
+    acceleration : bool, optional
+        Use duhem-nn with the second derivative of the input, for data with time stamps and little noise in the input.
+        Default: off.
+    odd : bool, optional
+        Use duhem-nn without constants: the opposite input gives the opposite output. Default: off.
+    error : {"row", "record"}, optional
+        Error that duhem-nn is fitted to: that of all rows alike, or of each record as a share of its own size, for
+        records of very different sizes. Default: chosen by cross-validation.
     time_limit : float, optional
         Time in seconds after which to stop and keep the best model so far.
     threads : int, optional

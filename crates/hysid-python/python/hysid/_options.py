@@ -40,6 +40,7 @@ InitialStateName: TypeAlias = Literal[
     "demagnetised",
     "periodic",
     "unknown",
+    "free",
 ]
 TrainingName: TypeAlias = Literal[
     "subgradient",
@@ -56,6 +57,10 @@ SignName: TypeAlias = Literal[
     "any",
     "non-negative",
     "non-positive",
+]
+ErrorName: TypeAlias = Literal[
+    "row",
+    "record",
 ]
 
 
@@ -101,3 +106,6 @@ class Options(TypedDict, total=False):
     differential_form: bool | None
     resonance: bool | None
     lagged_input: bool | None
+    acceleration: bool | None
+    odd: bool | None
+    error: ErrorName | None

@@ -284,6 +284,7 @@ class Model(StoredModel):
         records: Given = None,
         *,
         initial_state: str | None = None,
+        known: int = 0,
         same_units: bool = False,
         after_warm_up: bool = False,
     ) -> Errors:
@@ -299,6 +300,9 @@ class Model(StoredModel):
             As of `simulate`.
         initial_state : str, optional
             As of `simulate`.
+        known : int
+            Rows at the beginning of each record from whose outputs the state is found; they are not scored. For records
+            that are cut out of a longer past.
         same_units : bool
             As of `simulate`.
         after_warm_up : bool
@@ -315,10 +319,10 @@ class Model(StoredModel):
             Invalid inputs, or no measured output.
         """
         state = name_of("initial_state", initial_state)
+        known = whole("known", known, 0)
         arranged = self._converted(self._columns(x, y, time, rate, records), same_units)
-        return self._evaluated(
-            arranged, after_warm_up=truth("after_warm_up", after_warm_up), initial_state=state
-        )
+        after_warm_up = truth("after_warm_up", after_warm_up)
+        return self._evaluated(arranged, after_warm_up=after_warm_up, initial_state=state, known=known)
 
     def residuals(
         self,
@@ -445,10 +449,15 @@ class Model(StoredModel):
         return arranged if same_units else in_units_of(arranged, self.description["columns"])
 
     def _evaluated(
-        self, arranged: Columns, *, after_warm_up: bool = False, initial_state: str | None = None
+        self,
+        arranged: Columns,
+        *,
+        after_warm_up: bool = False,
+        initial_state: str | None = None,
+        known: int = 0,
     ) -> Errors:
         data = arranged.dataset()
-        errors = Errors(**json.loads(self._native.evaluate(data, after_warm_up, initial_state)))
+        errors = Errors(**json.loads(self._native.evaluate(data, after_warm_up, initial_state, known)))
         if arranged.output is not None and arranged.output.name is None:
             errors = replace(errors, output=self.output)
         warn(self._native.range_warnings(data))

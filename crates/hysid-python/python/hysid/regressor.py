@@ -53,7 +53,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     members, stops, hidden, relaxation, no_deterioration, history, companding, rate_companding, warm_up : optional
     initial_state, training, effort, starts, epochs, population, stall, validation, ridge, decay, operators : optional
     states, modes, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds, degradation : optional
-    asymmetric, differential_form, resonance, lagged_input : optional
+    asymmetric, differential_form, resonance, lagged_input, acceleration, odd, error : optional
     time_limit, threads : optional
         As of `hysid.fit`.
     random_state : int, RandomState instance or None, default None
@@ -121,6 +121,9 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         differential_form: bool | None = None,
         resonance: bool | None = None,
         lagged_input: bool | None = None,
+        acceleration: bool | None = None,
+        odd: bool | None = None,
+        error: _options.ErrorName | None = None,
         time_limit: float | None = None,
         threads: int | None = None,
         random_state: Any = None,
@@ -162,6 +165,9 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.differential_form = differential_form
         self.resonance = resonance
         self.lagged_input = lagged_input
+        self.acceleration = acceleration
+        self.odd = odd
+        self.error = error
         self.time_limit = time_limit
         self.threads = threads
         self.random_state = random_state

@@ -42,6 +42,7 @@ mod work;
 use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
+use crate::data::initial_state::InitialState;
 use crate::data::metrics::Errors;
 use crate::data::record::{Dataset, Record, SpeedEvidence};
 use crate::error::{Error, Result};
@@ -76,6 +77,11 @@ const ROWS_WITH_INERTIA: usize = 6000;
 /// Fits expected before anything is known.
 const FITS_EXPECTED: usize = 200;
 
+/// True for the initial state that is found together with the parameters.
+fn is_free(state: &InitialState) -> bool {
+    *state == InitialState::Free
+}
+
 /// Specifications of all candidates, each for its first start.
 pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<FitSpec> {
     wanted(data, options).iter().map(|candidate| candidate.request(0)).collect()
@@ -84,8 +90,10 @@ pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<FitSpec> {
 /// The candidates: all that suit the data, or the one requested model.
 fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
     match &options.only {
-        // The records have their initial state before any candidate is fitted to them.
-        Some(request) => vec![Candidate::alone(&request.with_initial_state(None))],
+        // The records have their initial state before any candidate is fitted to them, unless it is found with the model.
+        Some(request) => {
+            vec![Candidate::alone(&request.with_initial_state(options.initial_state.filter(is_free)))]
+        }
         None => candidates(data, options),
     }
 }
@@ -99,7 +107,13 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     };
     let data = &*as_chosen(data, options)?;
     let has_inertia = candidates.iter().any(Candidate::is_dynamic);
-    let few = if has_inertia { data.beginnings(ROWS_WITH_INERTIA)? } else { data.thinned(MOST_ROWS) };
+    let is_free = options.initial_state.as_ref().is_some_and(is_free);
+    let few = match (is_free, has_inertia) {
+        // A state is found from all rows of a beginning.
+        (true, _) => data.clone(),
+        (_, true) => data.beginnings(ROWS_WITH_INERTIA)?,
+        _ => data.thinned(MOST_ROWS),
+    };
     let evidence = LoopEvidence::of(data);
     let folds =
         if evidence.is_one_loop() { folds_of_loop(&few) } else { folds_to_choose_by(&few, MOST_FOLDS) };
@@ -107,9 +121,10 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
 
     // Should the observer stop everything soon, this is what there is.
     let alone = work.first_fit(first, if has_inertia { data } else { &few })?;
-    let beginning = match has_inertia {
-        true => PreparedData::with_inertia(&few, folds, options),
-        false => PreparedData::of(&quick(options), &few, folds, options, &work),
+    let beginning = match (is_free, has_inertia) {
+        (true, _) => PreparedData::with_free_states(&few, folds),
+        (_, true) => PreparedData::with_inertia(&few, folds, options),
+        _ => PreparedData::of(&quick(options), &few, folds, options, &work),
     };
     let data = &*beginning.of_all(data)?;
     let PreparedData { data: few, folds, warm_up, is_changed, found } = beginning;

@@ -44,7 +44,7 @@ impl StateRequest {
     /// Each record after its lead-in. Once the observer stops, an unknown state is the one found so far.
     pub fn of<'d>(&self, data: &'d Dataset, observer: &mut Observer<'_>) -> Result<Cow<'d, Dataset>> {
         match self.state {
-            None => Ok(Cow::Borrowed(data)),
+            None | Some(InitialState::Free) => Ok(Cow::Borrowed(data)),
             Some(InitialState::Unknown) => {
                 let beginning = Progress::of_least_squares(ClassicalModel::RandomStops);
                 let observer = SharedObserver::new(observer, Some(beginning.of_part(0.0)));

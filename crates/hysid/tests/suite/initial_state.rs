@@ -4,6 +4,7 @@
 use crate::model_file::with_fitting_checksum;
 use crate::scaffold::*;
 use hysid::data::initial_state::lead_in_of_period;
+use hysid::data::record::KnownBeginning;
 use hysid::law::preisach::{Preisach, PreisachWeights};
 use hysid::law::series::run;
 use hysid_core::elementary::{exp, ln, sin, square};
@@ -401,4 +402,75 @@ fn bad_values_are_one_clear_error() {
     let long = up.replacen("\"lead_in\": [", &format!("\"lead_in\": [{}", "0.5, ".repeat(1_001)), 1);
     let error = Model::from_json(&with_fitting_checksum(&long)).unwrap_err().to_string();
     assert!(error.contains("turning points, at most 1000 are possible"), "{error}");
+}
+
+/// A record that begins after a past that nobody recorded: the outputs of its first rows tell the model enough.
+#[test]
+fn a_known_beginning_tells_the_past_of_a_record() {
+    let train = untimed(vec![
+        measured("train", &[], path(500, 1.0, 0.11)),
+        measured("more", &[], path(400, 0.9, 0.07)),
+    ]);
+    let options = ClassicalOptions { operators: Some(24), ..ClassicalOptions::of(ClassicalModel::Preisach) };
+    let fitted = identify(&train, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(()));
+    let model = fitted.unwrap().model;
+    let pasts: [&[f64]; 3] = [&[0.9], &[-0.9, 0.5], &[0.8, -0.6, 0.3]];
+    for past in pasts {
+        let cut = untimed(vec![measured("cut", past, path(300, 0.5, 0.13))]);
+        let error = |known| {
+            let model = model.clone().with_known_beginning(KnownBeginning::Rows(known));
+            model.evaluate(&cut).unwrap().rmse
+        };
+        let (virgin, known) = (error(0), error(60));
+        assert!(known < 0.3 * virgin, "{past:?}: {known} with a known beginning, {virgin} without");
+    }
+}
+
+/// Known rows are not scored, and a division into blocks changes nothing.
+#[test]
+fn a_known_beginning_is_not_scored_and_may_be_taken_in_blocks() {
+    let train = untimed(vec![measured("train", &[], path(400, 1.0, 0.11))]);
+    let options = ClassicalOptions { operators: Some(12), ..ClassicalOptions::of(ClassicalModel::Preisach) };
+    let fitted = identify(&train, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(()));
+    let model = fitted.unwrap().model;
+    let whole = measured("cut", &[0.9], path(200, 0.5, 0.13));
+    let cut = whole.clone().with_known_beginning(50);
+    assert_eq!((cut.scored(), cut.known()), (150, &whole.output()[..50]));
+    assert_eq!(cut.fingerprint(), whole.fingerprint());
+    // Another number of known rows begins from the whole record again.
+    let again = cut.clone().with_known_beginning(20);
+    assert_eq!((again.scored(), again.known()), (180, &whole.output()[..20]));
+    assert!(cut.clone().with_known_beginning(0) == whole);
+
+    let at_once = model.simulate(&cut).unwrap();
+    let mut simulation = model.simulation();
+    simulation.begin("cut");
+    let mut in_blocks = Vec::new();
+    for (first, last) in [(0, 60), (60, 61), (61, 150), (150, 200)] {
+        let x = &whole.inputs()[0][first..last];
+        let block = hysid::data::record::Excitation::new("cut", vec![x]).unwrap();
+        let known = if first == 0 { cut.known() } else { &[] };
+        in_blocks.extend(simulation.take(&block.with_known_beginning(known).unwrap()).unwrap().output);
+    }
+    in_blocks.extend(simulation.finish().unwrap().output);
+    assert_eq!(in_blocks, at_once);
+    let too_many = hysid::data::record::Excitation::new("cut", vec![&[0.0, 1.0]]).unwrap();
+    assert!(too_many.with_known_beginning(&[0.0; 3]).is_err());
+}
+
+#[test]
+fn a_time_is_so_many_rows() {
+    let record = measured("r", &[], path(40, 1.0, 0.1));
+    let timed = record.clone().with_time((0..40).map(|k| 5.0 + 0.5 * f64::from(k)).collect()).unwrap();
+    for (beginning, rows) in [
+        (KnownBeginning::default(), 0),
+        (KnownBeginning::Rows(7), 7),
+        (KnownBeginning::Rows(100), 40),
+        (KnownBeginning::Time(2.0), 5),
+        (KnownBeginning::Time(1.9), 4),
+        (KnownBeginning::Share(0.1), 4),
+    ] {
+        assert_eq!(beginning.rows(&timed), rows, "{beginning:?}");
+    }
+    assert_eq!(KnownBeginning::Time(2.0).rows(&record), 0);
 }

@@ -13,6 +13,7 @@ pub struct Excitation<'a> {
     pub(super) inputs: Vec<&'a [f64]>,
     pub(super) given_rate: Option<&'a [f64]>,
     pub(super) lead_in: Option<&'a [f64]>,
+    pub(super) known: &'a [f64],
 }
 
 impl<'a> Excitation<'a> {
@@ -21,7 +22,7 @@ impl<'a> Excitation<'a> {
     /// # Errors
     /// No rows, differing lengths, an input that is not finite, values beyond [`LARGEST_VALUE`].
     pub fn new(name: &'a str, inputs: Vec<&'a [f64]>) -> Result<Self> {
-        let excitation = Self { name, time: None, inputs, given_rate: None, lead_in: None };
+        let excitation = Self { name, time: None, inputs, given_rate: None, lead_in: None, known: &[] };
         if excitation.inputs.is_empty() {
             return Err(excitation.defect(None, None, DataProblem::Inputs { expected: 1, found: 0 }));
         }
@@ -41,7 +42,7 @@ impl<'a> Excitation<'a> {
         inputs: Vec<&'a [f64]>,
         given_rate: Option<&'a [f64]>,
     ) -> Self {
-        Self { name, time, inputs, given_rate, lead_in: None }
+        Self { name, time, inputs, given_rate, lead_in: None, known: &[] }
     }
 
     /// The same with strictly increasing time stamps, one a row.
@@ -88,6 +89,33 @@ impl<'a> Excitation<'a> {
         }
         self.lead_in = Some(lead_in);
         Ok(self)
+    }
+
+    /// The same with the outputs of a known beginning, from which a model finds its state: those of the first rows, NaN where
+    /// they are not known.
+    ///
+    /// # Errors
+    /// More rows than there are, values beyond [`LARGEST_VALUE`].
+    pub fn with_known_beginning(mut self, known: &'a [f64]) -> Result<Self> {
+        if known.len() > self.len() {
+            let problem = DataProblem::Length { expected: self.len(), found: known.len() };
+            return Err(self.defect(None, Some(Channel::Output), problem));
+        }
+        if let Some(row) = known.iter().position(|value| value.abs() > LARGEST_VALUE) {
+            return Err(self.defect(Some(row), Some(Channel::Output), DataProblem::TooLarge(known[row])));
+        }
+        self.known = known;
+        Ok(self)
+    }
+
+    /// The same with outputs of a known beginning that were checked before.
+    pub(crate) fn knowing(self, known: &'a [f64]) -> Self {
+        Self { known, ..self }
+    }
+
+    /// Outputs of the known beginning; empty without.
+    pub fn known(&self) -> &'a [f64] {
+        self.known
     }
 
     /// The same after a lead-in that was checked before; `None` for the initial state of the model.

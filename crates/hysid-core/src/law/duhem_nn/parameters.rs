@@ -12,6 +12,10 @@ pub struct CellLayout {
     pub shape: CellShape,
     /// `b` and `A`, as [`Cell::hidden`].
     pub hidden: Range<usize>,
+    /// `α`, as [`Cell::layer_modulation`].
+    pub layer_modulation: Range<usize>,
+    /// `β`, as [`Cell::target_modulation`].
+    pub target_modulation: Range<usize>,
     /// `W`, as [`Cell::targets`].
     pub targets: Range<usize>,
     /// `q`; empty without a rate.
@@ -38,6 +42,8 @@ impl CellLayout {
         Self {
             shape,
             hidden: next(shape.inputs() * shape.neurons),
+            layer_modulation: next(shape.modulators * shape.neurons),
+            target_modulation: next(shape.modulators * shape.states),
             targets: next(shape.states * shape.neurons),
             rate_gains: next(if shape.channels == 2 { shape.states } else { 0 }),
             initial: next(shape.states),
@@ -57,7 +63,7 @@ impl CellLayout {
         index < self.ln_path_leaks.start
     }
 
-    /// The cell with these parameters and output weights.
+    /// The cell with these parameters and output weights; its acceleration has a scale of 1.
     pub fn cell(&self, parameters: &[f64], output: Vec<f64>) -> Cell {
         let part = |range: &Range<usize>| parameters[range.clone()].to_vec();
         let exponentials =
@@ -71,6 +77,11 @@ impl CellLayout {
             path_leaks: exponentials(&self.ln_path_leaks),
             relaxation_times: exponentials(&self.ln_relaxation_times),
             output,
+            acceleration_scale: self.shape.has_acceleration.then_some(1.0),
+            direct_inputs: self.shape.direct,
+            layer_modulation: part(&self.layer_modulation),
+            target_modulation: part(&self.target_modulation),
+            is_odd: self.shape.is_odd,
         }
     }
 }

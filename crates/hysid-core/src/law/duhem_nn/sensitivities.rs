@@ -2,9 +2,11 @@
 //! and their Gram matrix for least squares.
 //!
 //! ```text
-//! ∂s_i,k = (1 - a_i) ∂s_i,k-1 + a_i Σ_j W_ij g_j Σ_l A_jl ∂s_l,k-1 + direct       theory.md (8.33)
-//! ∂y_k   = Σ_i w_i ∂s_i,k + Σ_j w_j g_j Σ_l A_jl ∂s_l,k-1 + direct,   g_j = 1 - h_j²   theory.md (8.34)
+//! ∂s_i,k = (1 - a_i) ∂s_i,k-1 + a_i F_i Σ_j W_ij g_j Σ_l A_jl ∂s_l,k-1 + direct   theory.md (8.33)
+//! ∂y_k   = Σ_i w_i ∂s_i,k + Σ_j w_j g_j Σ_l A_jl ∂s_l,k-1 + direct,   g_j = f_j (1 - h_j²)   theory.md (8.34)
 //! ```
+//!
+//! `f_j = 1 + Σ_m α_jm m` and `F_i = 1 + Σ_m β_im m` are 1 without modulating inputs.
 //!
 //! `∂` is the derivative by all parameters `θ`, and *direct* are the terms in which a parameter occurs itself.
 //! One pass costs `S² P` multiplications a sample, for `S` states and `P` parameters.
@@ -26,6 +28,10 @@ pub struct CellRun<'a> {
     pub cell: &'a Cell,
     /// The samples of each record.
     pub drives: &'a [Vec<Input>],
+    /// Scaled further inputs of each record, row by row, first the direct, then the modulating ones; empty without.
+    pub further: &'a [Vec<f64>],
+    /// States before the first sample of each record; those of the cell if empty.
+    pub initial: &'a [Vec<f64>],
     /// Scaled output of each sample; NaN where it is not compared.
     pub targets: &'a [Vec<f64>],
     /// True if the Jacobian is wanted.
@@ -85,7 +91,7 @@ impl<'a> WithSimd for CellSweep<'a> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) -> Option<RowUse<'a>> {
-        let CellRun { cell, drives, targets, with_jacobian, stop } = self.run;
+        let CellRun { cell, drives, targets, with_jacobian, stop, .. } = self.run;
         let shape = cell.shape();
         let mut pace = Pace::new(stop);
         let mut sensitivities = with_jacobian.then(|| CellSensitivities::new(cell));
@@ -94,22 +100,27 @@ impl<'a> WithSimd for CellSweep<'a> {
             + sensitivities.as_ref().map_or(0, |all| all.width * shape.states * (shape.states + 1));
         let mut row = vec![0.0; self.run.columns()];
         let target = shape.terms();
-        for (drive, targets) in drives.iter().zip(targets) {
-            let mut memory = cell.memory();
+        let width = shape.direct + shape.modulators;
+        for (record, (drive, targets)) in drives.iter().zip(targets).enumerate() {
+            let initial = self.run.initial.get(record).unwrap_or(&cell.initial);
+            let further = self.run.further.get(record).map_or(&[][..], Vec::as_slice);
+            let mut memory = cell.memory_with(initial);
             sensitivities.iter_mut().for_each(CellSensitivities::begin);
-            for (&input, &y) in drive.iter().zip(targets) {
+            for (row_index, (&input, &y)) in drive.iter().zip(targets).enumerate() {
                 if pace.is_over(per_sample) {
                     return None;
                 }
-                cell.advance::<S>(&mut memory, input);
+                let further = &further[row_index * width..][..width];
+                cell.advance::<S>(&mut memory, input, further);
                 if let Some(sensitivities) = &mut sensitivities {
-                    sensitivities.advance::<S>(cell, &memory, input);
+                    sensitivities.advance::<S>(cell, &memory, input, &further[shape.direct..]);
                 }
                 if !y.is_nan() {
                     row[..target].copy_from_slice(&memory.terms);
                     row[target] = y;
                     if let Some(sensitivities) = &mut sensitivities {
-                        sensitivities.of_output::<S>(cell, &mut row[target + 1..]);
+                        let further = &further[shape.direct..];
+                        sensitivities.of_output::<S>(cell, &memory, further, &mut row[target + 1..]);
                     }
                     self.rows.take(simd, &row);
                 }
@@ -135,7 +146,8 @@ struct CellSensitivities {
     plays: Vec<f64>,
     elongations: Vec<f64>,
     inputs: Vec<f64>,
-    /// `g_j`, and `a_i W_ij g_j` or `w_j g_j`.
+    /// `1 - h_j²`, `g_j`, and `a_i F_i W_ij g_j` or `w_j g_j`.
+    steepness: Vec<f64>,
     slopes: Vec<f64>,
     back: Vec<f64>,
     /// Factors of `∂s_l,k-1`.
@@ -157,6 +169,7 @@ impl CellSensitivities {
             plays: of_stops.clone(),
             elongations: of_stops,
             inputs: vec![0.0; shape.inputs()],
+            steepness: vec![0.0; shape.neurons],
             slopes: vec![0.0; shape.neurons],
             back: vec![0.0; shape.neurons],
             carried: vec![0.0; shape.states],
@@ -175,29 +188,39 @@ impl CellSensitivities {
 
     /// To the sample to which the cell has just advanced (theory.md (8.33)).
     #[inline(always)]
-    fn advance<S: Simd>(&mut self, cell: &Cell, memory: &CellMemory, input: Input) {
-        let Self { layout, width, states, before, direct, inputs, slopes, back, carried, .. } = self;
+    fn advance<S: Simd>(&mut self, cell: &Cell, memory: &CellMemory, input: Input, modulating: &[f64]) {
+        let Self { layout, width, states, before, direct, inputs, steepness, slopes, back, carried, .. } =
+            self;
         let (shape, width) = (layout.shape, *width);
         of_plays(memory, input, &mut self.plays, &mut self.elongations);
-        let (first, neurons) = (shape.first_state(), &memory.terms[shape.inputs()..]);
+        let (first, neurons) = (shape.first_state(), &memory.terms[shape.inputs()..][..shape.neurons]);
         inputs[..first].copy_from_slice(&memory.terms[..first]);
         inputs[first..].copy_from_slice(&memory.states_before);
-        for (slope, h) in slopes.iter_mut().zip(neurons) {
-            *slope = 1.0 - h * h; // (8.33): g_j
+        for (j, h) in neurons.iter().enumerate() {
+            steepness[j] = 1.0 - h * h;
+            slopes[j] = steepness[j] * memory.layer_factors[j]; // (8.33): g_j
         }
         std::mem::swap(states, before);
         for i in 0..shape.states {
             let (leak, pull) = (memory.leaks[i], memory.pulls[i]);
             let weights = &cell.targets[i * shape.neurons..][..shape.neurons];
+            let leak_of_target = leak * memory.target_factors[i];
             for ((back, weight), slope) in back.iter_mut().zip(weights).zip(&*slopes) {
-                *back = leak * weight * slope;
+                *back = leak_of_target * weight * slope;
             }
             let direct = &mut direct[i * width..][..width];
             of_layer(inputs, back, direct);
+            if !modulating.is_empty() {
+                of_layer_modulation(layout, memory, (leak_of_target, weights, steepness), modulating, direct);
+                let target = product::<S>(weights, neurons);
+                for (m, modulator) in modulating.iter().enumerate() {
+                    direct[layout.target_modulation.start + m * shape.states + i] = leak * modulator * target;
+                }
+            }
             of_stops::<S>(cell, layout, back, &self.elongations, direct);
             let own = layout.targets.start + i * shape.neurons;
             for (direct, h) in direct[own..own + shape.neurons].iter_mut().zip(neurons) {
-                *direct = leak * h;
+                *direct = leak_of_target * h;
             }
             if shape.channels == 2 {
                 direct[layout.rate_gains.start + i] = leak * input.rate;
@@ -219,8 +242,14 @@ impl CellSensitivities {
 
     /// The derivative of the output at the present sample (theory.md (8.34)).
     #[inline(always)]
-    fn of_output<S: Simd>(&mut self, cell: &Cell, jacobian: &mut [f64]) {
-        let Self { layout, states, before, inputs, slopes, back, carried, of_output, .. } = self;
+    fn of_output<S: Simd>(
+        &mut self,
+        cell: &Cell,
+        memory: &CellMemory,
+        modulating: &[f64],
+        jacobian: &mut [f64],
+    ) {
+        let Self { layout, states, before, inputs, steepness, slopes, back, carried, of_output, .. } = self;
         let shape = layout.shape;
         let (of_inputs, of_neurons) = cell.output.split_at(shape.inputs());
         for ((back, weight), slope) in back.iter_mut().zip(of_neurons).zip(slopes) {
@@ -228,8 +257,9 @@ impl CellSensitivities {
         }
         of_output.fill(0.0);
         of_layer(inputs, back, of_output);
+        of_layer_modulation(layout, memory, (1.0, of_neurons, steepness), modulating, of_output);
         of_stops::<S>(cell, layout, back, &self.elongations, of_output);
-        let own = of_inputs[1 + shape.channels..].iter().take(shape.stops);
+        let own = of_inputs[shape.first_stop()..].iter().take(shape.stops);
         let (stops, elongations) = (layout.stops.start, &self.elongations);
         for (stop, weight) in own.enumerate() {
             for channel in 0..shape.channels {
@@ -272,6 +302,23 @@ fn of_layer(inputs: &[f64], back: &[f64], direct: &mut [f64]) {
     }
 }
 
+/// The direct terms of `α`, from the weights of the neurons, a factor of theirs and `1 - h_j²`.
+#[inline(always)]
+fn of_layer_modulation(
+    layout: &CellLayout,
+    memory: &CellMemory,
+    (factor, weights, steepness): (f64, &[f64], &[f64]),
+    modulating: &[f64],
+    direct: &mut [f64],
+) {
+    let direct = direct[layout.layer_modulation.clone()].chunks_exact_mut(steepness.len());
+    for (direct, modulator) in direct.zip(modulating) {
+        for (j, direct) in direct.iter_mut().enumerate() {
+            *direct = factor * weights[j] * steepness[j] * memory.sums[j] * modulator;
+        }
+    }
+}
+
 /// The direct terms of the weights of the stops through the layer.
 #[inline(always)]
 fn of_stops<S: Simd>(
@@ -284,7 +331,7 @@ fn of_stops<S: Simd>(
     let shape = layout.shape;
     let direct = &mut direct[layout.stops.clone()];
     for stop in 0..shape.stops {
-        let weights = &cell.hidden[(1 + shape.channels + stop) * back.len()..][..back.len()];
+        let weights = &cell.hidden[(shape.first_stop() + stop) * back.len()..][..back.len()];
         let through = product::<S>(back, weights);
         for channel in 0..shape.channels {
             let place = channel * shape.stops + stop;

@@ -41,6 +41,21 @@ pub(super) fn layer(
     });
 }
 
+/// Adds the columns of `weights`, each times its input.
+pub(super) fn add_columns(
+    builder: &mut Builder,
+    weights: Array,
+    (inputs, count): (Array, usize),
+    (sums, width): (Array, usize),
+) {
+    builder.each(0_usize, count, |builder, k| {
+        let input = builder.value(inputs.at(&k));
+        builder.each(0_usize, width, |builder, i| {
+            builder.set(sums, &i, fused(weights.at(&k * width + &i), &input, sums.at(&i)));
+        });
+    });
+}
+
 /// Scalar product of numbers of two arrays from an index on. `sums` is scratch, see [`partial_sums`].
 pub(super) fn product(
     builder: &mut Builder,

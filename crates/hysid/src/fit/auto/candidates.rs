@@ -4,6 +4,7 @@
 
 use std::borrow::Cow;
 
+use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::diagnosis::resonance::Resonance;
@@ -239,6 +240,11 @@ pub(super) fn quick(options: &AutoOptions) -> Candidate {
 
 /// All candidates for data like these: those that are usually good or quick before the others.
 pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
+    if options.initial_state == Some(InitialState::Free) {
+        let request = &CandidateRequest { data, options, resonance: None };
+        let all = laws(request, |model| model.facts().has_free_states);
+        return all.into_iter().map(|law| Candidate::alone(&FitSpec::Classical(law))).collect();
+    }
     let resonance = Resonance::of(data).filter(Resonance::is_found);
     let resonance = resonance.map(|resonance| resonance.oscillator.compared);
     let request = &CandidateRequest { data, options, resonance };

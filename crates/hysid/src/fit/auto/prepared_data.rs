@@ -8,7 +8,7 @@
 use std::borrow::Cow;
 
 use crate::data::initial_state::InitialState;
-use crate::data::record::{Dataset, Record};
+use crate::data::record::{Dataset, KNOWN_SHARE, KnownBeginning, Record};
 use crate::error::Result;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::score::Score;
@@ -52,7 +52,7 @@ pub(super) struct PreparedData {
 /// The data in the initial state that the user chose, if it is a known one.
 pub(super) fn as_chosen<'d>(data: &'d Dataset, options: &AutoOptions) -> Result<Cow<'d, Dataset>> {
     match options.initial_state {
-        None | Some(InitialState::Unknown) => Ok(Cow::Borrowed(data)),
+        None | Some(InitialState::Unknown | InitialState::Free) => Ok(Cow::Borrowed(data)),
         Some(state) => known(data, state, Origin::OfData).map(Cow::Owned),
     }
 }
@@ -91,6 +91,15 @@ impl PreparedData {
             is_changed: true,
             found: other.errors.filter(|_| is_open),
         }
+    }
+
+    /// Records whose states are found together with the parameters; those that are held out have a known beginning.
+    pub fn with_free_states(data: &Dataset, folds: Vec<Fold>) -> Self {
+        let known = |record: &Record| KnownBeginning::Share(KNOWN_SHARE).rows(record);
+        let judged = |fold: Fold| Fold { held_out: fold.held_out.with_known_beginnings(known), ..fold };
+        let folds = folds.into_iter().map(judged).collect();
+        let warm_up = WarmUp::decided(0);
+        Self { data: data.clone(), folds, warm_up, is_changed: false, found: None }
     }
 
     /// Records of systems with inertia: from rest, or after a warm-up that the user decided. If the input of a held-out

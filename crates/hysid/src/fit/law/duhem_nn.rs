@@ -11,21 +11,28 @@
 //! Of several starts the error on held-out data selects the best, and the epoch in which it was; it is then
 //! trained on all data for a few further epochs. A single start is trained on all data from the beginning.
 
+mod by_record;
+
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
 use crate::data::FEWEST_ROWS;
-use crate::data::record::Dataset;
+use crate::data::initial_state::InitialState;
+use crate::data::rate::RateMethod;
+use crate::data::record::{Dataset, Record};
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::candidates::{CandidateRequest, RankedLaw, with_companded_rate};
+use crate::fit::law::duhem_nn::by_record::{FreeCurvature, RecordWeights};
 use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{IdentifiedLaw, MemoryKind, check_effort, measured, spread, thinned_to};
 use crate::fit::memory_need::{LawFitSize, MemoryNeed};
 use crate::fit::progress::{PartialLaw, SearchObserver, SearchProgress};
 use crate::fit::sums::output_weights::{OutputProblem, OutputSolution};
 use crate::law::Law;
-use crate::law::duhem_nn::{CellLayout, CellRun, CellShape, DuhemNn, Input, LARGEST_WEIGHT, MOST_NEURONS};
+use crate::law::duhem_nn::{
+    Cell, CellLayout, CellRun, CellShape, DuhemNn, FurtherInput, Input, LARGEST_WEIGHT, MOST_NEURONS,
+};
 use crate::law::series::Series;
 use crate::linear_algebra::{Gram, Symmetric};
 use crate::model::input_transform::common_magnitude;
@@ -36,7 +43,7 @@ use crate::optimise::multi_start::{MultiStart, RoundPlan, SearchStart};
 use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalModel;
-use crate::options::classical::ClassicalOptions;
+use crate::options::classical::{ClassicalOptions, FittedError};
 use crate::options::input_options::InputOptions;
 use crate::options::table::check_counts;
 use crate::stop_check::StopCheck;
@@ -56,8 +63,9 @@ const DECAY: f64 = 1e-5;
 /// Epochs of a candidate of `auto`. Designed.
 const EPOCHS_OF_CANDIDATE: usize = 40;
 
-/// Rows compared with the measured output at most.
+/// Rows compared with the measured output at most, and where the objective is a sum over records.
 const MOST_COMPARED: usize = 2000;
+const MOST_COMPARED_BY_RECORD: usize = 8000;
 
 /// Epochs after which half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 12;
@@ -82,7 +90,10 @@ impl Identify for DuhemNn {
         let frame = DuhemFrame::new(data, options)?;
         let whole = DuhemTask::new(&frame, data, options, stop)?;
         // Nothing is to be chosen from a single start, so that it is trained on all data.
-        let split = if options.starts() > 1 { data.split_for_validation(HELD_OUT) } else { None };
+        // Free states of single nets follow the training records closely: others tell when to end.
+        let is_split = options.starts() > 1 || is_free(options);
+        let split = if is_split { data.split_for_validation(HELD_OUT) } else { None };
+        let split = split.filter(|(kept, held)| !is_free(options) || !shares_records(kept, held));
         let Some((kept, held)) = split else {
             return DuhemTraining::new(&whole, None, options)?.run(&whole, observer);
         };
@@ -108,6 +119,9 @@ impl Identify for DuhemNn {
     fn candidates(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
         let CandidateRequest { data, options, .. } = request;
         let rate = options.rate.filter(|_| data.has_time());
+        if options.initial_state == Some(InitialState::Free) {
+            return with_free_states(model, request, rate).into_iter().enumerate().collect();
+        }
         let of = |(shaping, (states, stops, hidden))| ClassicalOptions {
             rate,
             shaping,
@@ -159,8 +173,8 @@ impl<'a> DuhemTraining<'a> {
         let rounds = self.epochs + last;
         let mut tell = |round, evaluations, best: &DuhemWalk| {
             let law = || {
-                let (parameters, value) = best.least();
-                whole.law(parameters, value).ok().map(Into::into)
+                let (parameters, value, residual_rows) = best.least();
+                whole.law(parameters, value, residual_rows).ok().map(Into::into)
             };
             let (train_nrmse_percent, law) = (best.value().nrmse_percent(), PartialLaw(Some(&law)));
             let told = observer(SearchProgress { round, rounds, evaluations, train_nrmse_percent, law });
@@ -172,20 +186,20 @@ impl<'a> DuhemTraining<'a> {
         let advance = |walk: &mut DuhemWalk, _| {
             if walk.ended.is_none() {
                 walk.advance(kept);
-                held.iter().for_each(|held| walk.judge(held));
+                held.iter().for_each(|held| walk.judge(kept, held));
             }
         };
         let mut termination =
             walks.run(plan, advance, |walks, round| tell(round, walks.evaluations(), walks.best()));
         let evaluations = walks.evaluations();
-        let (parameters, value) = walks.best().least();
+        let (parameters, value, residual_rows) = walks.best().least();
         if held.is_none() || termination == Termination::Stopped {
-            return whole.identified(parameters, value, evaluations, termination);
+            return whole.identified((parameters, value, residual_rows), evaluations, termination);
         }
         // What was held out is learnt from where it was judged best, in few epochs.
-        let mut walk = DuhemWalk::new(whole, parameters.to_vec());
+        let mut walk = DuhemWalk::new(whole, whole.begun_from(kept, parameters, value));
         if walk.value().objective == f64::INFINITY {
-            return whole.identified(parameters, value, evaluations, Termination::Stopped);
+            return whole.identified((parameters, value, residual_rows), evaluations, Termination::Stopped);
         }
         for epoch in 1..=last {
             walk.advance(whole);
@@ -200,8 +214,49 @@ impl<'a> DuhemTraining<'a> {
             }
         }
         let evaluations = evaluations + walk.evaluations();
-        whole.identified(walk.search.parameters(), walk.value(), evaluations, termination)
+        whole.identified((walk.search.parameters(), walk.value(), residual_rows), evaluations, termination)
     }
+}
+
+/// States and neurons of candidates with free states, their companding of the rate, and their epochs. Designed.
+const FREE_SHAPE: (usize, usize) = (6, 10);
+const FREE_RATE_COMPANDING: f64 = 0.2;
+const EPOCHS_OF_FREE: usize = 45;
+
+/// Candidates of `auto` with free states: odd or not, with and without the acceleration.
+fn with_free_states(
+    model: ClassicalModel,
+    CandidateRequest { options, .. }: &CandidateRequest<'_>,
+    rate: Option<RateMethod>,
+) -> Vec<ClassicalOptions> {
+    let of = |odd, acceleration| ClassicalOptions {
+        rate,
+        shaping: InputOptions {
+            initial_state: Some(InitialState::Free),
+            rate_companding: rate.map(|_| FREE_RATE_COMPANDING),
+            ..InputOptions::default()
+        },
+        states: Some(FREE_SHAPE.0),
+        operators: Some(0),
+        hidden: Some(options.hidden.unwrap_or(FREE_SHAPE.1)),
+        starts: Some(1),
+        epochs: Some(options.epochs.unwrap_or_else(|| options.effort.scaled(EPOCHS_OF_FREE))),
+        odd,
+        acceleration,
+        seed: options.seed,
+        ..ClassicalOptions::of(model)
+    };
+    let accelerations: &[bool] = if rate.is_some() { &[true, false] } else { &[false] };
+    accelerations.iter().flat_map(|&acceleration| [of(true, acceleration), of(false, acceleration)]).collect()
+}
+
+fn is_free(options: &ClassicalOptions) -> bool {
+    options.shaping.initial_state == Some(InitialState::Free)
+}
+
+/// True if parts of one record are in both.
+fn shares_records(kept: &Dataset, held: &Dataset) -> bool {
+    held.records().iter().any(|record| kept.records().iter().any(|other| other.name() == record.name()))
 }
 
 /// The requested numbers of parts, for data with or without time stamps.
@@ -213,6 +268,10 @@ fn shape_of(options: &ClassicalOptions, has_time: bool) -> CellShape {
         states: options.states(),
         neurons: options.hidden(),
         has_time: has_time && has_rate,
+        has_acceleration: has_time && has_rate && options.acceleration,
+        direct: 0,
+        modulators: 0,
+        is_odd: options.odd,
     }
 }
 
@@ -233,17 +292,27 @@ struct DuhemFrame {
     bounds: Vec<(f64, f64)>,
     /// Mean time step and duration of the longest record.
     times: (f64, f64),
+    acceleration_scale: Option<f64>,
 }
 
 impl DuhemFrame {
     fn new(data: &Dataset, options: &ClassicalOptions) -> Result<Self> {
         let series = Series::all(data, options.rate)?;
         let times = time_scales(&series);
-        let shape = shape_of(options, times.1 > 0.0);
+        let further = further_inputs(data, options.odd);
+        let shape = CellShape {
+            direct: further.iter().filter(|input| input.is_direct).count(),
+            modulators: further.iter().filter(|input| input.is_modulating).count(),
+            ..shape_of(options, times.1 > 0.0)
+        };
         check_shape(shape)?;
         let layout = CellLayout::new(shape);
-        let (low, high) = data.input_range(0);
-        let (output_mean, output_scale) = spread(&measured(&series));
+        let (mut low, mut high) = data.input_range(0);
+        let (mut output_mean, output_scale) = spread(&measured(&series));
+        if shape.is_odd {
+            (high, output_mean) = (high.abs().max(low.abs()), 0.0);
+            low = -high;
+        }
         let rates = series.iter().flat_map(|series| &series.samples).map(|sample| sample.rate.abs());
         let law = DuhemNn {
             input_centre: 0.5 * low + 0.5 * high,
@@ -252,18 +321,78 @@ impl DuhemFrame {
             output_mean,
             output_scale,
             cell: layout.cell(&vec![0.0; layout.count()], vec![0.0; layout.shape.terms()]),
+            further,
+            beginning: None,
         };
+        let acceleration_scale = shape.has_acceleration.then(|| acceleration_scale(&series, law.input_scale));
         let bounds = (0..layout.count()).map(|index| bounds(&layout, index, times)).collect();
-        Ok(Self { law, layout, bounds, times })
+        Ok(Self { law, layout, bounds, times, acceleration_scale })
     }
+
+    fn cell(&self, parameters: &[f64], output: Vec<f64>) -> Cell {
+        let acceleration_scale = self.acceleration_scale;
+        Cell { acceleration_scale, ..self.layout.cell(&parameters[..self.layout.count()], output) }
+    }
+}
+
+/// Share of the common second derivative beyond which the acceleration is companded.
+const ACCELERATION_SHARE: f64 = 0.2;
+
+/// The scale `ς` of the acceleration, in scaled units.
+fn acceleration_scale(series: &[Series], input_scale: f64) -> f64 {
+    let mut all = Vec::new();
+    for series in series {
+        for rows in series.samples.windows(3) {
+            let velocity = |k: usize| (rows[k].x - rows[k - 1].x) / rows[k].step;
+            let acceleration = (velocity(2) - velocity(1)) / rows[2].step;
+            if acceleration.is_finite() {
+                all.push(acceleration.abs() / input_scale);
+            }
+        }
+    }
+    if all.is_empty() {
+        return 1.0;
+    }
+    let place = (0.95 * (all.len() - 1) as f64) as usize;
+    let (_, &mut common, _) = all.select_nth_unstable_by(place, f64::total_cmp);
+    if common > 0.0 { ACCELERATION_SHARE * common } else { 1.0 }
+}
+
+/// Least mean variation within a record, as a share of the whole range, of an input that is not slow.
+const SLOW: f64 = 0.05;
+
+/// The inputs beside the first: slow ones modulate; an odd network takes these only as modulators.
+fn further_inputs(data: &Dataset, is_odd: bool) -> Vec<FurtherInput> {
+    let of = |input: usize| {
+        let (low, high) = data.input_range(input);
+        let within = |record: &Record| {
+            let (low, high) = record.input_range(input);
+            high - low
+        };
+        let mean = data.records().iter().map(within).sum::<f64>() / data.records().len() as f64;
+        let is_slow = mean <= SLOW * (high - low);
+        let scale = 0.5 * high - 0.5 * low;
+        FurtherInput {
+            centre: 0.5 * low + 0.5 * high,
+            scale: if scale > 0.0 { scale } else { 1.0 },
+            is_direct: !(is_slow && is_odd),
+            is_modulating: is_slow,
+        }
+    };
+    (1..data.names().inputs.len()).map(of).collect()
 }
 
 /// Scaled records that a start is trained or validated on.
 struct DuhemTask<'a> {
     frame: &'a DuhemFrame,
     drives: Vec<Vec<Input>>,
+    further: Vec<Vec<f64>>,
     targets: Vec<Vec<f64>>,
+    /// Outputs of all rows, if states are free.
+    whole_targets: Vec<Vec<f64>>,
     rows: usize,
+    /// Weights of the records, if the objective is a sum over records.
+    by_record: Option<RecordWeights>,
     stop: StopCheck<'a>,
 }
 
@@ -275,21 +404,40 @@ impl<'a> DuhemTask<'a> {
         stop: StopCheck<'a>,
     ) -> Result<Self> {
         let law = &frame.law;
-        let series = thinned_to(Series::all(data, options.rate)?, MemoryKind::Path, MOST_COMPARED);
+        let is_free = is_free(options);
+        let error = options.error.unwrap_or(if is_free { FittedError::Record } else { FittedError::Row });
+        let is_by_record = is_free || error == FittedError::Record;
+        let (memory, most) = match is_by_record {
+            true => (MemoryKind::EveryRow, MOST_COMPARED_BY_RECORD),
+            false => (MemoryKind::Path, MOST_COMPARED),
+        };
+        let all = Series::all(data, options.rate)?;
+        let whole = if is_free { all.clone() } else { Vec::new() };
+        let series = thinned_to(all, memory, most);
         let scaled = |series: &Series| series.samples.iter().map(|&sample| law.scaled(sample)).collect();
+        let blank = if is_free { frame.layout.shape.rows_without_derivatives() } else { 0 };
         let target = |series: &Series| {
-            series.output.iter().map(|y| (y - law.output_mean) / law.output_scale).collect()
+            let mut scaled: Vec<f64> =
+                series.output.iter().map(|y| (y - law.output_mean) / law.output_scale).collect();
+            scaled.iter_mut().take(blank).for_each(|y| *y = f64::NAN);
+            scaled
         };
         let targets: Vec<Vec<f64>> = series.iter().map(target).collect();
         let rows = targets.iter().flatten().filter(|y| !y.is_nan()).count();
-        Ok(Self { frame, drives: series.iter().map(scaled).collect(), targets, rows, stop })
+        let further = series.iter().map(|series| scaled_further(law, series)).collect();
+        let by_record = is_by_record.then(|| RecordWeights::of(&targets, error, is_free));
+        let whole_targets = whole.iter().map(target).collect();
+        let drives = series.iter().map(scaled).collect();
+        Ok(Self { frame, drives, further, targets, whole_targets, rows, by_record, stop })
     }
 
     fn random(&self, seed: u64, start: usize) -> Vec<f64> {
         let mut generator = generator(seed, start);
         let DuhemFrame { layout, times: (step, duration), .. } = self.frame;
         let shape = layout.shape;
-        let mut parameters = vec![0.0; layout.count()];
+        let is_free = self.by_record.as_ref().is_some_and(RecordWeights::is_free);
+        let of_records = if is_free { self.drives.len() * shape.states } else { 0 };
+        let mut parameters = vec![0.0; layout.count() + of_records];
         let spread = 1.2 / (shape.inputs() as f64).sqrt();
         for place in layout.hidden.clone() {
             parameters[place] = spread * normal(&mut generator);
@@ -315,19 +463,20 @@ impl<'a> DuhemTask<'a> {
     }
 
     /// The network with these parameters and the output weights there.
-    fn law(&self, parameters: &[f64], value: &DuhemValue) -> Result<DuhemNn> {
-        let cell = self.frame.layout.cell(parameters, value.solution.weights.clone());
-        DuhemNn { cell, ..self.frame.law.clone() }.validated()
+    fn law(&self, parameters: &[f64], value: &DuhemValue, residual_rows: f64) -> Result<DuhemNn> {
+        let cell = self.frame.cell(parameters, value.solution.weights.clone());
+        let free = self.by_record.as_ref().filter(|weights| weights.is_free());
+        let beginning = free.map(|weights| weights.prior(self, parameters, value, residual_rows));
+        DuhemNn { cell, beginning, ..self.frame.law.clone() }.validated()
     }
 
     fn identified(
         &self,
-        parameters: &[f64],
-        value: &DuhemValue,
+        (parameters, value, residual_rows): (&[f64], &DuhemValue, f64),
         evaluations: usize,
         termination: Termination,
     ) -> Result<IdentifiedLaw<DuhemNn>> {
-        let law = self.law(parameters, value)?;
+        let law = self.law(parameters, value, residual_rows)?;
         let train_nrmse_percent = value.nrmse_percent();
         Ok(IdentifiedLaw { law, train_nrmse_percent, evaluations, termination, searched: Vec::new() })
     }
@@ -336,8 +485,10 @@ impl<'a> DuhemTask<'a> {
     fn gram(&self, parameters: &[f64], output: Option<&[f64]>) -> Option<Gram> {
         let weights = output.map_or_else(|| vec![0.0; self.frame.layout.shape.terms()], <[f64]>::to_vec);
         let run = CellRun {
-            cell: &self.frame.layout.cell(parameters, weights),
+            cell: &self.frame.cell(parameters, weights),
             drives: &self.drives,
+            further: &self.further,
+            initial: &[],
             targets: &self.targets,
             with_jacobian: output.is_some(),
             stop: self.stop,
@@ -362,14 +513,28 @@ impl<'a> DuhemTask<'a> {
             features: self.frame.layout.shape.terms(),
             rows: self.rows as f64,
             ridge: RIDGE,
-            constant: true,
+            constant: !self.frame.layout.shape.is_odd,
             stop: self.stop,
         }
     }
 
     fn weights<'p>(&'p self, parameters: &'p [f64]) -> impl Iterator<Item = (usize, &'p f64)> {
-        parameters.iter().enumerate().filter(|(index, _)| self.frame.layout.has_decay(*index))
+        let layout = &self.frame.layout;
+        parameters[..layout.count()].iter().enumerate().filter(|(index, _)| layout.has_decay(*index))
     }
+}
+
+fn scaled_further(law: &DuhemNn, series: &Series) -> Vec<f64> {
+    let mut scaled = Vec::new();
+    let mut row = vec![0.0; series.further.len()];
+    if row.is_empty() {
+        return scaled;
+    }
+    for k in 0..series.samples.len() {
+        row.iter_mut().zip(&series.further).for_each(|(value, column)| *value = column[k]);
+        law.scale_further(&row, &mut scaled);
+    }
+    scaled
 }
 
 /// Mean finite time step and duration of the longest record; 0 without time stamps.
@@ -399,6 +564,8 @@ struct DuhemValue {
     objective: f64,
     mean_square: f64,
     solution: OutputSolution,
+    /// Weights of the records, if states are free.
+    record_weights: Vec<f64>,
 }
 
 impl DuhemValue {
@@ -409,24 +576,30 @@ impl DuhemValue {
 
 impl LeastSquaresProblem for DuhemTask<'_> {
     type Value = DuhemValue;
-    type Curvature = Symmetric;
+    type Curvature = DuhemCurvature;
     const RULES: DescentSettings = DescentSettings::SMOOTH;
 
     fn value(&self, parameters: &[f64]) -> DuhemValue {
+        if let Some(weights) = &self.by_record {
+            return weights.value(self, parameters);
+        }
         let solution = match self.gram(parameters, None) {
             Some(gram) => self.output_problem(&gram).solve(),
             None => OutputSolution::broken_off(self.frame.layout.shape.terms()),
         };
         let decay: f64 = self.weights(parameters).map(|(_, w)| w * w).sum();
         let objective = solution.objective + 0.5 * DECAY * decay; // (8.36)
-        DuhemValue { objective, mean_square: solution.mean_square, solution }
+        DuhemValue { objective, mean_square: solution.mean_square, solution, record_weights: Vec::new() }
     }
 
     fn objective(value: &DuhemValue) -> f64 {
         value.objective
     }
 
-    fn slope(&self, parameters: &[f64], value: &DuhemValue) -> Option<Slope<Symmetric>> {
+    fn slope(&self, parameters: &[f64], value: &DuhemValue) -> Option<Slope<DuhemCurvature>> {
+        if let Some(weights) = &self.by_record {
+            return weights.slope(self, parameters, value);
+        }
         let gram = self.gram(parameters, Some(&value.solution.weights))?;
         let (mut gradient, mut curvature) =
             self.output_problem(&gram).linearise(&value.solution, parameters.len());
@@ -435,15 +608,19 @@ impl LeastSquaresProblem for DuhemTask<'_> {
             curvature.add_to_diagonal(index, DECAY);
         }
         let diagonal = (0..gradient.len()).map(|index| curvature.diagonal(index)).collect();
+        let curvature = DuhemCurvature::Fixed(curvature);
         (!self.stop.is_asked()).then_some(Slope { gradient, diagonal, curvature, evaluations: 1 })
     }
 
-    fn step(&self, slope: &Slope<Symmetric>, parameters: &[f64], damping: &[f64]) -> Option<Vec<f64>> {
+    fn step(&self, slope: &Slope<DuhemCurvature>, parameters: &[f64], damping: &[f64]) -> Option<Vec<f64>> {
         let leaves = |i: usize, by: f64| {
             let (low, high) = self.frame.bounds[i];
             parameters[i] <= low && by < 0.0 || parameters[i] >= high && by > 0.0
         };
-        step_within(&slope.curvature, &slope.gradient, damping, leaves, self.stop)
+        match &slope.curvature {
+            DuhemCurvature::Fixed(matrix) => step_within(matrix, &slope.gradient, damping, leaves, self.stop),
+            DuhemCurvature::Free(curvature) => curvature.step(damping, leaves, self.stop),
+        }
     }
 
     fn limit(&self, parameters: &mut [f64]) {
@@ -457,13 +634,21 @@ impl LeastSquaresProblem for DuhemTask<'_> {
     }
 }
 
+/// Curvature of the objective.
+enum DuhemCurvature {
+    /// By the parameters, with the best output weights.
+    Fixed(Symmetric),
+    /// By output weights, parameters and the states of each record.
+    Free(FreeCurvature),
+}
+
 struct DuhemWalk {
     search: LevenbergMarquardt<DuhemValue>,
     ended: Option<Termination>,
     /// Evaluations of what was held out.
     judged: usize,
-    /// Smallest error on what was held out, and where it was.
-    least_on_held_out: Option<(f64, Vec<f64>, DuhemValue)>,
+    /// Smallest error on what was held out, where it was, and the rows within which a residual falls to 1/e there.
+    least_on_held_out: Option<(f64, Vec<f64>, DuhemValue, f64)>,
 }
 
 impl DuhemWalk {
@@ -477,11 +662,19 @@ impl DuhemWalk {
     }
 
     /// Remembers the parameters if they do better than any before on what was held out.
-    fn judge(&mut self, held: &DuhemTask<'_>) {
-        let Some(error) = held.mean_square(self.search.parameters(), self.value()) else { return };
+    fn judge(&mut self, kept: &DuhemTask<'_>, held: &DuhemTask<'_>) {
+        let (parameters, value) = (self.search.parameters(), self.value());
+        let judged = match &kept.by_record {
+            Some(weights) if weights.is_free() => {
+                weights.error_after_beginning(kept, held, parameters, value)
+            }
+            _ => held.mean_square(parameters, value).map(|error| (error, 0.0)),
+        };
+        let Some((error, residual_rows)) = judged else { return };
         self.judged += 1;
         if self.least_on_held_out.as_ref().is_none_or(|(least, ..)| error < *least) {
-            self.least_on_held_out = Some((error, self.search.parameters().to_vec(), self.value().clone()));
+            let parameters = self.search.parameters().to_vec();
+            self.least_on_held_out = Some((error, parameters, self.value().clone(), residual_rows));
         }
     }
 
@@ -490,10 +683,10 @@ impl DuhemWalk {
     }
 
     /// Where the error on held-out data is smallest, and the value there; the present place if it was not validated.
-    fn least(&self) -> (&[f64], &DuhemValue) {
+    fn least(&self) -> (&[f64], &DuhemValue, f64) {
         self.least_on_held_out.as_ref().map_or_else(
-            || (self.search.parameters(), self.value()),
-            |(_, parameters, value)| (parameters.as_slice(), value),
+            || (self.search.parameters(), self.value(), 0.0),
+            |(_, parameters, value, residual_rows)| (parameters.as_slice(), value, *residual_rows),
         )
     }
 }

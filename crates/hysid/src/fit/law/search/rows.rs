@@ -25,6 +25,8 @@ pub(crate) enum MemoryKind {
     TurningPoints,
     /// The path of the input and its rate: rows on a straight part of it may be left out.
     Path,
+    /// Every row.
+    EveryRow,
 }
 
 /// The records with at most 5000 scored rows and without rows that the memory does not need, so that the cost of a search
@@ -63,11 +65,10 @@ fn condensed(series: &[Series], memory: MemoryKind, most: usize) -> Vec<Series> 
     let kept = |samples: &[Sample], output: &[f64]| match memory {
         MemoryKind::TurningPoints => turning_rows(samples, output),
         MemoryKind::Path if is_long => rows_of_path(samples, output),
-        MemoryKind::Path => (0..samples.len()).collect(),
+        MemoryKind::Path | MemoryKind::EveryRow => (0..samples.len()).collect(),
     };
-    let condensed = |(Series { samples, .. }, output): (&Series, &Vec<f64>)| {
-        through(samples, output, &kept(samples, output))
-    };
+    let condensed =
+        |(series, output): (&Series, &Vec<f64>)| through(series, output, &kept(&series.samples, output));
     series.iter().zip(&outputs).map(condensed).collect()
 }
 
@@ -100,18 +101,23 @@ fn rows_of_path(samples: &[Sample], output: &[f64]) -> Vec<usize> {
 }
 
 /// The series of these rows only, each with the time since the previous one.
-fn through(samples: &[Sample], output: &[f64], rows: &[usize]) -> Series {
+fn through(Series { samples, further, .. }: &Series, output: &[f64], rows: &[usize]) -> Series {
     let steps = steps_between(rows, |row| samples[row].step);
     let sample = |(&row, step): (&usize, f64)| Sample { step, ..samples[row] };
     Series {
         samples: rows.iter().zip(steps).map(sample).collect(),
         output: rows.iter().map(|&row| output[row]).collect(),
+        further: further.iter().map(|column| rows.iter().map(|&row| column[row]).collect()).collect(),
     }
 }
 
 fn beginning(series: &Series, share: f64) -> Series {
     let rows = (share * series.samples.len() as f64).ceil() as usize;
-    Series { samples: series.samples[..rows].to_vec(), output: series.output[..rows].to_vec() }
+    Series {
+        samples: series.samples[..rows].to_vec(),
+        output: series.output[..rows].to_vec(),
+        further: series.further.iter().map(|column| column[..rows].to_vec()).collect(),
+    }
 }
 
 pub(crate) fn measured(series: &[Series]) -> Vec<f64> {
@@ -135,7 +141,7 @@ mod tests {
     fn zigzag(rows: usize) -> Series {
         let x = |row: usize| ((row % 100) as f64 - 50.0).abs();
         let samples = (0..rows).map(|row| Sample { x: x(row), rate: 0.0, step: 1.0 }).collect();
-        Series { samples, output: (0..rows).map(|row| row as f64).collect() }
+        Series { samples, output: (0..rows).map(|row| row as f64).collect(), further: Vec::new() }
     }
 
     #[test]
@@ -161,7 +167,11 @@ mod tests {
         let signal = |row: usize| sin(0.002 * row as f64);
         let series = |rows: usize, step: f64| {
             let sample = |row| Sample { x: signal(row), rate: 0.002 / step * cos(0.002 * row as f64), step };
-            Series { samples: (0..rows).map(sample).collect(), output: (0..rows).map(signal).collect() }
+            Series {
+                samples: (0..rows).map(sample).collect(),
+                output: (0..rows).map(signal).collect(),
+                further: Vec::new(),
+            }
         };
         let found = &thinned(vec![series(100_000, 0.5)], MemoryKind::Path)[0];
         assert!(found.samples.len() < 30_000, "{}", found.samples.len());
@@ -170,6 +180,7 @@ mod tests {
         let elapsed: f64 = found.samples.iter().map(|sample| sample.step).sum();
         assert!((elapsed - 50_000.0).abs() < 1e-6);
         let rough = Series {
+            further: Vec::new(),
             samples: (0..600_000).map(|row| Sample { x: (row % 2) as f64, rate: 0.0, step: 1.0 }).collect(),
             output: (0..600_000).map(|row| row as f64).collect(),
         };
