@@ -228,28 +228,42 @@ pub struct BeginningOptions {
     /// State of the memory at the beginning of each record [default: as trained]
     ///
     /// One of virgin, saturated-up (after a visit of the upper end of the trained input range), saturated-down,
-    /// demagnetised and periodic (after one period of the record itself). The default is the state of most training records.
+    /// demagnetised and periodic (after one period of the record itself). The default is the state of most training records;
+    /// with free states, their mean.
     #[arg(long, value_name = "NAME", value_parser = known_state)]
     pub initial_state: Option<InitialState>,
+}
 
-    /// Find the state from the measured outputs of so many rows, or of so much time, at the beginning of each record
+impl BeginningOptions {
+    /// The model with this initial state.
+    pub fn of(&self, model: Model) -> hysid::Result<Model> {
+        match self.initial_state {
+            Some(state) => model.with_initial_state(state),
+            None => Ok(model),
+        }
+    }
+}
+
+/// Known beginning of each record.
+#[derive(Debug, Clone, Args)]
+pub struct KnownOptions {
+    /// Measured beginning of each record, from which its state is found
     ///
-    /// A number of rows, such as 100, or a time with its unit, such as 0.5s. For records that are cut out of a longer past.
-    /// These rows are not scored. The rows behind them need no output.
+    /// A number of rows, such as 100, or a time with its unit, such as 0.5s. Use it for records that are cut out of a longer
+    /// past. These rows are not scored. Later rows need no output.
     #[arg(long, value_name = "ROWS|TIME", value_parser = known_beginning, conflicts_with = "initial_state")]
     pub known: Option<KnownText>,
 }
 
-impl BeginningOptions {
-    /// The model with this initial state, or with this known beginning.
+impl KnownOptions {
+    /// The model with this known beginning.
     pub fn of(&self, model: Model) -> Result<Model> {
-        match (self.initial_state, &self.known) {
-            (Some(state), _) => Ok(model.with_initial_state(state)?),
-            (None, Some(known)) => {
+        match &self.known {
+            Some(known) => {
                 let beginning = known.beginning(model.names().time.as_deref())?;
                 Ok(model.with_known_beginning(beginning))
             }
-            (None, None) => Ok(model),
+            None => Ok(model),
         }
     }
 }
@@ -297,7 +311,7 @@ fn known_state(name: &str) -> Result<InitialState, String> {
     let advice = || format!("choose one of {}", InitialState::known().join(", "));
     match state {
         Ok(InitialState::Unknown) => Err(format!("{}: only a fit finds an unknown state", advice())),
-        Ok(InitialState::Free) => Err("--known finds a state from the outputs of the first rows".into()),
+        Ok(InitialState::Free) => Err(format!("{}; for free states, --known", advice())),
         Ok(state) => Ok(state),
         Err(_) => Err(advice()),
     }
@@ -385,9 +399,9 @@ pub struct Validate {
     /// A single record always gives five folds, cut in time.
     #[arg(long, value_name = "N", default_value = "5", value_parser = folds)]
     pub folds: usize,
-    /// Find the state of each held-out record from so many rows, or so much time, at its beginning
+    /// Measured beginning of each held-out record, from which its state is found
     ///
-    /// As for `hysid evaluate`. With free initial states, a tenth of the rows by default.
+    /// As of `hysid evaluate`. With free initial states, a tenth of the rows by default. Folds that are cut in time ignore it.
     #[arg(long, value_name = "ROWS|TIME", value_parser = known_beginning)]
     pub known: Option<KnownText>,
     #[command(flatten)]
@@ -467,6 +481,8 @@ pub struct Simulate {
     #[command(flatten)]
     pub beginning: BeginningOptions,
     #[command(flatten)]
+    pub known: KnownOptions,
+    #[command(flatten)]
     pub columns: ColumnOptions,
     #[command(flatten)]
     pub units: UnitOptions,
@@ -543,6 +559,8 @@ pub struct Evaluate {
     pub residuals: bool,
     #[command(flatten)]
     pub beginning: BeginningOptions,
+    #[command(flatten)]
+    pub known: KnownOptions,
     #[command(flatten)]
     pub columns: ColumnOptions,
     #[command(flatten)]

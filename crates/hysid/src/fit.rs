@@ -62,7 +62,7 @@ pub fn memory_need(data: &Dataset, request: &FitSpec, threads: usize) -> Result<
     }
 }
 
-/// Checks that a model has states that can be found together with its parameters, if they are to be.
+/// Rejects the initial state `free` for a model without free states.
 fn check_free_states(request: &FitSpec) -> Result<()> {
     let model = match request {
         FitSpec::Auto(AutoOptions { only: Some(only), .. }) => only.model(),
@@ -79,7 +79,7 @@ fn check_free_states(request: &FitSpec) -> Result<()> {
     }
     let with_states = ClassicalModel::ALL.iter().filter(|law| law.facts().has_free_states);
     let names: Vec<&str> = with_states.map(|law| law.name()).collect();
-    let needed = format!("{} has no such states; {} and auto have", model.name(), names.join(", "));
+    let needed = format!("{} has no free states; {} and auto have", model.name(), names.join(", "));
     Err(OptionError::value("initial_state", free.name(), needed).into())
 }
 

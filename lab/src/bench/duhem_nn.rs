@@ -80,6 +80,8 @@ impl Network {
             let run = CellRun {
                 cell: &law.cell,
                 drives: &drives,
+                further: &[],
+                initial: &[],
                 targets,
                 with_jacobian: true,
                 stop: StopCheck::never(),

@@ -12,7 +12,7 @@ use crate::data::factors;
 use crate::messages::{raw_results, results, warning};
 
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {
-    let model = arguments.beginning.of(read_model(&arguments.model)?)?;
+    let model = arguments.known.of(arguments.beginning.of(read_model(&arguments.model)?)?)?;
     let mut rows = Rows::open(&arguments.data, &arguments.columns.reading.reading())?;
     let roles = Roles::of_model(&model, &rows.head, &arguments.columns.choice(), true)?;
     let factors = factors(&model, &roles, &rows.head.file, true, arguments.units.same_units)?;

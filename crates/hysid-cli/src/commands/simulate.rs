@@ -23,7 +23,7 @@ use hysid_app::table_run::{self, KeptColumns, Simulated};
 const BUFFERED: usize = 1 << 20;
 
 pub fn run(arguments: &Simulate) -> Result<Outcome> {
-    let model = arguments.beginning.of(read_model(&arguments.model)?)?;
+    let model = arguments.known.of(arguments.beginning.of(read_model(&arguments.model)?)?)?;
     let reading = arguments.columns.reading.reading();
     let mut rows = Rows::open(&arguments.data, &reading)?;
     let mut names = vec![named_after(&model.names().output, "model")];
@@ -49,7 +49,7 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
         check_outputs([out], &[&arguments.data, &arguments.model])?;
         interrupt::listen_briefly("stopping before the end of the table")?;
     }
-    let is_known = arguments.beginning.known.is_some();
+    let is_known = arguments.known.known.is_some();
     let roles = Roles::of_model(&model, &rows.head, &arguments.columns.choice(), is_known)?;
 
     let factors = factors(&model, &roles, &rows.head.file, is_known, arguments.units.same_units)?;

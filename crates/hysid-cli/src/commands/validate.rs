@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, anyhow};
 use hysid::data::initial_state::InitialState;
-use hysid::data::record::{KNOWN_SHARE, KnownBeginning};
+use hysid::data::record::KnownBeginning;
 use hysid::data::unit;
 use hysid::fit::identify;
 use hysid::fit::progress::Progress;
@@ -45,7 +45,7 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     let is_free = request.initial_state() == Some(InitialState::Free);
     let beginning = match &arguments.known {
         Some(known) => known.beginning(data.set.names().time.as_deref())?,
-        None if is_free => KnownBeginning::Share(KNOWN_SHARE),
+        None if is_free => KnownBeginning::JUDGED,
         None => KnownBeginning::default(),
     };
     let validator =

@@ -240,9 +240,6 @@ fn columns(inputs: &[Values]) -> Vec<&[f64]> {
     inputs.iter().map(|input| &**input).collect()
 }
 
-/// Share of the rows of each record that a model with free initial states is judged with as the known beginning. Designed.
-pub const KNOWN_SHARE: f64 = 0.1;
-
 /// The known beginning of records: how many of their first rows have a known output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum KnownBeginning {
@@ -262,6 +259,9 @@ impl Default for KnownBeginning {
 }
 
 impl KnownBeginning {
+    /// The beginning of each record with which a model with free initial states is judged: a tenth of its rows. Designed.
+    pub const JUDGED: Self = Self::Share(0.1);
+
     /// True if nothing is known.
     pub fn is_none(self) -> bool {
         matches!(self, Self::Rows(0))
@@ -270,9 +270,14 @@ impl KnownBeginning {
 
     /// Rows of a record; none for a time where the record has none.
     pub fn rows(self, record: &Record) -> usize {
-        match (self, record.time()) {
-            (Self::Rows(rows), _) => rows.min(record.len()),
-            (Self::Share(share), _) => (share * record.len() as f64) as usize,
+        self.rows_of(record.len(), record.time())
+    }
+
+    /// As [`KnownBeginning::rows`], of so many rows with these time stamps.
+    pub fn rows_of(self, rows: usize, time: Option<&[f64]>) -> usize {
+        match (self, time) {
+            (Self::Rows(known), _) => known.min(rows),
+            (Self::Share(share), _) => (share * rows as f64) as usize,
             (Self::Time(duration), Some(time)) => time.partition_point(|t| t - time[0] <= duration),
             (Self::Time(_), None) => 0,
         }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::data::initial_state::InitialState;
-use crate::data::record::{Dataset, KNOWN_SHARE, KnownBeginning, Record};
+use crate::data::record::{Dataset, KnownBeginning, Record};
 use crate::model::Model;
 use crate::options::FitSpec;
 
@@ -45,6 +45,5 @@ pub(super) fn judged<'d>(data: &'d Dataset, options: &FitSpec) -> Cow<'d, Datase
     if options.initial_state() != Some(InitialState::Free) {
         return Cow::Borrowed(data);
     }
-    let rows = |record: &Record| KnownBeginning::Share(KNOWN_SHARE).rows(record);
-    Cow::Owned(data.clone().with_known_beginnings(rows))
+    Cow::Owned(data.clone().with_known_beginnings(|record| KnownBeginning::JUDGED.rows(record)))
 }

@@ -56,7 +56,7 @@ impl Model {
         if provenance.options.initial_state() == Some(InitialState::Free) {
             return Some(
                 "initial state: found for each training record together with the parameters; a new record begins with the \
-                 mean of these states, unless its first outputs are known (known)"
+                 mean of these states (0 in an odd network), unless its first outputs are known (known)"
                     .into(),
             );
         }

@@ -221,8 +221,8 @@ options! {
     initial_state: InitialState {
         meaning: "State of the memory at the beginning of each record: without history, after a visit of the upper or \
                   the lower end of the input range, demagnetised, periodic (each record is a period of a steady state), \
-                  unknown and found for each record, or free: found together with the parameters, for records that are \
-                  cut out of a longer past (duhem-nn, auto)",
+                  unknown (one of a few histories, chosen for each record before the fit), or free (internal states, \
+                  fitted together with the parameters, for records that are cut out of a longer past; duhem-nn and auto)",
         group: Training,
         values: OptionValues::Names(initial_states),
         default: |model, _| match model {
@@ -406,20 +406,22 @@ options! {
         ..FLAG_OF_LAWS
     }
     acceleration: bool {
-        meaning: "Use duhem-nn with the second derivative of the input, for data with time stamps and little noise in the \
-                  input",
+        meaning: "Add the second derivative of the input as an input of duhem-nn; needs time stamps, a rate and little \
+                  noise in the input",
         ..FLAG_OF_LAWS
     }
     odd: bool {
-        meaning: "Use duhem-nn without constants: the opposite input gives the opposite output",
+        meaning: "Use duhem-nn without constants: opposite inputs from opposite initial states give the opposite output; \
+                  slow further inputs, such as a temperature, stay the same",
         ..FLAG_OF_LAWS
     }
     error: FittedError {
-        meaning: "Error that duhem-nn is fitted to: that of all rows alike, or of each record as a share of its own size, for \
-                  records of very different sizes",
+        meaning: "Error that the fit of duhem-nn minimises: `row`, the mean square error of all rows; `record`, the mean \
+                  over the records of the error relative to the record's root mean square output, for records of very \
+                  different amplitudes, and the default with free initial states",
         group: Classical,
         values: OptionValues::Names(errors),
-        default: |_, _| Preset::Chosen,
+        default: |_, _| Preset::Name(FittedError::Row.name()),
         used_by: of_none,
     }
 }

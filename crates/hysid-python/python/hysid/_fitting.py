@@ -137,9 +137,10 @@ def fit(
         in the virgin state. Default: chosen by cross-validation for auto; otherwise 0.
     initial_state : str, optional
         State of the memory at the beginning of each record: without history, after a visit of the upper or the lower
-        end of the input range, demagnetised, periodic (each record is a period of a steady state), unknown and found
-        for each record, or free: found together with the parameters, for records that are cut out of a longer past
-        (duhem-nn, auto). Default: chosen by cross-validation for auto; otherwise virgin.
+        end of the input range, demagnetised, periodic (each record is a period of a steady state), unknown (one of a
+        few histories, chosen for each record before the fit), or free (internal states, fitted together with the
+        parameters, for records that are cut out of a longer past; duhem-nn and auto). Default: chosen by
+        cross-validation for auto; otherwise virgin.
     training : {"subgradient", "levenberg-marquardt", "hybrid", "genetic"}, optional
         Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic algorithm,
         or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default: subgradient.
@@ -213,13 +214,15 @@ def fit(
         Use dynamic-prandtl-ishlinskii with a lag before its plays and the input beside them, for an output that follows
         the integral of the input, as the voltage of a cell follows its charge. Default: off.
     acceleration : bool, optional
-        Use duhem-nn with the second derivative of the input, for data with time stamps and little noise in the input.
-        Default: off.
+        Add the second derivative of the input as an input of duhem-nn; needs time stamps, a rate and little noise in
+        the input. Default: off.
     odd : bool, optional
-        Use duhem-nn without constants: the opposite input gives the opposite output. Default: off.
+        Use duhem-nn without constants: opposite inputs from opposite initial states give the opposite output; slow
+        further inputs, such as a temperature, stay the same. Default: off.
     error : {"row", "record"}, optional
-        Error that duhem-nn is fitted to: that of all rows alike, or of each record as a share of its own size, for
-        records of very different sizes. Default: chosen by cross-validation.
+        Error that the fit of duhem-nn minimises: `row`, the mean square error of all rows; `record`, the mean over the
+        records of the error relative to the record's root mean square output, for records of very different amplitudes,
+        and the default with free initial states. Default: row.
     time_limit : float, optional
         Time in seconds after which to stop and keep the best model so far.
     threads : int, optional

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! `r_k` is the residual of the free run at the known row `k` and `x_0` the first input. `m + K x_0` is the straight line through
-//! the states at the beginning of the training records, `LLᵀ` the covariance about it, and `σ` the deviation of the residuals
-//! in training.
+//! the states at the beginning of the training records, `LLᵀ` the covariance about it, and `σ` the root mean square of the
+//! residuals in training, or a share of that of the known outputs.
 
 use serde::{Deserialize, Serialize};
 

@@ -9,7 +9,7 @@ use hysid::{Dataset, Fit, Model, Record};
 use hysid_core::elementary::{cos, ln, sin};
 use serde_json::{Value, json};
 
-/// A spring, two plays and a term of the rate, with time stamps and a further input.
+/// A spring, two plays and a term of the rate, with time stamps, a further input and a temperature.
 pub fn data(inputs: usize) -> Dataset {
     let records = (0..2).map(|number| {
         let rows = 240;
@@ -30,11 +30,12 @@ pub fn data(inputs: usize) -> Dataset {
                 }
                 let rate = (x - before) / 0.02;
                 before = x;
-                let second = if inputs == 2 { 0.2 * f } else { 0.0 };
+                let second = if inputs > 1 { 0.2 * f } else { 0.0 };
                 100.0 + 3.0 * (x - 40.0) + 4.0 * plays[0] + 2.0 * plays[1] + 0.02 * rate + second
             })
             .collect();
-        let columns = if inputs == 2 { vec![x, further] } else { vec![x] };
+        let temperature = vec![20.0 + 15.0 * f64::from(number); x.len()];
+        let columns = [x, further, temperature].into_iter().take(inputs).collect();
         Record::new(format!("record {number}"), columns, y).unwrap().with_time(time).unwrap()
     });
     Dataset::new(ColumnNames::plain(inputs), records.collect()).unwrap()
@@ -99,6 +100,12 @@ pub fn laws() -> Vec<(String, Model)> {
         fitted("jiles-atherton", 1, &starts()),
         fitted("jiles-atherton", 1, &with(&[("differential_form", json!(true))])),
         fitted("duhem-nn", 1, &with(&[("operators", json!(3)), ("hidden", json!(10))])),
+        fitted("duhem-nn", 2, &with(&[("acceleration", json!(true)), ("operators", json!(2))])),
+        fitted(
+            "duhem-nn",
+            3,
+            &with(&[("odd", json!(true)), ("acceleration", json!(true)), ("operators", json!(0))]),
+        ),
         fitted("menegotto-pinto", 1, &starts()),
         fitted("menegotto-pinto", 1, &with(&[("asymmetric", json!(true))])),
         fitted("ramberg-osgood", 1, &starts()),
@@ -141,7 +148,7 @@ pub fn path(rows: usize, inputs: usize) -> Vec<Vec<f64>> {
             let rest = if k % 97 < 6 { 0.0 } else { 1.0 };
             let size = 2.0 + sin(0.001 * t) * 4.0 + if k % 1000 > 980 { 30.0 } else { 0.0 };
             let x = 40.0 + rest * size * (sin(0.211 * t) + 0.4 * sin(1.7 * t));
-            if inputs == 2 { vec![x, 5.0 + cos(0.013 * t)] } else { vec![x] }
+            [x, 5.0 + cos(0.013 * t), 28.0 + 9.0 * sin(0.0004 * t)][..inputs].to_vec()
         })
         .collect()
 }

@@ -8,7 +8,7 @@
 use std::borrow::Cow;
 
 use crate::data::initial_state::InitialState;
-use crate::data::record::{Dataset, KNOWN_SHARE, KnownBeginning, Record};
+use crate::data::record::{Dataset, KnownBeginning, Record};
 use crate::error::Result;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::score::Score;
@@ -95,7 +95,7 @@ impl PreparedData {
 
     /// Records whose states are found together with the parameters; those that are held out have a known beginning.
     pub fn with_free_states(data: &Dataset, folds: Vec<Fold>) -> Self {
-        let known = |record: &Record| KnownBeginning::Share(KNOWN_SHARE).rows(record);
+        let known = |record: &Record| KnownBeginning::JUDGED.rows(record);
         let judged = |fold: Fold| Fold { held_out: fold.held_out.with_known_beginnings(known), ..fold };
         let folds = folds.into_iter().map(judged).collect();
         let warm_up = WarmUp::decided(0);

@@ -63,8 +63,10 @@ const DECAY: f64 = 1e-5;
 /// Epochs of a candidate of `auto`. Designed.
 const EPOCHS_OF_CANDIDATE: usize = 40;
 
-/// Rows compared with the measured output at most, and where the objective is a sum over records.
+/// Most rows compared with the measured output.
 const MOST_COMPARED: usize = 2000;
+
+/// The same limit for an objective that is a sum over records.
 const MOST_COMPARED_BY_RECORD: usize = 8000;
 
 /// Epochs after which half of the starts are given up, and again after as many more.
@@ -90,7 +92,7 @@ impl Identify for DuhemNn {
         let frame = DuhemFrame::new(data, options)?;
         let whole = DuhemTask::new(&frame, data, options, stop)?;
         // Nothing is to be chosen from a single start, so that it is trained on all data.
-        // Free states of single nets follow the training records closely: others tell when to end.
+        // Free states overfit the training records: held-out records choose the epoch.
         let is_split = options.starts() > 1 || is_free(options);
         let split = if is_split { data.split_for_validation(HELD_OUT) } else { None };
         let split = split.filter(|(kept, held)| !is_free(options) || !shares_records(kept, held));
@@ -358,7 +360,7 @@ fn acceleration_scale(series: &[Series], input_scale: f64) -> f64 {
     if common > 0.0 { ACCELERATION_SHARE * common } else { 1.0 }
 }
 
-/// Least mean variation within a record, as a share of the whole range, of an input that is not slow.
+/// Largest mean variation within a record, as a share of the whole range, of a slow input. Designed.
 const SLOW: f64 = 0.05;
 
 /// The inputs beside the first: slow ones modulate; an odd network takes these only as modulators.

@@ -11,7 +11,8 @@
 //! roots is replaced by half the mean square error.
 //!
 //! Each step solves the damped equations of output weights, parameters and states together: the states by a Schur
-//! complement for each record, then the output weights. The roots count by the weights that have the same slope.
+//! complement for each record, then the output weights. Each root is replaced by a weighted sum of squares with the same
+//! gradient.
 
 use crate::fit::law::duhem_nn::{DECAY, DuhemCurvature, DuhemTask, DuhemValue, RIDGE};
 use crate::fit::sums::output_weights::{OutputProblem, OutputSolution};
@@ -21,16 +22,16 @@ use crate::optimise::levenberg_marquardt::{Slope, step_within};
 use crate::optimise::parallel;
 use crate::options::classical::FittedError;
 use crate::stop_check::StopCheck;
-use hysid_core::data::record::KNOWN_SHARE;
+use hysid_core::data::record::KnownBeginning;
 use hysid_core::elementary::exp;
 
 /// Records whose sums are formed together.
 const TOGETHER: usize = 16;
 
-/// Solutions of the output weights, each with the weights of the records that follow from the one before.
+/// Iterations of reweighted least squares for the output weights.
 const ROUNDS: usize = 4;
 
-/// `ε`: square of the relative error of a record below which a smaller one counts little.
+/// `ε`: square of the relative error below which a record counts little. Designed.
 const LEAST_SQUARE: f64 = 1e-4;
 
 /// `μ`: penalty of free states. Designed.
@@ -419,7 +420,7 @@ impl DuhemTask<'_> {
     fn errors_after_beginning(&self, cell: &Cell, prior: &StatePrior, record: usize) -> Option<Vec<f64>> {
         let (drive, further) = (&self.drives[record], &self.further[record]);
         let outputs = &self.whole_targets[record];
-        let known = (KNOWN_SHARE * drive.len() as f64) as usize;
+        let known = KnownBeginning::JUDGED.rows_of(drive.len(), None);
         let width = further.len() / drive.len();
         let states = cell.found_states(prior, &drive[..known], &further[..known * width], &outputs[..known]);
         let run = CellRun {
