@@ -2,6 +2,7 @@
 
 mod cycles;
 mod examples;
+mod known_beginning;
 mod limits;
 mod model_options;
 mod plan;
@@ -15,13 +16,10 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use anyhow::{Result, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use hysid::Model;
 use hysid::data::initial_state::InitialState;
-use hysid::data::record::KnownBeginning;
-use hysid::data::unit::of_column;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::model::{BAND_OF_TEN, BAND_PROBABILITIES, BandLevel};
 use hysid::options::ModelName;
@@ -34,6 +32,7 @@ pub use hysid_records::RateOption;
 use crate::reproduction::Experiment;
 pub use cycles::Cycles;
 use examples::*;
+pub use known_beginning::{KnownOptions, KnownText};
 pub use model_options::ModelOptions;
 pub use plan::Plan;
 pub use plot::{Plot, PlotKind};
@@ -244,68 +243,6 @@ impl BeginningOptions {
     }
 }
 
-/// Known beginning of each record.
-#[derive(Debug, Clone, Args)]
-pub struct KnownOptions {
-    /// Measured beginning of each record, from which its state is found
-    ///
-    /// A number of rows, such as 100, or a time with its unit, such as 0.5s. Use it for records that are cut out of a longer
-    /// past. These rows are not scored. Later rows need no output.
-    #[arg(long, value_name = "ROWS|TIME", value_parser = known_beginning, conflicts_with = "initial_state")]
-    pub known: Option<KnownText>,
-}
-
-impl KnownOptions {
-    /// The model with this known beginning.
-    pub fn of(&self, model: Model) -> Result<Model> {
-        match &self.known {
-            Some(known) => {
-                let beginning = known.beginning(model.names().time.as_deref())?;
-                Ok(model.with_known_beginning(beginning))
-            }
-            None => Ok(model),
-        }
-    }
-}
-
-/// A known beginning as it was typed.
-#[derive(Debug, Clone, PartialEq)]
-pub enum KnownText {
-    Rows(usize),
-    /// A time and its unit.
-    Time(f64, String),
-}
-
-impl KnownText {
-    /// The beginning in the unit of a column of time.
-    pub fn beginning(&self, time: Option<&str>) -> Result<KnownBeginning> {
-        let (duration, unit) = match self {
-            Self::Rows(rows) => return Ok(KnownBeginning::Rows(*rows)),
-            Self::Time(duration, unit) => (*duration, unit.as_str()),
-        };
-        match time.and_then(of_column) {
-            Some(of_time) if of_time == unit => Ok(KnownBeginning::Time(duration)),
-            Some(of_time) => bail!("--known {duration}{unit}: the unit of time is {of_time}"),
-            None => bail!("--known {duration}{unit}: no unit of time is known; give a number of rows"),
-        }
-    }
-}
-
-fn known_beginning(text: &str) -> Result<KnownText, String> {
-    let advice = || "give a number of rows, such as 100, or a time with its unit, such as 0.5s".to_string();
-    if let Ok(rows) = text.parse() {
-        return if rows > 0 { Ok(KnownText::Rows(rows)) } else { Err(advice()) };
-    }
-    let end = text.find(|letter: char| letter.is_alphabetic()).ok_or_else(advice)?;
-    let (number, unit) = text.split_at(end);
-    match number.trim().parse() {
-        Ok(duration) if duration > 0.0 && f64::is_finite(duration) => {
-            Ok(KnownText::Time(duration, unit.into()))
-        }
-        _ => Err(advice()),
-    }
-}
-
 fn known_state(name: &str) -> Result<InitialState, String> {
     let state: Result<InitialState, hysid::Error> = name.parse();
     let advice = || format!("choose one of {}", InitialState::known().join(", "));
@@ -402,7 +339,7 @@ pub struct Validate {
     /// Measured beginning of each held-out record, from which its state is found
     ///
     /// As of `hysid evaluate`. With free initial states, a tenth of the rows by default. Folds that are cut in time ignore it.
-    #[arg(long, value_name = "ROWS|TIME", value_parser = known_beginning)]
+    #[arg(long, value_name = "ROWS|TIME", value_parser = known_beginning::parsed)]
     pub known: Option<KnownText>,
     #[command(flatten)]
     pub columns: ColumnOptions,
