@@ -17,7 +17,7 @@ use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, spread_equal, star
 /// Rows that are simulated together.
 const BLOCK: usize = MOST_ROWS_OF_ZERO;
 
-/// Rows of a known beginning at most.
+/// Most rows of a known beginning.
 const MOST_KNOWN: usize = 1_000_000;
 
 /// Blocks that rows with one time stamp may fill.
@@ -146,11 +146,11 @@ struct TableRun<'r, 'm> {
     /// Offsets to subtract from the first input and the output of the present record, once known.
     offsets: Option<(f64, f64)>,
     records: usize,
-    /// Name of the present one: of the rows that are simulated, while the row that was read last may begin the next one.
+    /// Name of the record of the rows that are simulated; the row that was read last may begin the next one.
     name: String,
     model: &'m Model,
     simulation: Simulation<'m>,
-    /// Of the rows of the present record.
+    /// Fingerprint of the rows of the present record.
     fingerprint: Fingerprint,
     /// Records so far that the model was trained on.
     known: Vec<Warning>,
@@ -174,7 +174,7 @@ struct Columns {
 struct Clock {
     first: f64,
     previous: f64,
-    /// That of the present row.
+    /// Time stamp of the present row.
     now: f64,
     /// The last step between different stamps.
     step: Option<f64>,

@@ -1,8 +1,8 @@
-//! Texts with hints: options that help, which each face names in its own words.
+//! Messages with references to options, which the terminal, the studio and Python each show in their own notation.
 
 use std::ops::Add;
 
-/// Option that helps.
+/// Reference to an option that solves the problem.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Hint {
     /// An option, by its name in words joined by underscores.
@@ -28,7 +28,7 @@ impl Hint {
 pub enum Phrase {
     /// Plain text.
     Text(String),
-    /// An option that helps.
+    /// A reference to an option.
     Hint(Hint),
 }
 
@@ -45,17 +45,17 @@ impl Words {
         &self.phrases
     }
 
-    /// True if the text says what helps.
+    /// True if the message contains advice.
     pub fn helps(&self) -> bool {
         self.helps
     }
 
-    /// The same text, which says what helps without naming an option.
+    /// Marks a message as advice although it names no option.
     pub fn helpful(self) -> Self {
         Self { helps: true, ..self }
     }
 
-    /// Appends what helps, in parentheses.
+    /// Appends advice in parentheses.
     pub fn advised(self, advice: impl Into<Self>) -> Self {
         (self + " (" + advice.into() + ")").helpful()
     }

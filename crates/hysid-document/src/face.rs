@@ -1,4 +1,4 @@
-//! Hints in the words of each face.
+//! Messages in the notation of each interface: terminal, studio, Python.
 
 use hysid_core::words::{Hint, Phrase, Words};
 
@@ -7,7 +7,7 @@ use crate::shell;
 /// Roles of columns, which the studio has in its table of columns.
 const ROLES: [&str; 5] = ["record", "time", "input", "rate", "output"];
 
-/// Where a text is read.
+/// Interface that shows a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Face {
     /// Options as they are typed: `--missing -999`.
@@ -19,7 +19,7 @@ pub enum Face {
 }
 
 impl Face {
-    /// The text with its hints.
+    /// The message in the notation of the interface.
     pub fn told(self, words: &Words) -> String {
         let phrase = |phrase: &Phrase| match phrase {
             Phrase::Text(text) => text.clone(),

@@ -9,8 +9,8 @@ use crate::visible::clipped;
 
 pub type Result<T, E = Problem> = std::result::Result<T, E>;
 
-/// Problem of a table, of its columns or of a request. Its text is that of the terminal; other faces tell its
-/// [words](Problem::words).
+/// Problem of a table, of its columns or of a request. It displays in the notation of the terminal; other interfaces render
+/// its [words](Problem::words).
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum Problem {
     /// A request that is invalid whatever the data; the program then exits with status 2.
@@ -70,7 +70,7 @@ impl Problem {
         Self::Table { place, words: words.into() }
     }
 
-    /// The problem behind what it prevented.
+    /// Prefixes the problem with the step that failed.
     pub fn within(self, what: impl fmt::Display) -> Self {
         Self::Other(Words::from(format!("{what}: ")) + self.words())
     }
@@ -84,7 +84,7 @@ impl Problem {
         }
     }
 
-    /// The file whose layout explains the problem: a line is wrong, and nothing else was said to help.
+    /// File to inspect, for a problem of a line without advice.
     pub fn file_to_look_at(&self) -> Option<&str> {
         match self {
             Self::Table { place, words } if place.line.is_some() && !words.helps() => Some(&place.file),

@@ -243,16 +243,16 @@ fn columns(inputs: &[Values]) -> Vec<&[f64]> {
 /// The known beginning of records: how many of their first rows have a known output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum KnownBeginning {
-    /// So many rows.
+    /// Number of rows.
     Rows(usize),
-    /// The rows up to so much time after the first, in the unit of time.
+    /// Duration from the first row, in the unit of time.
     Time(f64),
-    /// A share of the rows.
+    /// Share of the rows.
     Share(f64),
 }
 
 impl Default for KnownBeginning {
-    /// None.
+    /// No known beginning.
     fn default() -> Self {
         Self::Rows(0)
     }
@@ -262,7 +262,7 @@ impl KnownBeginning {
     /// The beginning of each record with which a model with free initial states is judged: a tenth of its rows. Designed.
     pub const JUDGED: Self = Self::Share(0.1);
 
-    /// True if nothing is known.
+    /// True without a known beginning.
     pub fn is_none(self) -> bool {
         matches!(self, Self::Rows(0))
             || matches!(self, Self::Time(value) | Self::Share(value) if value <= 0.0)

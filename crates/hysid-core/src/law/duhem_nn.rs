@@ -39,7 +39,7 @@ use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 use crate::simd;
 
-pub use cell::{ACCELERATION_GAIN, Cell, CellMemory, CellShape, Input};
+pub use cell::{ACCELERATION_GAIN, Cell, CellMemory, CellShape, Input, LARGEST_DERIVATIVE};
 pub use found_states::StatePrior;
 pub use parameters::CellLayout;
 pub use sensitivities::CellRun;

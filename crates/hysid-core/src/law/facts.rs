@@ -25,9 +25,9 @@ pub struct Facts {
     pub options: &'static [&'static str],
     /// Smallest and largest values of such options, where they are not those of the table of options.
     pub limits: &'static [(&'static str, usize, usize)],
-    /// Default values of those options that count something, where they are not 0 or those of all searches.
+    /// Default values of counts (parts, starts, epochs) that differ from the general ones.
     pub defaults: Defaults,
-    /// Those that differ with `degradation`.
+    /// Default values with `degradation`, where they differ.
     pub defaults_with_degradation: Defaults,
     /// The options that select a variant of the law, each by itself: a further term, or another form.
     pub variants: &'static [&'static str],
@@ -35,9 +35,9 @@ pub struct Facts {
     pub errors_inside: ErrorsInside,
     /// False for a law that `auto` does not try.
     pub is_candidate: bool,
-    /// True for a law of many numbers that `auto` may take by itself, because its equations bind it beyond the data.
+    /// True for a law of many numbers that `auto` may take by itself, because its equations hold outside the data.
     pub stands_alone: bool,
-    /// True if one with more modes can be one with fewer.
+    /// True if a model with more modes contains those with fewer.
     pub nests_modes: bool,
     /// Behaviour of data for which a diagnosis advises it.
     pub advice: &'static [(Behaviour, Advised)],
@@ -48,7 +48,7 @@ pub struct Facts {
 pub enum LawKind {
     /// A law without random parts.
     Law,
-    /// A network whose memory is random: it takes several inputs, and has no law.
+    /// A network with random, untrained memory.
     RandomNetwork,
     /// A recurrent network.
     Recurrent,
@@ -61,11 +61,11 @@ pub enum LawKind {
 pub enum Behaviour {
     /// A resonance.
     Resonance,
-    /// Closed excursions that leave a trace, without deterioration, in loops with odd symmetry.
+    /// Closed excursions of the input that change the output, without deterioration, in loops with odd symmetry.
     Traces,
     /// Branches of several shapes, and minor loops between the same inputs that do not differ.
     UnlikeBranches,
-    /// Nothing that a weighted sum of plays does not have.
+    /// Only properties that a weighted sum of plays has.
     SumOfPlays,
     /// Loss of strength by repetition or with the amplitude.
     Degradation,

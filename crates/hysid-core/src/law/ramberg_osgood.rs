@@ -32,9 +32,9 @@ use crate::property::Property;
 pub struct RambergOsgood {
     /// `c0`: output at rest, in its unit.
     pub offset: f64,
-    /// `F`: output at which the secant stiffness is half the initial one, in its unit.
+    /// `F`: output above the offset at which the secant stiffness is half the initial one, in its unit.
     pub strength: f64,
-    /// `x_y = F/K`: elastic part of the input there, in the unit of the input.
+    /// `x_y = F/K`: elastic part of the input at the output `F`, in the unit of the input.
     pub yield_displacement: f64,
     /// `r`: 1 is linear, infinity is elastic and perfectly plastic.
     pub exponent: f64,

@@ -76,7 +76,7 @@ fn outputs_are_equal_and_finite_on_wild_paths() {
             };
             let before = time;
             time += time_step(row);
-            let inputs = [x, 5.0 + random(&mut bits)];
+            let inputs = [x, 5.0 + random(&mut bits), 25.0 + 20.0 * random(&mut bits)];
             let inputs = &inputs[..model.names().inputs.len()];
             let expected = stepper.step(inputs, time, None).unwrap();
             let outputs = machine.step(&arguments(&description, inputs, time - before, 0.0));

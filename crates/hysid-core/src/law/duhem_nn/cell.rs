@@ -68,6 +68,9 @@ fn is_zero(count: &usize) -> bool {
 /// Factor of the companded acceleration, which is about 1 at five times its scale. Designed.
 pub const ACCELERATION_GAIN: f64 = 0.4;
 
+/// Largest magnitude of a derivative of the input in scaled units, also in single precision.
+pub const LARGEST_DERIVATIVE: f64 = 1e30;
+
 /// Numbers of the parts of a cell.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CellShape {
@@ -357,9 +360,14 @@ impl Cell {
 fn acceleration(memory: &mut CellMemory, change: f64, scale: f64) -> f64 {
     let elapsed = memory.elapsed;
     let is_step = elapsed > 0.0;
-    let velocity = if is_step { change / elapsed } else { 0.0 };
+    let velocity = if is_step { limited(change / elapsed) } else { 0.0 };
     let before = std::mem::replace(&mut memory.velocity, velocity);
     let is_second = is_step && memory.has_velocity;
     memory.has_velocity = is_step;
-    if is_second { ACCELERATION_GAIN * asinh((velocity - before) / elapsed / scale) } else { 0.0 }
+    if is_second { ACCELERATION_GAIN * asinh(limited((velocity - before) / elapsed / scale)) } else { 0.0 }
+}
+
+/// A derivative in scaled units, which a tiny time step does not make infinite.
+fn limited(derivative: f64) -> f64 {
+    derivative.clamp(-LARGEST_DERIVATIVE, LARGEST_DERIVATIVE)
 }

@@ -1,6 +1,6 @@
 //! Duhem neural network: states that approach targets, which a tanh layer gives.
 
-use hysid_core::law::duhem_nn::{ACCELERATION_GAIN, DuhemNn, FurtherInput};
+use hysid_core::law::duhem_nn::{ACCELERATION_GAIN, DuhemNn, FurtherInput, LARGEST_DERIVATIVE};
 
 use super::prandtl_ishlinskii::follow;
 use super::tanh_layer::{Slice, add_columns, layer, partial_sums, product};
@@ -108,6 +108,9 @@ fn further(builder: &mut Builder, law: &DuhemNn, sample: &PartInputs) -> (Vec<Re
     (of(|input| input.is_direct), of(|input| input.is_modulating))
 }
 
+/// Shortest time step after which a slope contains what the acceleration adds.
+const SHORTEST_STEP_OF_SLOPES: f64 = 1e-15;
+
 /// theory.md (8.61), from the change of the input.
 fn acceleration(builder: &mut Builder, name: &str, change: &Real, elapsed: &Real, scale: f64) -> Real {
     let velocity = builder.state(&format!("{name}_velocity"), vec![0.0]);
@@ -116,9 +119,11 @@ fn acceleration(builder: &mut Builder, name: &str, change: &Real, elapsed: &Real
     builder.when_else(
         elapsed.above(0.0),
         |builder| {
-            let now = builder.value(change / elapsed);
+            // The slope by so short a time step could overflow: it leaves out what the derivatives add.
+            let change = &elapsed.above(SHORTEST_STEP_OF_SLOPES).choose(change, change.detached());
+            let now = builder.value(limited(change / elapsed));
             builder.when(has_velocity.at(0_usize).above(0.0), |builder| {
-                let second = builder.value((&now - velocity.at(0_usize)) / elapsed / scale);
+                let second = builder.value(limited((&now - velocity.at(0_usize)) / elapsed / scale));
                 builder.assign(acceleration, ACCELERATION_GAIN * second.asinh());
             });
             builder.set(velocity, 0_usize, &now);
@@ -130,6 +135,10 @@ fn acceleration(builder: &mut Builder, name: &str, change: &Real, elapsed: &Real
         },
     );
     acceleration.into()
+}
+
+fn limited(derivative: Real) -> Real {
+    derivative.clamp(-LARGEST_DERIVATIVE, LARGEST_DERIVATIVE)
 }
 
 /// The tanh neurons of a cell that is odd or has modulating inputs, and the products of these with the signals; the factors of

@@ -19,12 +19,12 @@ const FEW_NUMBERS: usize = 40;
 const ABOUT_THE_LOWEST: f64 = 1.4;
 const ABOUT_THE_LOWEST_OF_MANY: f64 = 2.0;
 
-/// Largest training error of such a law of many numbers, relative to the standard deviation: data that it leaves more of
-/// are not its own. Designed.
+/// Largest training error of a law of many numbers, relative to the standard deviation; above it, the law does not
+/// represent the data. Designed.
 const LEFT_BY_MANY: f64 = 0.05;
 
-/// Least error of such a law of many numbers on the folds, relative to its training error: the folds need more than the data
-/// show. Where they do not, they can distinguish candidates by themselves. Designed.
+/// Least ratio of the error on the folds to the training error at which a law of many numbers is taken: the folds then
+/// extrapolate, and cross-validation cannot rank the candidates. Designed.
 const ASKS_FOR_MORE: f64 = 5.0;
 
 /// Ratio of scores to the lowest up to which laws count as equal: the law with the fewest numbers is taken. Designed.
