@@ -66,8 +66,11 @@ pub fn evaluate(request: &EvaluateRequest<'_>, rows: &mut Rows) -> Result<Evalua
     // Errors of converted outputs are in the model's unit, which its name tells.
     let output = if factors.output.is_some() { &model.names().output } else { &roles.output };
     let Some(errors) = sums.errors(output) else {
-        let (channel, problem) = (Some(Channel::Output), DataProblem::NothingToScore);
-        let defect = DataError { record: String::new(), row: None, channel, problem };
+        let problem = match model.known_beginning().is_none() {
+            true => DataProblem::NothingToScore,
+            false => DataProblem::NothingAfterBeginning,
+        };
+        let defect = DataError { record: String::new(), row: None, channel: Some(Channel::Output), problem };
         return Err(explained(&rows.head.file, None, defect.into(), roles));
     };
     let residuals =

@@ -369,10 +369,10 @@ impl<'r, 'm> TableRun<'r, 'm> {
             let record = self.block.record(&self.columns, &self.name);
             let mut record = record.map_err(|error| self.explain(error, first))?;
             if self.simulated == 0 && first == 0 {
-                let known = self.model.known_beginning().rows(&record);
-                record = record.with_known_beginning(known);
-                let measured = known.min(self.waiting.measured.len());
-                self.waiting.measured[..measured].fill(f64::NAN);
+                let begun = self.model.begun(&record).map_err(|error| self.explain(error, first))?;
+                record = begun.into_owned();
+                let known = record.known().len().min(self.waiting.measured.len());
+                self.waiting.measured[..known].fill(f64::NAN);
             }
             let prediction = self.simulation.take(&record.excitation());
             if self.hand_on(prediction, false, take)?.is_break() {

@@ -225,6 +225,12 @@ pub enum DataProblem {
     /// The output is blank throughout.
     #[error("is blank in every row: there is nothing to compare with")]
     NothingToScore,
+    /// The output is blank in every row after the known beginning.
+    #[error("is blank after the known beginning: there is nothing to compare with")]
+    NothingAfterBeginning,
+    /// The output is blank in the known beginning of a record.
+    #[error("is blank in the first {0} rows, from which the state is to be found")]
+    NothingKnown(usize),
     /// An output is blank between others, where it becomes an input.
     #[error("is blank here: the output is the input of an inverse, which needs a value in every row")]
     BlankWithin,
@@ -250,6 +256,7 @@ impl DataProblem {
             Self::ConstantInput(_)
                 | Self::ConstantOutput(_)
                 | Self::NothingToScore
+                | Self::NothingAfterBeginning
                 | Self::LongWarmUp { .. }
                 | Self::Ranges { .. }
                 | Self::NeverTurns(_)

@@ -56,6 +56,7 @@ mod yield_curve;
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::exp;
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::Facts;
 use crate::property::Property;
@@ -163,6 +164,11 @@ pub trait Law: Sized {
     /// The properties that follow from the equations at a vanishing rate, each with whether the law has it.
     /// `about_origin` is true for an input measured from 0, which odd symmetry needs.
     fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)>;
+}
+
+/// Share of a residual that remains in the next row, for the rows within which it falls to 1/e; 0 for none.
+pub fn remaining_share(residual_rows: f64) -> f64 {
+    if residual_rows > 0.0 { exp(-1.0 / residual_rows) } else { 0.0 }
 }
 
 /// A parameter of a law.

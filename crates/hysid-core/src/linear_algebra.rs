@@ -353,6 +353,14 @@ impl Cholesky {
         Self { n: 0, data: Vec::new() }
     }
 
+    /// The rows of `L`, each with zeros behind the diagonal.
+    pub fn into_rows(mut self) -> Vec<f64> {
+        for i in 0..self.n {
+            self.data[i * self.n..][i + 1..self.n].fill(0.0);
+        }
+        self.data
+    }
+
     /// Replaces `b` by `L⁻¹ b`.
     pub fn solve_lower(&self, b: &mut [f64]) {
         for i in 0..self.n {

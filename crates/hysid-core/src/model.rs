@@ -49,7 +49,7 @@ use crate::termination::Termination;
 
 pub use band::{BAND_OF_TEN, BAND_PROBABILITIES, Band, BandLevel, Prediction};
 pub use band::{HeldOutRow, disagreement};
-use beginning::judged;
+use beginning::begun;
 pub use ensemble::{Ensemble, Group, Node, NodeKind, Weights};
 pub use ensemble::{Excursion, MedianBuffers, Predictions};
 pub use file::FORMAT_VERSION;
@@ -332,7 +332,7 @@ impl Model {
             Predictor::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.rate.is_some()),
         };
         let rate = rate.filter(|_| uses_rate);
-        let judged = judged(data, &found.options);
+        let judged = begun(data, found.options.judged_beginning());
         let train = errors(Runner::of_body(&body, Some(&preprocessing), rate), &judged)?;
         let train_after_warm_up = match behind(&judged, warm_up(&body, &found.options)) {
             Some(behind) => Some(errors(Runner::of_body(&body, Some(&preprocessing), rate), &behind)?),
@@ -601,7 +601,7 @@ impl Model {
     /// # Errors
     /// A record without what the model needs: its number of inputs, time stamps, a given rate.
     pub fn simulate(&self, record: &Record) -> Result<Vec<f64>> {
-        self.response(&self.begun(record).excitation())
+        self.response(&self.begun(record)?.excitation())
     }
 
     /// As [`Model::simulate`], from borrowed columns.
@@ -670,7 +670,7 @@ impl Model {
     pub fn with_band_over(self, band: Option<Band>, data: &Dataset) -> Result<Self> {
         let Some(band) = band else { return Ok(self.with_band(None)) };
         let mut errors = Predictions::default();
-        for record in judged(data, &self.provenance.options).records() {
+        for record in begun(data, self.provenance.options.judged_beginning()).records() {
             let mut output = vec![0.0; record.len()];
             let mut spreads = vec![OutputSpread::default(); record.len()];
             Runner::of_model(&self).rows(&record.excitation(), 0, &mut output, Some(&mut spreads))?;
@@ -695,7 +695,8 @@ impl Model {
     /// As [`Model::simulate`], and data without any output.
     pub fn evaluate(&self, data: &Dataset) -> Result<Errors> {
         data.records().iter().try_for_each(|record| self.check_time(&record.excitation()))?;
-        errors(Runner::of_model(self), &self.begun_all(data))
+        data.records().iter().try_for_each(|record| self.begun(record).map(drop))?;
+        errors(Runner::of_model(self), &begun(data, self.beginning))
     }
 
     /// True for a model with inertia, or an ensemble with one.

@@ -73,14 +73,13 @@ fn check_free_states(request: &FitSpec) -> Result<()> {
         ModelName::Classical(law) => law.facts().has_free_states,
         ModelName::Auto(_) => true,
     };
-    let free = InitialState::Free;
-    if can || request.initial_state() != Some(free) {
+    if can || !request.has_free_states() {
         return Ok(());
     }
     let with_states = ClassicalModel::ALL.iter().filter(|law| law.facts().has_free_states);
     let names: Vec<&str> = with_states.map(|law| law.name()).collect();
     let needed = format!("{} has no free states; {} and auto have", model.name(), names.join(", "));
-    Err(OptionError::value("initial_state", free.name(), needed).into())
+    Err(OptionError::value("initial_state", InitialState::Free.name(), needed).into())
 }
 
 /// Checks that a warm-up leaves enough to train on.

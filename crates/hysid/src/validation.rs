@@ -51,6 +51,18 @@ impl Fold {
         self.held_out.records().iter().filter(is_whole).any(lies_outside)
     }
 
+    /// The same with a known beginning of each record that is held out as a whole, unless nothing would be left to score.
+    pub(crate) fn with_known_beginning(self, beginning: KnownBeginning) -> Self {
+        if beginning.is_none() {
+            return self;
+        }
+        let is_part =
+            |record: &Record| self.train.records().iter().any(|other| other.name() == record.name());
+        let rows = |record: &Record| if is_part(record) { 0 } else { beginning.rows(record) };
+        let held_out = self.held_out.clone().with_known_beginnings(rows);
+        if held_out.scored() > 0 { Self { held_out, ..self } } else { self }
+    }
+
     /// The predictions of a model for the held-out rows with an output, in free run.
     pub(crate) fn predicted_by(&self, model: &Model) -> Result<Vec<f64>> {
         let mut predicted = Vec::with_capacity(self.held_out.scored());
@@ -396,12 +408,7 @@ impl<'d> CrossValidator<'d> {
     /// # Panics
     /// If there are not so many folds.
     pub fn fold(&self, place: usize) -> Fold {
-        let fold = self.cuts[place].fold(self.data);
-        let is_part =
-            |record: &Record| fold.train.records().iter().any(|other| other.name() == record.name());
-        let rows = |record: &Record| if is_part(record) { 0 } else { self.beginning.rows(record) };
-        let held_out = fold.held_out.clone().with_known_beginnings(rows);
-        if held_out.scored() > 0 { Fold { held_out, ..fold } } else { fold }
+        self.cuts[place].fold(self.data).with_known_beginning(self.beginning)
     }
 
     /// Evaluates a model, which was fitted to the training data of a fold, on its held-out data.

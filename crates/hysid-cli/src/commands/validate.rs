@@ -1,8 +1,6 @@
 //! `hysid validate`: how well a model predicts data that it was not fitted to.
 
 use anyhow::{Context, Result, anyhow};
-use hysid::data::initial_state::InitialState;
-use hysid::data::record::KnownBeginning;
 use hysid::data::unit;
 use hysid::fit::identify;
 use hysid::fit::progress::Progress;
@@ -42,11 +40,9 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     let data = data_of(tables, &arguments.columns)?;
     let request = arguments.columns.rate.request(chosen, &data.set).with_context(|| file.clone())?;
     warn_of_ignored(chosen);
-    let is_free = request.initial_state() == Some(InitialState::Free);
     let beginning = match &arguments.known {
         Some(known) => known.beginning(data.set.names().time.as_deref())?,
-        None if is_free => KnownBeginning::JUDGED,
-        None => KnownBeginning::default(),
+        None => request.judged_beginning(),
     };
     let validator =
         CrossValidator::new(&data.set, arguments.folds).map_err(|error| anyhow!("{file}: {error}"))?;

@@ -116,8 +116,14 @@ fn a_state_is_found_from_a_known_beginning() {
     assert_eq!(simulated("half.csv").len(), 120);
     assert_eq!(simulated("half.csv"), simulated("cut.csv"));
 
+    half.iter_mut().for_each(|row| row[2].clear());
+    half.extend(rows("later", -1.0, 0.4, 0.115));
+    bench.put("blank.csv", csv("record,H_A_m,B_T", ",", "\n", &half));
+
     bench.refuses_in_part(
-        "2 evaluate found.json cut.csv --known 0 => give a number of rows
+        "1 evaluate found.json blank.csv --known 40 => column \"B_T\": is blank in the first 40 rows, from which the state
+         1 evaluate found.json cut.csv --known 120 => column \"B_T\" is blank after the known beginning
+         2 evaluate found.json cut.csv --known 0 => give a number of rows
          1 evaluate found.json cut.csv --known 0.5s => no unit of time is known
          2 evaluate found.json cut.csv --known 40 --initial-state virgin => cannot be used with
          2 evaluate found.json cut.csv --initial-state free => for free states, --known

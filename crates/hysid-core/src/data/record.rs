@@ -112,6 +112,9 @@ impl Record {
     /// The same record with a known beginning: from the outputs of its first rows a model finds its state. These rows are
     /// not scored.
     pub fn with_known_beginning(mut self, rows: usize) -> Self {
+        if rows == 0 && self.known.is_empty() {
+            return self;
+        }
         let output = |row: usize| *self.known.get(row).unwrap_or(&self.output[row]);
         let whole: Vec<f64> = (0..self.len()).map(output).collect();
         let rows = rows.min(self.len());
@@ -583,14 +586,11 @@ impl Dataset {
 
     /// The same data with a known beginning of these rows of each record ([`Record::with_known_beginning`]).
     pub fn with_known_beginnings(mut self, rows: impl Fn(&Record) -> usize) -> Self {
-        self.records = self
-            .records
-            .into_iter()
-            .map(|record| {
-                let rows = rows(&record);
-                record.with_known_beginning(rows)
-            })
-            .collect();
+        let known = |record: Record| {
+            let rows = rows(&record);
+            record.with_known_beginning(rows)
+        };
+        self.records = self.records.into_iter().map(known).collect();
         self
     }
 

@@ -107,13 +107,22 @@ impl DuhemNn {
     }
 
     /// Appends the scaled further inputs of a sample, first the direct, then the modulating ones.
-    pub fn scale_further(&self, further: &[f64], scaled: &mut Vec<f64>) {
-        let all = || self.further.iter().zip(further);
-        let value = |(input, value): (&FurtherInput, &f64)| {
+    fn scale_further(&self, further: impl Iterator<Item = f64> + Clone, scaled: &mut Vec<f64>) {
+        let all = || self.further.iter().zip(further.clone());
+        let value = |(input, value): (&FurtherInput, f64)| {
             ((value - input.centre) / input.scale).clamp(-LARGEST_INPUT, LARGEST_INPUT)
         };
         scaled.extend(all().filter(|(input, _)| input.is_direct).map(value));
         scaled.extend(all().filter(|(input, _)| input.is_modulating).map(value));
+    }
+
+    /// The scaled further inputs of so many rows, row by row, from their columns, as [`CellRun::further`] has them.
+    pub fn scaled_columns<F: AsRef<[f64]>>(&self, columns: &[F], rows: usize) -> Vec<f64> {
+        let mut scaled = Vec::new();
+        for row in 0..rows {
+            self.scale_further(columns.iter().map(|column| column.as_ref()[row]), &mut scaled);
+        }
+        scaled
     }
 }
 
@@ -179,11 +188,11 @@ impl Law for DuhemNn {
 
     fn step_with(&self, memory: &mut CellMemory, sample: Sample, further: &[f64]) -> f64 {
         let input = self.scaled(sample);
-        let mut scaled = Vec::new();
-        if !further.is_empty() {
-            self.scale_further(further, &mut scaled);
-        }
+        let mut scaled = std::mem::take(&mut memory.further);
+        scaled.clear();
+        self.scale_further(further.iter().copied(), &mut scaled);
         let y = simd::run(CellStep { cell: &self.cell, memory, input, further: &scaled });
+        memory.further = scaled;
         self.output_mean + self.output_scale * y
     }
 
@@ -194,11 +203,7 @@ impl Law for DuhemNn {
     fn found_states(&self, samples: &[Sample], further: &[&[f64]], known: &[f64]) -> Option<Vec<f64>> {
         let prior = self.beginning.as_ref()?;
         let drive: Vec<Input> = samples.iter().map(|&sample| self.scaled(sample)).collect();
-        let mut scaled = Vec::new();
-        for row in 0..samples.len() {
-            let values: Vec<f64> = further.iter().map(|column| column[row]).collect();
-            self.scale_further(&values, &mut scaled);
-        }
+        let scaled = self.scaled_columns(further, samples.len());
         let output = |y: &f64| (y - self.output_mean) / self.output_scale;
         let mut outputs: Vec<f64> = known.iter().map(output).collect();
         outputs.iter_mut().take(self.cell.shape().rows_without_derivatives()).for_each(|y| *y = f64::NAN);

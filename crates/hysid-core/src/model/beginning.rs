@@ -2,10 +2,9 @@
 
 use std::borrow::Cow;
 
-use crate::data::initial_state::InitialState;
 use crate::data::record::{Dataset, KnownBeginning, Record};
+use crate::error::{Channel, DataProblem, Result};
 use crate::model::Model;
-use crate::options::FitSpec;
 
 impl Model {
     /// The same model, which takes the first outputs of each record as a [known
@@ -21,29 +20,26 @@ impl Model {
     }
 
     /// The record with the known beginning of this model, if it has none of its own.
-    pub(super) fn begun<'r>(&self, record: &'r Record) -> Cow<'r, Record> {
-        match self.beginning.rows(record) {
-            rows if rows > 0 && record.known().is_empty() => {
-                Cow::Owned(record.clone().with_known_beginning(rows))
-            }
-            _ => Cow::Borrowed(record),
+    ///
+    /// # Errors
+    /// A beginning without any output.
+    pub fn begun<'r>(&self, record: &'r Record) -> Result<Cow<'r, Record>> {
+        let rows = self.beginning.rows(record);
+        if rows == 0 || !record.known().is_empty() {
+            return Ok(Cow::Borrowed(record));
         }
-    }
-
-    /// As [`Model::begun`], of all records.
-    pub(super) fn begun_all<'d>(&self, data: &'d Dataset) -> Cow<'d, Dataset> {
-        if self.beginning.is_none() {
-            return Cow::Borrowed(data);
+        if record.output()[..rows].iter().all(|y| y.is_nan()) {
+            return Err(record.defect(Some(0), Some(Channel::Output), DataProblem::NothingKnown(rows)));
         }
-        let rows = |record: &Record| self.beginning.rows(record).max(record.known().len());
-        Cow::Owned(data.clone().with_known_beginnings(rows))
+        Ok(Cow::Owned(record.clone().with_known_beginning(rows)))
     }
 }
 
-/// The data as a model with these options is judged on them: with known beginnings if its initial states are free.
-pub(super) fn judged<'d>(data: &'d Dataset, options: &FitSpec) -> Cow<'d, Dataset> {
-    if options.initial_state() != Some(InitialState::Free) {
+/// The data with this known beginning of each record that has no longer one.
+pub(super) fn begun(data: &Dataset, beginning: KnownBeginning) -> Cow<'_, Dataset> {
+    if beginning.is_none() {
         return Cow::Borrowed(data);
     }
-    Cow::Owned(data.clone().with_known_beginnings(|record| KnownBeginning::JUDGED.rows(record)))
+    let rows = |record: &Record| beginning.rows(record).max(record.known().len());
+    Cow::Owned(data.clone().with_known_beginnings(rows))
 }

@@ -53,7 +53,7 @@ impl Model {
     fn initial_state_note(&self) -> Option<String> {
         let provenance = self.provenance();
         let found = provenance.selection.as_ref().and_then(|selection| selection.found_states);
-        if provenance.options.initial_state() == Some(InitialState::Free) {
+        if provenance.options.has_free_states() {
             return Some(
                 "initial state: found for each training record together with the parameters; a new record begins with the \
                  mean of these states (0 in an odd network), unless its first outputs are known (known)"

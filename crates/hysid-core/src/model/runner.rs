@@ -9,10 +9,9 @@ use std::ops::Range;
 use crate::data::initial_state::{found_past, lead_in_of_period};
 use crate::data::rate::RateMethod;
 use crate::data::record::Excitation;
-use crate::elementary::exp;
 use crate::error::{DataProblem, Result};
 use crate::law::series::lead_in_samples;
-use crate::law::{Classical, ClassicalState, Sample};
+use crate::law::{Classical, ClassicalState, Sample, remaining_share};
 use crate::model::band::disagreement;
 use crate::model::ensemble::{Excursion, MedianBuffers};
 use crate::model::input_transform::{InputPast, InputTransform, SeenLeadIn};
@@ -233,7 +232,7 @@ impl<'m> Runner<'m> {
             single.begin_known(&chunk, &self.known, self.range)?;
         }
         let rows: Vec<f64> = self.body.singles().iter().map(SingleRunner::residual_rows).collect();
-        self.remaining = remaining(median(rows));
+        self.remaining = remaining_share(median(rows));
         Ok(())
     }
 
@@ -296,11 +295,6 @@ impl<'m> Runner<'m> {
         }
         Ok(())
     }
-}
-
-/// Share of a residual that remains in the next row, for the rows within which it falls to 1/e; 0 for none.
-fn remaining(rows: f64) -> f64 {
-    if rows > 0.0 { exp(-1.0 / rows) } else { 0.0 }
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -411,8 +405,8 @@ impl<'m> SingleRunner<'m> {
         }
         let first_row: Vec<f64> = chunk.inputs.iter().map(|input| input[0]).collect();
         let mut outputs = vec![0.0; known.len()];
+        let mut trial = self.clone();
         let misfit = |past: &[f64]| -> f64 {
-            let mut trial = self.clone();
             trial.reset();
             trial.begin_after(past, &first_row);
             if trial.run(chunk, &mut outputs).is_err() {

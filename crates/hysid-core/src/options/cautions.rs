@@ -19,6 +19,7 @@ impl FitSpec {
         if self.rate().is_some() && !model.uses_rate() {
             cautions.push(format!("{} ignores the rate (xpnn and xpnn+ use it)", model.name()).into());
         }
+        cautions.extend(self.acceleration_not_used(data));
         cautions.extend(self.rate_not_shown(data));
         cautions.extend(far_from_zero(model, data).map(Words::from));
         cautions.extend(self.larger_than(data).map(|warning| warning.to_string().into()));
@@ -27,6 +28,18 @@ impl FitSpec {
 }
 
 impl FitSpec {
+    /// An acceleration that was asked for although the data, or the options, have no time or no rate to go with it.
+    fn acceleration_not_used(&self, data: &Dataset) -> Option<Words> {
+        let Self::Classical(options) = self else { return None };
+        let is_ignored = options.acceleration && (options.rate.is_none() || !data.has_time());
+        is_ignored.then(|| {
+            Words::from(options.model.name())
+                + " ignores "
+                + Hint::Option("acceleration")
+                + ", which needs time stamps and a rate"
+        })
+    }
+
     /// A rate that is used although the data pass each place at one speed; `auto` tries models without it too.
     fn rate_not_shown(&self, data: &Dataset) -> Option<Words> {
         let model = self.model();
@@ -104,5 +117,16 @@ mod tests {
         };
         let cautions = FitSpec::Classical(options).cautions(&data(0.0));
         assert_eq!(cautions, [Words::from("preisach ignores the rate (xpnn and xpnn+ use it)")]);
+    }
+    #[test]
+    fn an_acceleration_that_cannot_be_computed_is_told_of() {
+        let options = |acceleration, rate| crate::options::classical::ClassicalOptions {
+            acceleration,
+            rate,
+            ..crate::options::classical::ClassicalOptions::of(ClassicalModel::DuhemNn)
+        };
+        let cautions =
+            |acceleration, rate| FitSpec::Classical(options(acceleration, rate)).cautions(&data(0.0)).len();
+        assert_eq!([cautions(true, None), cautions(false, None)], [1, 0]);
     }
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
+use crate::data::record::KnownBeginning;
 use crate::options::classical::ClassicalOptions;
 use crate::options::effort::Effort;
 use crate::options::model_name::{Automatic, ModelName};
@@ -146,6 +147,16 @@ impl FitSpec {
             Self::Classical(options) => options.shaping.initial_state,
             Self::Auto(options) => options.initial_state,
         }
+    }
+
+    /// True if the states before each record are found together with the parameters.
+    pub fn has_free_states(&self) -> bool {
+        self.initial_state() == Some(InitialState::Free)
+    }
+
+    /// The known beginning with which models of this fit are judged; none unless they have free states.
+    pub fn judged_beginning(&self) -> KnownBeginning {
+        if self.has_free_states() { KnownBeginning::JUDGED } else { KnownBeginning::default() }
     }
 
     /// The same with another initial state of every record.

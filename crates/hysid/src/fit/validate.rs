@@ -1,7 +1,6 @@
 //! Cross-validation of a model that is identified on every fold.
 
-use crate::data::initial_state::InitialState;
-use crate::data::record::{Dataset, KnownBeginning};
+use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::identify;
 use crate::fit::progress::{Observer, Progress};
@@ -20,9 +19,8 @@ pub fn cross_validate(
     most_folds: usize,
     observer: &mut Observer<'_>,
 ) -> Result<CrossValidation> {
-    let is_free = request.initial_state() == Some(InitialState::Free);
-    let beginning = if is_free { KnownBeginning::JUDGED } else { KnownBeginning::default() };
-    let mut validator = CrossValidator::new(data, most_folds)?.with_known_beginning(beginning);
+    let mut validator =
+        CrossValidator::new(data, most_folds)?.with_known_beginning(request.judged_beginning());
     let count = validator.folds();
     for place in 0..count {
         let fold = validator.fold(place);

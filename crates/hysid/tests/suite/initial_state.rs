@@ -454,6 +454,13 @@ fn a_known_beginning_is_not_scored_and_may_be_taken_in_blocks() {
     }
     in_blocks.extend(simulation.finish().unwrap().output);
     assert_eq!(in_blocks, at_once);
+    let blank = untimed(vec![whole.clone().scored_where(|row| row >= 50)]);
+    let error = |rows| {
+        let model = model.clone().with_known_beginning(KnownBeginning::Rows(rows));
+        model.evaluate(&blank).map_err(|error| error.to_string())
+    };
+    assert!(error(50).unwrap_err().contains("is blank in the first 50 rows"));
+    assert!(error(51).is_ok());
     let too_many = hysid::data::record::Excitation::new("cut", vec![&[0.0, 1.0]]).unwrap();
     assert!(too_many.with_known_beginning(&[0.0; 3]).is_err());
 }

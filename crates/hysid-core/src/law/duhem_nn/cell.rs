@@ -170,6 +170,8 @@ pub struct CellMemory {
     pub(super) elapsed: f64,
     /// The input of the last sample; `None` before the first.
     x: Option<f64>,
+    /// Scaled further inputs of the last sample.
+    pub(super) further: Vec<f64>,
     /// First derivative of the input at the last sample, and whether there is one.
     velocity: f64,
     has_velocity: bool,
@@ -247,6 +249,7 @@ impl Cell {
             moved: 0.0,
             elapsed: 0.0,
             x: None,
+            further: Vec::new(),
             velocity: 0.0,
             has_velocity: false,
         }

@@ -14,7 +14,7 @@ use super::cell::{Cell, Input};
 use super::parameters::CellLayout;
 use super::sensitivities::CellRun;
 use crate::error::LARGEST_VALUE;
-use crate::linear_algebra::Symmetric;
+use crate::linear_algebra::{Cholesky, Symmetric};
 use crate::random::uniform;
 use crate::stop_check::StopCheck;
 
@@ -72,7 +72,9 @@ impl StatePrior {
         let largest = (0..size).map(|i| covariance.diagonal(i)).fold(0.0, f64::max);
         // States that never differed stay where they are.
         (0..size).for_each(|i| covariance.add_to_diagonal(i, 1e-6 * largest + 1e-12));
-        let factor = lower_factor(&covariance, size);
+        // States that are not finite have no covariance: they are those of the cell.
+        let factor = covariance.cholesky(StopCheck::never());
+        let factor = factor.map_or_else(|| vec![0.0; size * size], Cholesky::into_rows);
         Self { slope, factor, deviation, is_relative: false, residual_rows: 0.0 }
     }
 
@@ -91,20 +93,6 @@ impl StatePrior {
         let spread = |row: &[f64]| row.iter().zip(u).map(|(l, u)| l * u).sum::<f64>();
         mean.iter().zip(rows).map(|(m, (slope, row))| m + slope * first + spread(row)).collect()
     }
-}
-
-/// The lower triangular factor of a positive definite matrix, row by row.
-fn lower_factor(matrix: &Symmetric, size: usize) -> Vec<f64> {
-    let mut factor = vec![0.0; size * size];
-    for i in 0..size {
-        for j in 0..=i {
-            let known: f64 = (0..j).map(|k| factor[i * size + k] * factor[j * size + k]).sum();
-            let rest = matrix.at(i, j) - known;
-            factor[i * size + j] =
-                if i == j { rest.max(f64::MIN_POSITIVE).sqrt() } else { rest / factor[j * size + j] };
-        }
-    }
-    factor
 }
 
 impl Cell {

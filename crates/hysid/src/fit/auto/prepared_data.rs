@@ -95,8 +95,7 @@ impl PreparedData {
 
     /// Records whose states are found together with the parameters; those that are held out have a known beginning.
     pub fn with_free_states(data: &Dataset, folds: Vec<Fold>) -> Self {
-        let known = |record: &Record| KnownBeginning::JUDGED.rows(record);
-        let judged = |fold: Fold| Fold { held_out: fold.held_out.with_known_beginnings(known), ..fold };
+        let judged = |fold: Fold| fold.with_known_beginning(KnownBeginning::JUDGED);
         let folds = folds.into_iter().map(judged).collect();
         let warm_up = WarmUp::decided(0);
         Self { data: data.clone(), folds, warm_up, is_changed: false, found: None }

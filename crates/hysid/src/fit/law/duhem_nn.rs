@@ -23,7 +23,7 @@ use crate::data::record::{Dataset, Record};
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::candidates::{CandidateRequest, RankedLaw, with_companded_rate};
-use crate::fit::law::duhem_nn::by_record::{FreeCurvature, RecordWeights};
+use crate::fit::law::duhem_nn::by_record::{FreeCurvature, RecordWeights, square_error};
 use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{IdentifiedLaw, MemoryKind, check_effort, measured, spread, thinned_to};
 use crate::fit::memory_need::{LawFitSize, MemoryNeed};
@@ -413,9 +413,6 @@ impl<'a> DuhemTask<'a> {
             true => (MemoryKind::EveryRow, MOST_COMPARED_BY_RECORD),
             false => (MemoryKind::Path, MOST_COMPARED),
         };
-        let all = Series::all(data, options.rate)?;
-        let whole = if is_free { all.clone() } else { Vec::new() };
-        let series = thinned_to(all, memory, most);
         let scaled = |series: &Series| series.samples.iter().map(|&sample| law.scaled(sample)).collect();
         let blank = if is_free { frame.layout.shape.rows_without_derivatives() } else { 0 };
         let target = |series: &Series| {
@@ -424,11 +421,14 @@ impl<'a> DuhemTask<'a> {
             scaled.iter_mut().take(blank).for_each(|y| *y = f64::NAN);
             scaled
         };
+        let further_of = |series: &Series| law.scaled_columns(&series.further, series.samples.len());
+        let all = Series::all(data, options.rate)?;
+        let whole_targets = if is_free { all.iter().map(target).collect() } else { Vec::new() };
+        let series = thinned_to(all, memory, most);
         let targets: Vec<Vec<f64>> = series.iter().map(target).collect();
         let rows = targets.iter().flatten().filter(|y| !y.is_nan()).count();
-        let further = series.iter().map(|series| scaled_further(law, series)).collect();
+        let further = series.iter().map(further_of).collect();
         let by_record = is_by_record.then(|| RecordWeights::of(&targets, error, is_free));
-        let whole_targets = whole.iter().map(target).collect();
         let drives = series.iter().map(scaled).collect();
         Ok(Self { frame, drives, further, targets, whole_targets, rows, by_record, stop })
     }
@@ -500,20 +500,16 @@ impl<'a> DuhemTask<'a> {
 
     /// Mean square error of the network with these output weights; `None` once stopped.
     fn mean_square(&self, parameters: &[f64], value: &DuhemValue) -> Option<f64> {
-        let weights = &value.solution.weights;
         let gram = self.gram(parameters, None)?;
-        let target = weights.len();
-        let with_target = |i: usize| if i == target { -1.0 } else { weights[i] };
-        let row = |i: usize| -> f64 { (0..=target).map(|j| gram.at(i, j) * with_target(j)).sum() };
-        let square: f64 = (0..=target).map(|i| with_target(i) * row(i)).sum();
-        Some(square.max(0.0) / self.rows as f64)
+        Some(square_error(&gram, &value.solution.weights) / self.rows as f64)
     }
 
-    fn output_problem<'g>(&'g self, gram: &'g Gram) -> OutputProblem<'g> {
+    /// The output weights from a Gram matrix over so many rows, each with its weight.
+    fn output_problem<'g>(&'g self, gram: &'g Gram, rows: f64) -> OutputProblem<'g> {
         OutputProblem {
             gram,
             features: self.frame.layout.shape.terms(),
-            rows: self.rows as f64,
+            rows,
             ridge: RIDGE,
             constant: !self.frame.layout.shape.is_odd,
             stop: self.stop,
@@ -524,19 +520,6 @@ impl<'a> DuhemTask<'a> {
         let layout = &self.frame.layout;
         parameters[..layout.count()].iter().enumerate().filter(|(index, _)| layout.has_decay(*index))
     }
-}
-
-fn scaled_further(law: &DuhemNn, series: &Series) -> Vec<f64> {
-    let mut scaled = Vec::new();
-    let mut row = vec![0.0; series.further.len()];
-    if row.is_empty() {
-        return scaled;
-    }
-    for k in 0..series.samples.len() {
-        row.iter_mut().zip(&series.further).for_each(|(value, column)| *value = column[k]);
-        law.scale_further(&row, &mut scaled);
-    }
-    scaled
 }
 
 /// Mean finite time step and duration of the longest record; 0 without time stamps.
@@ -586,7 +569,7 @@ impl LeastSquaresProblem for DuhemTask<'_> {
             return weights.value(self, parameters);
         }
         let solution = match self.gram(parameters, None) {
-            Some(gram) => self.output_problem(&gram).solve(),
+            Some(gram) => self.output_problem(&gram, self.rows as f64).solve(),
             None => OutputSolution::broken_off(self.frame.layout.shape.terms()),
         };
         let decay: f64 = self.weights(parameters).map(|(_, w)| w * w).sum();
@@ -604,7 +587,7 @@ impl LeastSquaresProblem for DuhemTask<'_> {
         }
         let gram = self.gram(parameters, Some(&value.solution.weights))?;
         let (mut gradient, mut curvature) =
-            self.output_problem(&gram).linearise(&value.solution, parameters.len());
+            self.output_problem(&gram, self.rows as f64).linearise(&value.solution, parameters.len());
         for (index, weight) in self.weights(parameters) {
             gradient[index] += DECAY * weight; // (3.3)
             curvature.add_to_diagonal(index, DECAY);

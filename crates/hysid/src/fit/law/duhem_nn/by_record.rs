@@ -14,16 +14,16 @@
 //! complement for each record, then the output weights. Each root is replaced by a weighted sum of squares with the same
 //! gradient.
 
-use crate::fit::law::duhem_nn::{DECAY, DuhemCurvature, DuhemTask, DuhemValue, RIDGE};
-use crate::fit::sums::output_weights::{OutputProblem, OutputSolution};
+use crate::fit::law::duhem_nn::{DECAY, DuhemCurvature, DuhemTask, DuhemValue};
+use crate::fit::sums::output_weights::OutputSolution;
 use crate::law::duhem_nn::{Cell, CellRun, StatePrior};
+use crate::law::remaining_share;
 use crate::linear_algebra::{Cholesky, Gram, Symmetric, dot};
 use crate::optimise::levenberg_marquardt::{Slope, step_within};
 use crate::optimise::parallel;
 use crate::options::classical::FittedError;
 use crate::stop_check::StopCheck;
 use hysid_core::data::record::KnownBeginning;
-use hysid_core::elementary::exp;
 
 /// Records whose sums are formed together.
 const TOGETHER: usize = 16;
@@ -41,7 +41,7 @@ const STATE_PENALTY: f64 = 1e-3;
 const RESIDUAL_ROWS: [f64; 6] = [0.0, 25.0, 50.0, 100.0, 200.0, 400.0];
 
 /// Sum of the squared errors with these output weights.
-fn square_error(gram: &Gram, weights: &[f64]) -> f64 {
+pub(super) fn square_error(gram: &Gram, weights: &[f64]) -> f64 {
     let target = weights.len();
     let with_target = |i: usize| if i == target { -1.0 } else { weights[i] };
     let row = |i: usize| -> f64 { (0..=target).map(|j| gram.at(i, j) * with_target(j)).sum() };
@@ -243,7 +243,8 @@ impl RecordWeights {
         let solve = |weights: &[f64]| {
             let mut sum = Gram::new(task.frame.layout.shape.terms() + 1);
             weights.iter().zip(grams).for_each(|(weight, gram)| sum.add_multiple(gram, *weight));
-            self.output_problem(task, &sum).solve()
+            // The weights of the rows have the sum 1.
+            task.output_problem(&sum, 1.0).solve()
         };
         let mut weights = self.weights.clone();
         let mut solution = solve(&weights);
@@ -252,35 +253,18 @@ impl RecordWeights {
             return (solution, objective, weights);
         }
         let count = weights.len() as f64;
-        let mut loss = f64::INFINITY;
-        for round in 0..ROUNDS {
-            if round > 0 {
-                solution = solve(&weights);
-            }
-            let root = |(gram, weight): (&Gram, &f64)| {
-                (count * weight * square_error(gram, &solution.weights) + LEAST_SQUARE).sqrt()
-            };
-            let roots: Vec<f64> = grams.iter().zip(&self.weights).map(root).collect();
-            let penalty = solution.objective - 0.5 * solution.mean_square;
-            loss = roots.iter().sum::<f64>() / count + penalty;
-            if round + 1 < ROUNDS || round == 0 {
-                let all = weights.iter_mut().zip(&self.weights).zip(&roots);
-                all.for_each(|((weight, first), root)| *weight = first / root);
-            }
+        let roots = |output: &[f64]| -> Vec<f64> {
+            let square = |(gram, weight): (&Gram, &f64)| count * weight * square_error(gram, output);
+            grams.iter().zip(&self.weights).map(square).map(|square| (square + LEAST_SQUARE).sqrt()).collect()
+        };
+        for _ in 1..ROUNDS {
+            weights =
+                self.weights.iter().zip(roots(&solution.weights)).map(|(first, root)| first / root).collect();
+            solution = solve(&weights);
         }
+        let penalty = solution.objective - 0.5 * solution.mean_square;
+        let loss = roots(&solution.weights).iter().sum::<f64>() / count + penalty;
         (solution, loss, weights)
-    }
-
-    fn output_problem<'g>(&self, task: &'g DuhemTask<'_>, gram: &'g Gram) -> OutputProblem<'g> {
-        let shape = task.frame.layout.shape;
-        OutputProblem {
-            gram,
-            features: shape.terms(),
-            rows: 1.0,
-            ridge: RIDGE,
-            constant: !shape.is_odd,
-            stop: task.stop,
-        }
     }
 
     /// Gradient and curvature by the parameters, after elimination of the states and of the output weights.
@@ -435,11 +419,12 @@ impl DuhemTask<'_> {
         let rows = run.rows()?;
         let terms = cell.output.len();
         let residual = |row: &Vec<f64>| row[terms] - dot(&row[..terms], &cell.output);
-        let (beginning, rest) = rows.split_at(known.min(rows.len()));
+        let known = outputs[..known].iter().filter(|y| !y.is_nan()).count();
+        let (beginning, rest) = rows.split_at(known);
         let last = beginning.last().map_or(0.0, residual);
         let square: f64 = rest.iter().map(|row| row[terms] * row[terms]).sum();
         let error = |&rows: &f64| {
-            let remaining = if rows > 0.0 { exp(-1.0 / rows) } else { 0.0 };
+            let remaining = remaining_share(rows);
             let mut expected = last;
             let mut sum = 0.0;
             for row in rest {
