@@ -1,6 +1,6 @@
 //! The use cases of Hysid, one for all faces: program, studio and Python collect requests and show outcomes.
 //!
-//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`evaluation`], [`plan`], [`inversion`], [`restoring_force`], the [`diagnosis`] of
+//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`evaluation`], [`plan`], [`inversion`], [`restoring_force`], [`validation`], the [`diagnosis`] of
 //! data and of models, and how a page was made ([`origin`]).
 
 // Only the crates of Hysid use this one: what a name says needs no comment.
@@ -48,6 +48,8 @@ pub mod table_run;
 mod timing;
 pub mod tracks;
 mod usage;
+#[cfg(feature = "tables")]
+pub mod validation;
 
 use hysid::data::initial_state::in_words;
 use hysid::data::metrics::{ErrorSums, Errors};

@@ -15,7 +15,6 @@ use hysid_document::Face;
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_files::Destination;
 use hysid_records::Data;
-use rayon::ThreadPool;
 
 use crate::checkpoint::Keeper;
 use crate::files::write_page;
@@ -55,16 +54,11 @@ pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -
     Ok(beforehand)
 }
 
-/// Pool of so many threads; by default one for each processor.
-pub fn thread_pool(threads: Option<u16>) -> Result<ThreadPool> {
-    hysid::thread_pool(threads.map(usize::from)).context("cannot start the threads")
-}
-
 /// Identifies a model, following the training on stderr.
 pub fn identify(data: &Data, work: FitTask) -> Result<Identified> {
     let request = work.request;
     let beforehand = say_beforehand(data, request, "stopping to save the best model so far")?;
-    let pool = thread_pool(work.threads)?;
+    let pool = hysid::thread_pool(work.threads.map(usize::from)).context("cannot start the threads")?;
     check_memory(&data.set, request, pool.current_num_threads()).map_err(|error| data.explain(error))?;
     let mut follower = Follower::new(request.starts(), work.time_limit, work.checkpoint);
     let mut observer = |progress: &Progress| follower.observe(progress);

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use hysid::fit::progress::Progress;
 use hysid_app::ProgressText;
+use hysid_app::validation::ValidateObserver;
 use hysid_core::significant::Significant;
 use hysid_document::plain::WIDTH;
 use hysid_document::progress::{Line, Remaining, in_words, share_done};
@@ -64,14 +65,7 @@ impl Follower {
         }
     }
 
-    /// From now on a fold is fitted to, of so many; it has the time limit for itself.
-    pub fn begin_fold(&mut self, place: usize, of: usize) {
-        self.fold = (place, of);
-        self.fold_started = Instant::now();
-        self.course = ProgressText::new(self.starts);
-    }
-
-    /// Hears of an iteration; breaks after Ctrl-C or at the time limit.
+    /// Shows the progress; breaks after Ctrl-C or at the time limit.
     pub fn observe(&mut self, progress: &Progress) -> ControlFlow<()> {
         self.course.take(progress);
         let (place, of) = self.fold;
@@ -98,14 +92,6 @@ impl Follower {
             self.warn(&format!("the fit continues without a checkpoint: {error}"));
         }
         if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
-
-    /// Says a line without disturbing the bar.
-    pub fn say(&self, text: &str) {
-        match &self.bar {
-            Some(bar) => bar.println(text),
-            None => note(format_args!("{text}")),
-        }
     }
 
     /// Warns without disturbing the bar.
@@ -142,6 +128,34 @@ impl Follower {
         let (place, of) = self.fold;
         let of_this = (limit - self.fold_started.elapsed().as_secs_f64()).max(0.0);
         Some(of_this + (of - place - 1) as f64 * limit)
+    }
+}
+
+impl ValidateObserver for Follower {
+    fn is_to_stop(&self) -> bool {
+        interrupt::requested()
+    }
+
+    /// Begins a fold, which has the time limit for itself.
+    fn begin_fold(&mut self, place: usize, count: usize) {
+        self.fold = (place, count);
+        self.fold_started = Instant::now();
+        self.course = ProgressText::new(self.starts);
+    }
+
+    fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
+        Self::observe(self, progress)
+    }
+
+    fn say(&self, line: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(line),
+            None => note(format_args!("{line}")),
+        }
+    }
+
+    fn warn(&self, line: &str) {
+        Self::warn(self, line);
     }
 }
 
