@@ -1,6 +1,6 @@
 //! The use cases of Hysid, one for all faces: program, studio and Python collect requests and show outcomes.
 //!
-//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`evaluation`], [`plan`], [`inversion`], [`restoring_force`], [`validation`], the [`diagnosis`] of
+//! The report of a fit ([`page`], [`Identified`]), [`compare`], [`cycles`], [`evaluation`], [`plan`], [`inversion`], [`restoring_force`], [`simulation`], [`validation`], the [`diagnosis`] of
 //! data and of models, and how a page was made ([`origin`]).
 
 // Only the crates of Hysid use this one: what a name says needs no comment.
@@ -43,6 +43,8 @@ pub mod residual_words;
 mod residuals;
 #[cfg(feature = "tables")]
 pub mod restoring_force;
+#[cfg(feature = "tables")]
+pub mod simulation;
 #[cfg(feature = "tables")]
 pub mod table_run;
 mod timing;

@@ -3,8 +3,8 @@
 use csv::QuoteStyle;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::unit;
-
-use hysid_tables::{Delimiter, shortest};
+use hysid_document::visible::clipped;
+use hysid_tables::{Delimiter, Problem, Result, shortest};
 
 /// Why writing rows of equal length cannot fail.
 pub const IN_MEMORY: &str = "memory takes every row";
@@ -65,6 +65,21 @@ pub fn named_after(name: &str, ending: &str) -> String {
             format!("{quantity}_{ending}{}", &name[quantity.len()..])
         }
         _ => format!("{name}_{ending}"),
+    }
+}
+
+/// Refuses names of further columns for a table that has such a column, which `place` gives the place of.
+pub fn check_new_columns<'n>(
+    file: &str,
+    place: impl Fn(&str) -> Option<usize>,
+    names: impl IntoIterator<Item = &'n String>,
+) -> Result<()> {
+    match names.into_iter().find(|name| place(name).is_some()) {
+        Some(name) => {
+            let words = format!("there is already a column \"{}\" (rename or remove it)", clipped(name));
+            Err(Problem::in_file(file, words))
+        }
+        None => Ok(()),
     }
 }
 

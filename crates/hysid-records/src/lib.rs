@@ -15,7 +15,7 @@ mod units;
 mod warnings;
 
 pub use columns::{ColumnChoice, NO_TIME, RateOption, Roles, require};
-pub use csv_text::{IN_MEMORY, csv_text, header_line, named_after};
+pub use csv_text::{IN_MEMORY, check_new_columns, csv_text, header_line, named_after};
 pub use data::{
     CellNeed, Data, DataSource, RecordPlace, checked, column_of, data_of_text, data_words, equal_stamps,
     explained, offset_of, place_of, places_of,

@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use anyhow::{Result, ensure};
+use anyhow::Result;
 use hysid::Model;
 use hysid::data::metrics::Errors;
 use hysid::data::unit;
 use hysid_core::significant::Significant;
 use hysid_document::{count, object};
 use hysid_files::{Destination, Kind};
-use hysid_records::Roles;
-use hysid_records::header_line;
+use hysid_records::{Roles, check_new_columns, header_line};
 use hysid_tables::{Table, push_shortest};
 use serde::Serialize;
 
@@ -99,14 +98,7 @@ impl Names {
         let others =
             [format!("{}_reached", model.names().output), "reach".to_string(), "extrapolated".to_string()];
         let names = Self { drive, edges, others };
-        for name in names.all() {
-            ensure!(
-                table.column(name).is_none(),
-                "{}: there is already a column \"{}\" (rename or remove it)",
-                table.file,
-                clipped(name)
-            );
-        }
+        check_new_columns(&table.file, |name| table.column(name), names.all())?;
         Ok(names)
     }
 

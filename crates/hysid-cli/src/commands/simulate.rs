@@ -4,20 +4,18 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use anyhow::{Result, ensure};
+use anyhow::Result;
+use hysid_app::simulation::{self, SimulateRequest};
 use hysid_files::{Destination, Kind, NewFile};
 use hysid_records::Roles;
-use hysid_records::{header_line, named_after};
-use hysid_tables::{CellReader, ColumnReader, DecimalSign, Reading, Rows, push_shortest};
+use hysid_tables::Rows;
 
 use crate::arguments::Simulate;
 use crate::commands::{check_band, read_model};
 use crate::data::factors;
 use crate::files::{self, check_outputs};
 use crate::messages::{stdout_failed, warning};
-use crate::terminal::clipped;
 use crate::{Outcome, interrupt};
-use hysid_app::table_run::{self, KeptColumns, Simulated};
 
 /// Bytes that are written together. A table with an error in its first rows leaves nothing on stdout.
 const BUFFERED: usize = 1 << 20;
@@ -26,22 +24,10 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let model = arguments.known.of(arguments.beginning.of(read_model(&arguments.model)?)?)?;
     let reading = arguments.columns.reading.reading();
     let mut rows = Rows::open(&arguments.data, &reading)?;
-    let mut names = vec![named_after(&model.names().output, "model")];
     if arguments.band.is_some() {
         check_band(&model, &arguments.model)?;
-        names.extend(["low", "high"].map(|edge| named_after(&model.names().output, edge)));
     }
-    for name in &names {
-        ensure!(
-            rows.head.column(name).is_none(),
-            "{}: there is already a column \"{}\" (rename or remove it)",
-            rows.head.file,
-            clipped(name)
-        );
-    }
-    let delimiter = rows.head.delimiter().in_a_copy(rows.head.numbers().decimal);
-    let all = rows.head.header.iter().chain(&names).map(String::as_str);
-    let header = header_line(delimiter, all);
+    let header = simulation::header(&model, &rows.head, arguments.band.is_some())?;
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     let kind = Kind::Beginning(header.clone());
     let out = out.map(|out| Destination::new(out, kind, arguments.overwriting.force));
@@ -54,20 +40,22 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
 
     let factors = factors(&model, &roles, &rows.head.file, is_known, arguments.units.same_units)?;
     let sink = out.as_ref().map(Destination::create).transpose().map_err(files::explained)?;
-    let numbers = Numbers { data: &arguments.data, reading: &reading, roles: &roles, delimiter };
-    let mut output = Output { sink, numbers, sign: None, delimiter, text: header };
-    let wanted = KeptColumns {
-        drive: false,
-        cells: true,
-        measured: is_known,
+    let request = SimulateRequest {
+        model: &model,
+        table: &arguments.data,
+        reading: &reading,
+        roles: &roles,
+        factors: &factors,
         band: arguments.data_sets.level(arguments.band),
         zero: arguments.columns.reading.zero,
+        measured: is_known,
     };
-    let mut take = |simulated: &Simulated<'_>| -> Result<_> {
-        output.add(simulated)?;
+    let mut output = Output { sink, text: header };
+    let mut take = |rows: Vec<u8>| -> Result<_> {
+        output.add(&rows)?;
         Ok(if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     };
-    let end = table_run::run(&model, &mut rows, &roles, &factors, wanted, &mut take)?;
+    let end = simulation::simulate(&request, &mut rows, &mut take)?;
     end.note.iter().for_each(warning);
     if end.is_early {
         return Ok(Outcome::Interrupted);
@@ -80,42 +68,12 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
 /// The table with the columns of the simulation, on its way to a file or to stdout.
 struct Output<'o> {
     sink: Option<NewFile<'o>>,
-    numbers: Numbers<'o>,
-    /// Decimal sign of the columns that are added, once it is known.
-    sign: Option<DecimalSign>,
-    delimiter: u8,
     text: Vec<u8>,
 }
 
 impl Output<'_> {
-    /// Adds rows, in the table's own delimiter and decimal sign.
-    fn add(&mut self, simulated: &Simulated<'_>) -> Result<()> {
-        let prediction = simulated.prediction;
-        if prediction.output.is_empty() {
-            return Ok(());
-        }
-        let sign = match self.sign {
-            Some(sign) => sign,
-            None => *self.sign.insert(self.numbers.sign(simulated.numbers)?),
-        };
-        self.numbers.check(sign, simulated.numbers)?;
-        let mut writer = csv::WriterBuilder::new().delimiter(self.delimiter).from_writer(&mut self.text);
-        let mut number = String::new();
-        for row in 0..prediction.output.len() {
-            for cell in simulated.cells(row) {
-                writer.write_field(cell)?;
-            }
-            for column in [&prediction.output, &prediction.low, &prediction.high] {
-                if let Some(&value) = column.get(row) {
-                    number.clear();
-                    push_shortest(&mut number, value, sign);
-                    writer.write_field(&number)?;
-                }
-            }
-            writer.write_record(None::<&[u8]>)?;
-        }
-        writer.flush()?;
-        drop(writer);
+    fn add(&mut self, rows: &[u8]) -> Result<()> {
+        self.text.extend(rows);
         if self.text.len() >= BUFFERED { self.write() } else { Ok(()) }
     }
 
@@ -142,56 +100,5 @@ impl Output<'_> {
             }
             None => std::io::stdout().lock().flush().map_err(stdout_failed),
         }
-    }
-}
-
-/// How numbers are written in a table.
-struct Numbers<'n> {
-    data: &'n Path,
-    reading: &'n Reading,
-    roles: &'n Roles,
-    delimiter: u8,
-}
-
-impl Numbers<'_> {
-    /// The decimal sign of a table whose first rows were read by this reader.
-    fn sign(&self, first_rows: &CellReader) -> Result<DecimalSign> {
-        if let Some(sign) = first_rows.sign() {
-            return Ok(sign);
-        }
-        // Whole numbers so far. Where commas separate the columns there are no decimal commas.
-        let is_settled = self.delimiter == b',' || !self.data.is_file();
-        Ok(if is_settled { DecimalSign::Point } else { self.first_sign()? })
-    }
-
-    /// The decimal sign that comes first in the columns that the model needs.
-    fn first_sign(&self) -> Result<DecimalSign> {
-        let mut rows = Rows::open(self.data, self.reading)?;
-        let used = self.roles.time.iter().chain(&self.roles.inputs).chain(&self.roles.rate);
-        let places = used.filter_map(|name| rows.head.column(name));
-        let mut columns: Vec<ColumnReader> =
-            places.map(|place| ColumnReader::new(&rows.head, place)).collect();
-        let mut numbers = CellReader::new(rows.head.numbers());
-        while let Some(row) = rows.next_row()? {
-            for column in columns.iter_mut().filter(|column| !column.has_stamps()) {
-                // What is wrong with a cell is said where the table is read for its numbers.
-                let _ = numbers.number(row.cell(column.place()), row.line);
-            }
-            if let Some(sign) = numbers.sign() {
-                return Ok(sign);
-            }
-        }
-        Ok(DecimalSign::Point)
-    }
-
-    /// Refuses a decimal comma behind rows that are written with decimal points: a pipe cannot be read twice.
-    fn check(&self, sign: DecimalSign, so_far: &CellReader) -> Result<()> {
-        ensure!(
-            so_far.sign().is_none_or(|found| found == sign),
-            "{}: the first decimal comma comes after thousands of whole numbers (give a file instead of a \
-             pipe)",
-            self.data.display()
-        );
-        Ok(())
     }
 }
