@@ -38,7 +38,7 @@ mod _hysid {
     #[pymodule_export]
     use crate::model::{Model, Stepper};
     #[pymodule_export]
-    use crate::plan::plan;
+    use crate::plan::{Plan, plan};
     #[pymodule_export]
     use crate::progress::ProgressLine;
     #[pymodule_export]

@@ -1,6 +1,7 @@
 """Plans of experiments."""
 
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -29,6 +30,20 @@ def test_a_plan_is_that_of_the_program(cycles, program, tmp_path):
     )
     assert np.array_equal(written, of_program)
     assert np.array_equal(written[:, 1], plan.drive)
+
+
+def test_a_plan_has_a_page_and_its_copy_keeps_the_drive(cycles, tmp_path):
+    plan, path = hysid.plan(*cycles), tmp_path / "plan.html"
+    plan.report(path)
+    text = path.read_text(encoding="utf-8")
+    assert "What to measure next" in text and plan.segments[0].reason in text and "hysid.Plan.report" in text
+    path.write_text("mine")
+    with pytest.raises(FileExistsError):
+        plan.report(path)
+    copied = pickle.loads(pickle.dumps(plan))
+    assert np.array_equal(copied.drive, plan.drive)
+    with pytest.raises(ValueError, match="plan again"):
+        copied.report(tmp_path / "other.html")
 
 
 def test_a_plan_has_at_most_the_wanted_rows(cycles):

@@ -11,6 +11,7 @@ __all__ = [
     "Model",
     "FitSpec",
     "Inverse",
+    "Plan",
     "ProgressLine",
     "Stepper",
     "__version__",
@@ -136,6 +137,11 @@ class Inverse:
     def reset(self) -> None: ...
 
 @final
+class Plan:
+    def to_json(self) -> str: ...
+    def report(self, path: str | os.PathLike[str], title: str | None, force: bool) -> None: ...
+
+@final
 class ProgressLine:
     def __new__(cls) -> ProgressLine: ...
     def text(
@@ -188,7 +194,7 @@ def plan(
     max_rate: float | None,
     wave: str | None,
     seed: int,
-) -> str: ...
+) -> Plan: ...
 def restoring_force(
     records: Sequence[Sequence[_Column | None]],
     mass: float,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -84,10 +84,11 @@ class Plan:
     limits: dict[str, Any]
     names: dict[str, Any]
     sources: list[str]
+    _native: _hysid.Plan | None = field(default=None, repr=False)
 
     @classmethod
-    def _of(cls, text: str) -> Plan:
-        told = json.loads(text)
+    def _of(cls, native: _hysid.Plan) -> Plan:
+        told = json.loads(native.to_json())
         return cls(
             drive=np.array(told["input"]),
             time=None if told["time"] is None else np.array(told["time"]),
@@ -96,7 +97,11 @@ class Plan:
             limits=told["limits"],
             names=told["names"],
             sources=told["sources"],
+            _native=native,
         )
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_native": None}
 
     def __repr__(self) -> str:
         low, high = self.limits["range"]
@@ -116,6 +121,36 @@ class Plan:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow([name for name, _ in given])
             writer.writerows(zip(*(values.tolist() for _, values in given), strict=True))
+
+    def report(self, path: str | os.PathLike[str], *, title: str | None = None, force: bool = False) -> None:
+        """Write the plan as an HTML page: the drive, its segments and their reasons, what the data do not cover.
+
+        Parameters
+        ----------
+        path : path
+            The page, an HTML file that needs no other file.
+        title : str, optional
+            Title of the page.
+        force : bool
+            Replace a file even if it is not a page of Hysid.
+
+        Raises
+        ------
+        ValueError
+            The plan was pickled or copied: plan again.
+        FileExistsError
+            The file exists, is not a page of Hysid, and `force` is False.
+
+        Examples
+        --------
+        >>> import hysid, tempfile
+        >>> plan = hysid.plan(kind="damper", range=(-1, 1))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     plan.report(folder + "/plan.html")
+        """
+        if self._native is None:
+            raise ValueError("a plan that was pickled or copied has no page: plan again")
+        self._native.report(path, title, force)
 
 
 def plan(
