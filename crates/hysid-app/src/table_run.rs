@@ -3,8 +3,9 @@
 use std::mem;
 use std::ops::ControlFlow;
 
+use hysid::data::known_beginning::KnownBeginning;
 use hysid::data::likeness::Likeness;
-use hysid::data::record::{Fingerprint, KnownBeginning, Record};
+use hysid::data::record::{Fingerprint, Record};
 use hysid::data::warning::Warning;
 use hysid::model::{BandLevel, Model, Prediction, Simulation};
 use hysid_document::{Problem, Result};

@@ -32,7 +32,7 @@ pub use hysid_records::RateOption;
 use crate::reproduction::Experiment;
 pub use cycles::Cycles;
 use examples::*;
-pub use known_beginning::{KnownOptions, KnownText};
+pub use known_beginning::KnownOptions;
 pub use model_options::ModelOptions;
 pub use plan::Plan;
 pub use plot::{Plot, PlotKind};
@@ -336,11 +336,6 @@ pub struct Validate {
     /// A single record always gives five folds, cut in time.
     #[arg(long, value_name = "N", default_value = "5", value_parser = folds)]
     pub folds: usize,
-    /// Measured beginning of each held-out record, from which its state is found
-    ///
-    /// As of `hysid evaluate`. With free initial states, a tenth of the rows by default. Folds that are cut in time ignore it.
-    #[arg(long, value_name = "ROWS|TIME", value_parser = known_beginning::parsed)]
-    pub known: Option<KnownText>,
     #[command(flatten)]
     pub columns: ColumnOptions,
     #[command(flatten)]

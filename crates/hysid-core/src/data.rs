@@ -2,6 +2,7 @@
 
 pub mod column;
 pub mod initial_state;
+pub mod known_beginning;
 pub mod likeness;
 pub mod metrics;
 pub mod polyline;

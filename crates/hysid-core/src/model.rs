@@ -30,10 +30,11 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use crate::data::initial_state::InitialState;
+use crate::data::known_beginning::KnownBeginning;
 use crate::data::likeness::Likeness;
 use crate::data::metrics::{ErrorSums, Errors};
 use crate::data::rate::RateMethod;
-use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, KnownBeginning, Record};
+use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, Record};
 use crate::data::unit::{of_column, pure_quotient};
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, OptionError, Result};
@@ -332,7 +333,7 @@ impl Model {
             Predictor::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.rate.is_some()),
         };
         let rate = rate.filter(|_| uses_rate);
-        let judged = begun(data, found.options.judged_beginning());
+        let judged = begun(data, found.options.judged_beginning(data.names())?);
         let train = errors(Runner::of_body(&body, Some(&preprocessing), rate), &judged)?;
         let train_after_warm_up = match behind(&judged, warm_up(&body, &found.options)) {
             Some(behind) => Some(errors(Runner::of_body(&body, Some(&preprocessing), rate), &behind)?),
@@ -670,7 +671,7 @@ impl Model {
     pub fn with_band_over(self, band: Option<Band>, data: &Dataset) -> Result<Self> {
         let Some(band) = band else { return Ok(self.with_band(None)) };
         let mut errors = Predictions::default();
-        for record in begun(data, self.provenance.options.judged_beginning()).records() {
+        for record in begun(data, self.provenance.options.judged_beginning(data.names())?).records() {
             let mut output = vec![0.0; record.len()];
             let mut spreads = vec![OutputSpread::default(); record.len()];
             Runner::of_model(&self).rows(&record.excitation(), 0, &mut output, Some(&mut spreads))?;

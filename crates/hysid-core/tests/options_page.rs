@@ -55,6 +55,7 @@ fn values(option: &FitOption) -> String {
         OptionValues::Positive => "numbers above 0".into(),
         OptionValues::Flag => "a flag".into(),
         OptionValues::Truth => "true or false".into(),
+        OptionValues::Span => "rows, or a time with its unit".into(),
         OptionValues::Names(names) => format!("`{}`", names().join("`, `")),
     }
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use hysid::data::initial_state::InitialState;
+use hysid::data::known_beginning::KnownBeginning;
 use hysid::data::record::Excitation;
-use hysid::data::record::KnownBeginning;
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;

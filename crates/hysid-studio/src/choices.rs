@@ -52,6 +52,7 @@ fn option(option: &FitOption) -> Value {
         OptionValues::Positive => json!({"kind": "positive"}),
         OptionValues::Flag => json!({"kind": "flag"}),
         OptionValues::Truth => json!({"kind": "truth"}),
+        OptionValues::Span => json!({"kind": "span"}),
         OptionValues::Names(names) => json!({"kind": "names", "names": names()}),
     };
     json!({

@@ -13,8 +13,9 @@ use hysid_core::elementary::{exp, ln};
 use serde::Serialize;
 
 use crate::data::FEWEST_ROWS;
+use crate::data::known_beginning::KnownBeginning;
 use crate::data::metrics::Errors;
-use crate::data::record::{Dataset, KnownBeginning, Record, RepeatedProtocol, protocols};
+use crate::data::record::{Dataset, Record, RepeatedProtocol, protocols};
 use crate::error::{Error, Result};
 use crate::model::Model;
 pub(crate) use pooled::PooledErrors;
@@ -51,16 +52,26 @@ impl Fold {
         self.held_out.records().iter().filter(is_whole).any(lies_outside)
     }
 
-    /// The same with a known beginning of each record that is held out as a whole, unless nothing would be left to score.
-    pub(crate) fn with_known_beginning(self, beginning: KnownBeginning) -> Self {
+    /// The same with a known beginning of each record that is held out as a whole, with the outputs of `all` data, of which
+    /// this is a fold; unless nothing would be left to score.
+    pub(crate) fn with_known_beginning(self, beginning: KnownBeginning, all: &Dataset) -> Self {
         if beginning.is_none() {
             return self;
         }
-        let is_part =
-            |record: &Record| self.train.records().iter().any(|other| other.name() == record.name());
-        let rows = |record: &Record| if is_part(record) { 0 } else { beginning.rows(record) };
-        let held_out = self.held_out.clone().with_known_beginnings(rows);
+        let known = |record: &Record| {
+            let whole = all.records().iter().find(|whole| whole.name() == record.name());
+            let whole = whole.filter(|_| !holds(&self.train, record));
+            whole.map_or(&[][..], |whole| &whole.output()[..beginning.rows(whole)])
+        };
+        let held_out = self.held_out.clone().with_known_outputs(known);
         if held_out.scored() > 0 { Self { held_out, ..self } } else { self }
+    }
+
+    /// The records of `all` data that this is fitted to, with all their outputs; `None` if parts of a record are held out.
+    pub(crate) fn trained_of(&self, all: &Dataset) -> Option<Dataset> {
+        let is_cut = self.held_out.records().iter().any(|record| holds(&self.train, record));
+        let is_trained = |index: usize| holds(&self.train, &all.records()[index]);
+        (!is_cut).then(|| all.partition(is_trained).0)
     }
 
     /// The predictions of a model for the held-out rows with an output, in free run.
@@ -72,6 +83,11 @@ impl Fold {
         }
         Ok(predicted)
     }
+}
+
+/// True if the data have a record of this name.
+fn holds(data: &Dataset, record: &Record) -> bool {
+    data.records().iter().any(|other| other.name() == record.name())
 }
 
 /// Largest difference of an amplitude or a speed, relative to those of other records, that does not count as outside.
@@ -408,7 +424,7 @@ impl<'d> CrossValidator<'d> {
     /// # Panics
     /// If there are not so many folds.
     pub fn fold(&self, place: usize) -> Fold {
-        self.cuts[place].fold(self.data).with_known_beginning(self.beginning)
+        self.cuts[place].fold(self.data).with_known_beginning(self.beginning, self.data)
     }
 
     /// Evaluates a model, which was fitted to the training data of a fold, on its held-out data.

@@ -21,10 +21,7 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     let data = data_of(tables, &arguments.columns)?;
     let spec = arguments.columns.rate.request(chosen, &data.set).with_context(|| file.clone())?;
     warn_of_ignored(chosen);
-    let beginning = match &arguments.known {
-        Some(known) => known.beginning(data.set.names().time.as_deref())?,
-        None => spec.judged_beginning(),
-    };
+    let beginning = spec.judged_beginning(data.set.names())?;
     let folds = CrossValidator::new(&data.set, arguments.folds).with_context(|| file)?;
     let folds = folds.with_known_beginning(beginning);
     say_beforehand(&data, &spec, "stopping; the finished folds are reported")?;

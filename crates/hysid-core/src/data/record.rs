@@ -124,6 +124,13 @@ impl Record {
         self
     }
 
+    /// The same record with these outputs known at its beginning, in the place of its own.
+    fn with_known_outputs(mut self, known: &[f64]) -> Self {
+        self.output[..known.len()].fill(f64::NAN);
+        self.known = known.to_vec();
+        self
+    }
+
     /// Outputs of the known beginning; empty without.
     pub fn known(&self) -> &[f64] {
         &self.known
@@ -241,50 +248,6 @@ impl Record {
 
 fn columns(inputs: &[Values]) -> Vec<&[f64]> {
     inputs.iter().map(|input| &**input).collect()
-}
-
-/// The known beginning of records: how many of their first rows have a known output.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum KnownBeginning {
-    /// Number of rows.
-    Rows(usize),
-    /// Duration from the first row, in the unit of time.
-    Time(f64),
-    /// Share of the rows.
-    Share(f64),
-}
-
-impl Default for KnownBeginning {
-    /// No known beginning.
-    fn default() -> Self {
-        Self::Rows(0)
-    }
-}
-
-impl KnownBeginning {
-    /// The beginning of each record with which a model with free initial states is judged: a tenth of its rows. Designed.
-    pub const JUDGED: Self = Self::Share(0.1);
-
-    /// True without a known beginning.
-    pub fn is_none(self) -> bool {
-        matches!(self, Self::Rows(0))
-            || matches!(self, Self::Time(value) | Self::Share(value) if value <= 0.0)
-    }
-
-    /// Rows of a record; none for a time where the record has none.
-    pub fn rows(self, record: &Record) -> usize {
-        self.rows_of(record.len(), record.time())
-    }
-
-    /// As [`KnownBeginning::rows`], of so many rows with these time stamps.
-    pub fn rows_of(self, rows: usize, time: Option<&[f64]>) -> usize {
-        match (self, time) {
-            (Self::Rows(known), _) => known.min(rows),
-            (Self::Share(share), _) => (share * rows as f64) as usize,
-            (Self::Time(duration), Some(time)) => time.partition_point(|t| t - time[0] <= duration),
-            (Self::Time(_), None) => 0,
-        }
-    }
 }
 
 /// Above this number of pairs, records are not compared with each other.
@@ -591,6 +554,19 @@ impl Dataset {
             record.with_known_beginning(rows)
         };
         self.records = self.records.into_iter().map(known).collect();
+        self
+    }
+
+    /// The same data with these outputs known at the beginning of each record, in the place of its own.
+    ///
+    /// # Panics
+    /// If there are more outputs than rows.
+    pub fn with_known_outputs<'k>(mut self, known: impl Fn(&Record) -> &'k [f64]) -> Self {
+        let begun = |record: Record| {
+            let known = known(&record);
+            record.with_known_outputs(known)
+        };
+        self.records = self.records.into_iter().map(begun).collect();
         self
     }
 

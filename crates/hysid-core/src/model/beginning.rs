@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::data::record::{Dataset, KnownBeginning, Record};
+use crate::data::known_beginning::KnownBeginning;
+use crate::data::record::{Dataset, Record};
 use crate::error::{Channel, DataProblem, Result};
 use crate::model::Model;
 

@@ -6,8 +6,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::known_beginning::KnownBeginning;
 use crate::data::rate::RateMethod;
-use crate::data::record::{ColumnNames, KnownBeginning};
+use crate::data::record::ColumnNames;
 use crate::data::unit;
 use crate::error::{Error, LARGEST_VALUE, MOST_TURNS, Result};
 use crate::law::Classical;

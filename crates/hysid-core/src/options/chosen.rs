@@ -285,6 +285,7 @@ mod tests {
             OptionValues::Whole => [json!(2), json!(3)],
             OptionValues::Positive => [json!([0.5]), json!([0.6])],
             OptionValues::Flag | OptionValues::Truth => [json!(true), json!(false)],
+            OptionValues::Span => [json!(100), json!("0.5s")],
             OptionValues::Names(names) => [json!(names()[0]), json!(names()[1])],
             OptionValues::Fraction | OptionValues::ZeroOr(..) | OptionValues::Number(..) => {
                 [json!(0.3), json!(0.4)]

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::known_beginning::KnownSpan;
 use crate::data::rate::RateMethod;
 use crate::for_each_law;
 use crate::law::Law;
@@ -169,6 +170,9 @@ pub struct ClassicalOptions {
     /// `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<FittedError>,
+    /// Known beginning of the records that the model will be used on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known: Option<KnownSpan>,
     /// Whether random stops deteriorate; chosen by cross-validation if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deterioration: Option<bool>,

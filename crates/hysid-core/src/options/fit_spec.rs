@@ -4,8 +4,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::initial_state::InitialState;
+use crate::data::known_beginning::{KnownBeginning, KnownSpan};
 use crate::data::rate::RateMethod;
-use crate::data::record::KnownBeginning;
+use crate::data::record::ColumnNames;
+use crate::error::Result;
 use crate::options::classical::ClassicalOptions;
 use crate::options::effort::Effort;
 use crate::options::model_name::{Automatic, ModelName};
@@ -66,6 +68,9 @@ pub struct AutoOptions {
     /// Initial state of every record.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub initial_state: Option<InitialState>,
+    /// Known beginning of the records that the model will be used on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known: Option<KnownSpan>,
     /// λ: penalty `½ λ ‖c‖²` on the output weights of networks (theory.md (3.1)).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ridge: Option<f64>,
@@ -97,6 +102,7 @@ impl Default for AutoOptions {
             history: None,
             warm_up: None,
             initial_state: None,
+            known: None,
             ridge: None,
             decay: None,
             seed: SEED,
@@ -154,9 +160,22 @@ impl FitSpec {
         self.initial_state() == Some(InitialState::Free)
     }
 
-    /// The known beginning with which models of this fit are judged; none unless they have free states.
-    pub fn judged_beginning(&self) -> KnownBeginning {
-        if self.has_free_states() { KnownBeginning::JUDGED } else { KnownBeginning::default() }
+    /// The known beginning with which models are judged on data with these columns: that which was asked for, or one by
+    /// default if they have free states.
+    ///
+    /// # Errors
+    /// A duration in another unit than the time.
+    pub fn judged_beginning(&self, names: &ColumnNames) -> Result<KnownBeginning> {
+        let known = match self {
+            Self::Network(options) => &options.known,
+            Self::Classical(options) => &options.known,
+            Self::Auto(options) => &options.known,
+        };
+        match known {
+            Some(known) => known.beginning(names),
+            None if self.has_free_states() => Ok(KnownBeginning::JUDGED),
+            None => Ok(KnownBeginning::default()),
+        }
     }
 
     /// The same with another initial state of every record.

@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::known_beginning::KnownSpan;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
@@ -117,6 +118,9 @@ pub struct FitOptions {
     /// Input transform.
     #[serde(default, skip_serializing_if = "InputOptions::is_none")]
     pub shaping: InputOptions,
+    /// Known beginning of the records that the model will be used on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known: Option<KnownSpan>,
     /// The trainer.
     pub training: Trainer,
     /// Number of random networks, or populations, to start from; the lowest objective becomes the model.
@@ -156,6 +160,7 @@ impl FitOptions {
             no_deterioration: false,
             rate: None,
             shaping: InputOptions::default(),
+            known: None,
             training,
             starts: training.default_starts(),
             epochs: training.default_epochs(),

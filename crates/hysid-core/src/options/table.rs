@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::data::initial_state::InitialState;
+use crate::data::known_beginning::{KNOWN_SPANS, KnownSpan};
 use crate::error::{OptionError, Result};
 use crate::law::duhem_nn::MOST_STATES;
 use crate::law::hysteretic_dynamics::MOST_PARTS;
@@ -80,6 +81,8 @@ pub enum OptionValues {
     Flag,
     /// True or false.
     Truth,
+    /// A number of rows, or a time with its unit.
+    Span,
     /// One of these names.
     Names(fn() -> Vec<&'static str>),
 }
@@ -229,6 +232,15 @@ options! {
             ModelName::Auto(_) => Preset::Chosen,
             _ => Preset::Name(InitialState::default().name()),
         },
+        used_by: |_, _| true,
+    }
+    known: KnownSpan {
+        meaning: "Measured beginning of each record that the model will be used on, from which it will find its state, as \
+                  with --known of `hysid evaluate`. Held-out records are judged with it; `auto` then also tries free \
+                  initial states",
+        group: Training,
+        values: OptionValues::Span,
+        default: |_, _| Preset::Off,
         used_by: |_, _| true,
     }
     training: Trainer {
@@ -478,7 +490,8 @@ fn of_none(_: ModelName, _: Trainer) -> bool {
 }
 
 /// Options of every model, whatever it is.
-const OF_EVERY_MODEL: [&str; 6] = ["model", "members", "companding", "warm_up", "initial_state", "seed"];
+const OF_EVERY_MODEL: [&str; 7] =
+    ["model", "members", "companding", "warm_up", "initial_state", "known", "seed"];
 
 /// Checks values of options.
 ///
@@ -568,6 +581,7 @@ impl OptionValues {
             Self::Number(low, high) => format!("choose a number from {low} to {high:e}"),
             Self::Positive => "numbers above 0 are needed, such as 0.1, 0.2, 0.5".into(),
             Self::Flag | Self::Truth => "choose true or false".into(),
+            Self::Span => KNOWN_SPANS.into(),
             Self::Names(names) => format!("choose one of {}", names().join(", ")),
         }
     }
@@ -580,6 +594,7 @@ impl OptionValues {
             Self::Number(..) => "NUMBER",
             Self::Positive => "LIST",
             Self::Flag | Self::Truth => "BOOL",
+            Self::Span => "ROWS|TIME",
             Self::Names(_) => "NAME",
         }
     }
@@ -599,6 +614,10 @@ impl OptionValues {
                 !values.is_empty() && values.iter().all(is_positive)
             }),
             Self::Flag | Self::Truth => value.is_boolean(),
+            Self::Span => match value.as_str() {
+                Some(text) => text.parse::<KnownSpan>().is_ok(),
+                None => value.as_u64().is_some_and(|rows| rows > 0),
+            },
             Self::Names(names) => {
                 let known = |name: &str| name == "epnn" || names().contains(&name);
                 value.as_str().is_some_and(known)
@@ -612,6 +631,7 @@ impl OptionValues {
             Self::Fraction | Self::ZeroOr(..) | Self::Number(..) => finite(text),
             Self::Positive => text.split(',').map(finite).collect::<Option<Vec<_>>>().map(Value::from),
             Self::Flag | Self::Truth => text.parse::<bool>().ok().map(Value::from),
+            Self::Span => serde_json::to_value(text.parse::<KnownSpan>().ok()?).ok(),
             Self::Names(_) => Some(Value::from(text)),
         }
     }

@@ -95,6 +95,7 @@ fn kind(option: &FitOption, module: &str) -> String {
         OptionValues::Fraction | OptionValues::ZeroOr(..) | OptionValues::Number(..) => "float".into(),
         OptionValues::Positive => "ArrayLike".into(),
         OptionValues::Flag | OptionValues::Truth => "bool".into(),
+        OptionValues::Span => "int | str".into(),
         OptionValues::Names(_) => format!("{module}{}", alias(option)),
     }
 }

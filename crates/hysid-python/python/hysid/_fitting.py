@@ -44,6 +44,7 @@ def fit(
     # Training
     warm_up: int | None = None,
     initial_state: _options.InitialStateName | None = None,
+    known: int | str | None = None,
     training: _options.TrainingName | None = None,
     effort: _options.EffortName | None = None,
     starts: int | None = None,
@@ -141,6 +142,10 @@ def fit(
         few histories, chosen for each record before the fit), or free (internal states, fitted together with the
         parameters, for records that are cut out of a longer past; duhem-nn and auto). Default: chosen by
         cross-validation for auto; otherwise virgin.
+    known : int | str, optional
+        Measured beginning of each record that the model will be used on, from which it will find its state, as with
+        --known of `hysid evaluate`. Held-out records are judged with it; `auto` then also tries free initial states.
+        Default: off.
     training : {"subgradient", "levenberg-marquardt", "hybrid", "genetic"}, optional
         Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic algorithm,
         or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default: subgradient.

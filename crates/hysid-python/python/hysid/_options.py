@@ -81,6 +81,7 @@ class Options(TypedDict, total=False):
     # Training
     warm_up: int | None
     initial_state: InitialStateName | None
+    known: int | str | None
     training: TrainingName | None
     effort: EffortName | None
     starts: int | None

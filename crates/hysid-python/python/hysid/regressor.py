@@ -51,9 +51,9 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         As of `hysid.fit`; the default ``"auto"`` is accurate and slow. In a search or a cross-validation, name a
         model, which takes seconds.
     members, stops, hidden, relaxation, no_deterioration, history, companding, rate_companding, warm_up : optional
-    initial_state, training, effort, starts, epochs, population, stall, validation, ridge, decay, operators : optional
-    states, modes, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds, degradation : optional
-    asymmetric, differential_form, resonance, lagged_input, acceleration, odd, error : optional
+    initial_state, known, training, effort, starts, epochs, population, stall, validation, ridge, decay : optional
+    operators, states, modes, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds : optional
+    degradation, asymmetric, differential_form, resonance, lagged_input, acceleration, odd, error : optional
     time_limit, threads : optional
         As of `hysid.fit`.
     random_state : int, RandomState instance or None, default None
@@ -99,6 +99,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         rate_companding: float | None = None,
         warm_up: int | None = None,
         initial_state: _options.InitialStateName | None = None,
+        known: int | str | None = None,
         training: _options.TrainingName | None = None,
         effort: _options.EffortName | None = None,
         starts: int | None = None,
@@ -143,6 +144,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.rate_companding = rate_companding
         self.warm_up = warm_up
         self.initial_state = initial_state
+        self.known = known
         self.training = training
         self.effort = effort
         self.starts = starts

@@ -63,7 +63,7 @@ use prepared_data::{PreparedData, as_chosen};
 use prior::LoopEvidence;
 use selection::selection;
 use stages::Stages;
-use trial::{FoldBench, HeldOut, Trial, fit_members};
+use trial::{FoldBench, HeldOut, Trial};
 use work::AutoWork;
 
 const MOST_FOLDS: usize = 5;
@@ -117,6 +117,8 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     let evidence = LoopEvidence::of(data);
     let folds =
         if evidence.is_one_loop() { folds_of_loop(&few) } else { folds_to_choose_by(&few, MOST_FOLDS) };
+    let beginning = FitSpec::Auto(options.clone()).judged_beginning(data.names())?;
+    let folds = folds.into_iter().map(|fold| fold.with_known_beginning(beginning, data)).collect();
     let work = AutoWork::new(observer, FITS_EXPECTED);
 
     // Should the observer stop everything soon, this is what there is.
@@ -137,7 +139,7 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
         return without_folds(data, fitted_to, options, &candidates[0], alone, &work);
     }
     let work = &work;
-    let bench = FoldBench { data: fitted_to, folds: &held_out, work };
+    let bench = FoldBench { data: fitted_to, whole: data, folds: &held_out, work };
     let mut stages = Stages { bench, options, evidence, trials: Vec::new(), dropped: Vec::new() };
     stages.run(candidates, first_member);
     if !options.always_rate && options.only.is_none() && data.speeds() == SpeedEvidence::OfAmplitude {
@@ -170,7 +172,7 @@ fn without_folds(
     let mut trials = [Trial::of(candidate.clone())];
     let starts = if candidate.is_random() { options.starts.min(options.members) } else { 1 };
     let wanted: Vec<(usize, usize)> = (0..starts).map(|start| (0, start)).collect();
-    fit_members(&mut trials, &wanted, few, work);
+    FoldBench { data: few, whole: data, folds: &[], work }.fit_members(&mut trials, &wanted);
     let [trial] = trials;
     let members: Vec<Model> = trial.members.into_values().collect();
     if members.is_empty() || options.members == 1 {
@@ -248,7 +250,7 @@ impl EnsembleSelection<'_, '_, '_> {
         let FoldBench { work, .. } = self.bench;
         let Some(all) = self.combination(|_| true) else { return Ok(None) };
         let wanted: Vec<(usize, usize)> = all.leaves().iter().map(|leaf| (leaf.place, leaf.start)).collect();
-        fit_members(&mut self.trials, &wanted, self.bench.data, work);
+        self.bench.fit_members(&mut self.trials, &wanted);
         // Those that there was no time for are left out.
         let is_fitted = |leaf: Leaf| self.trials[leaf.place].members.contains_key(&leaf.start);
         let Some(combination) = all.only(is_fitted).or_else(|| self.of_fitted()) else { return Ok(None) };

@@ -20,7 +20,7 @@ pub fn cross_validate(
     observer: &mut Observer<'_>,
 ) -> Result<CrossValidation> {
     let mut validator =
-        CrossValidator::new(data, most_folds)?.with_known_beginning(request.judged_beginning());
+        CrossValidator::new(data, most_folds)?.with_known_beginning(request.judged_beginning(data.names())?);
     let count = validator.folds();
     for place in 0..count {
         let fold = validator.fold(place);

@@ -3,7 +3,7 @@
 
 use crate::scaffold::*;
 use hysid::data::initial_state::InitialState;
-use hysid::data::record::KnownBeginning;
+use hysid::data::known_beginning::KnownBeginning;
 use hysid::law::duhem_nn::{Cell, CellLayout, CellRun, CellShape, DuhemNn, FurtherInput, Input};
 use hysid::law::series::run;
 use hysid::options::input_options::InputOptions;

@@ -4,7 +4,7 @@
 use crate::model_file::with_fitting_checksum;
 use crate::scaffold::*;
 use hysid::data::initial_state::lead_in_of_period;
-use hysid::data::record::KnownBeginning;
+use hysid::data::known_beginning::KnownBeginning;
 use hysid::law::preisach::{Preisach, PreisachWeights};
 use hysid::law::series::run;
 use hysid_core::elementary::{exp, ln, sin, square};

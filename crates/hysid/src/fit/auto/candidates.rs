@@ -176,6 +176,11 @@ impl Candidate {
         OTHER_PENALTIES[..count].iter().copied().map(with).collect()
     }
 
+    /// True if the states before each record are found together with its parameters.
+    pub fn has_free_states(&self) -> bool {
+        self.request.has_free_states()
+    }
+
     /// True for a model with inertia, which is fitted to rows without gaps.
     pub fn is_dynamic(&self) -> bool {
         self.kind == CandidateKind::Dynamic
@@ -273,6 +278,10 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
     requests.extend(of_kind(|model| !model.is_random() && model.is_searched()));
     let mut all: Vec<Candidate> = requests.iter().map(Candidate::alone).collect();
     all.retain(|candidate| is_allowed(candidate, request));
+    if options.known.is_some() && options.initial_state.is_none() {
+        let free = AutoOptions { initial_state: Some(InitialState::Free), ..options.clone() };
+        all.extend(candidates(data, &free));
+    }
     all
 }
 

@@ -8,7 +8,7 @@
 use std::borrow::Cow;
 
 use crate::data::initial_state::InitialState;
-use crate::data::record::{Dataset, KnownBeginning, Record};
+use crate::data::record::{Dataset, Record};
 use crate::error::Result;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::score::Score;
@@ -93,10 +93,8 @@ impl PreparedData {
         }
     }
 
-    /// Records whose states are found together with the parameters; those that are held out have a known beginning.
+    /// Records whose states are found together with the parameters.
     pub fn with_free_states(data: &Dataset, folds: Vec<Fold>) -> Self {
-        let judged = |fold: Fold| fold.with_known_beginning(KnownBeginning::JUDGED);
-        let folds = folds.into_iter().map(judged).collect();
         let warm_up = WarmUp::decided(0);
         Self { data: data.clone(), folds, warm_up, is_changed: false, found: None }
     }
@@ -213,7 +211,7 @@ impl Ways<'_, '_, '_> {
         let judges = std::iter::once(self.quick.clone()).chain(self.relays());
         let mut trials: Vec<Trial> = judges.map(Trial::of).collect();
         let places: Vec<usize> = (0..trials.len()).collect();
-        FoldBench { data, folds: &held_out, work: self.work }.try_start(&mut trials, &places, 0);
+        FoldBench { data, whole: data, folds: &held_out, work: self.work }.try_start(&mut trials, &places, 0);
         let tried = trials.iter().filter(|trial| !trial.starts.is_empty());
         let errors = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).mean_percent());
         errors.min_by(f64::total_cmp)

@@ -21,7 +21,7 @@ use crate::fit::auto::combination::Combination;
 use crate::fit::auto::errors_held_out;
 use crate::fit::auto::prior::LoopEvidence;
 use crate::fit::auto::score::Score;
-use crate::fit::auto::trial::{FoldBench, FoldRows, FoldTrial, HeldOut, Trial, fit_members};
+use crate::fit::auto::trial::{FoldBench, FoldRows, FoldTrial, HeldOut, Trial};
 use crate::fit::auto::work::AutoWork;
 use crate::fit::law::search::spread;
 use crate::model::input_transform::{InputTransform, origin};
@@ -178,7 +178,7 @@ impl SingleSources<'_, '_, '_> {
     fn plain(&mut self, place: usize) -> Option<Model> {
         let wanted: Vec<(usize, usize)> =
             (0..self.trials[place].starts.len()).map(|start| (place, start)).collect();
-        fit_members(self.trials, &wanted, self.bench.data, self.bench.work);
+        self.bench.fit_members(self.trials, &wanted);
         closest_to_training(&self.trials[place]).cloned()
     }
 

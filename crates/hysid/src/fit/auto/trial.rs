@@ -1,5 +1,6 @@
 //! Candidates on folds: the predictions of each start of each candidate for held-out data.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use crate::data::record::Dataset;
@@ -191,6 +192,8 @@ enum TrialOutcome {
 #[derive(Clone, Copy)]
 pub(super) struct FoldBench<'w, 'o, 'a> {
     pub data: &'w Dataset,
+    /// The data with all their outputs, of which a candidate with free states needs each.
+    pub whole: &'w Dataset,
     pub folds: &'w [HeldOut],
     pub work: &'w AutoWork<'o, 'a>,
 }
@@ -247,29 +250,35 @@ impl FoldBench<'_, '_, '_> {
         let candidate = &trials[job.trial].candidate;
         // A candidate that fails on a fold is none; why, its name alone would not tell the user.
         let Some(fold) = job.fold else {
-            let fitted = self.work.fit(candidate, self.data, job.start).ok().flatten()?;
-            return Some(TrialOutcome::OnEverything(fitted.model));
+            return self.fit(candidate, job.start).map(TrialOutcome::OnEverything);
         };
         let fold = &self.folds[fold].fold;
-        let model = self.work.fit(&candidate.on_a_fold(), &fold.train, job.start).ok().flatten()?.model;
+        let train = match candidate.has_free_states() {
+            true => Cow::Owned(fold.trained_of(self.whole)?),
+            false => Cow::Borrowed(&fold.train),
+        };
+        let model = self.work.fit(&candidate.on_a_fold(), &train, job.start).ok().flatten()?.model;
         let predicted = fold.predicted_by(&model).ok()?;
         let is_sound = predicted.iter().all(|y| y.is_finite());
         is_sound.then_some(TrialOutcome::OnFold(FoldTrial { model, predicted }))
     }
-}
 
-/// Fits candidates to everything, each given by its place and start, unless that has been done.
-pub(super) fn fit_members(trials: &mut [Trial], wanted: &[(usize, usize)], data: &Dataset, work: &AutoWork) {
-    let is_missing = |(place, start): &&(usize, usize)| !trials[*place].members.contains_key(start);
-    let missing: Vec<&(usize, usize)> = wanted.iter().filter(is_missing).collect();
-    let fit = |&&(place, start): &&(usize, usize)| {
-        let fitted = work.fit(&trials[place].candidate, data, start).ok().flatten();
-        fitted.map(|fitted| fitted.model)
-    };
-    let fitted: Vec<Option<Model>> = parallel::each(&missing, fit);
-    for (&&(place, start), model) in missing.iter().zip(fitted) {
-        if let Some(model) = model {
-            trials[place].members.insert(start, model);
+    /// A fit of a candidate to everything.
+    fn fit(&self, candidate: &Candidate, start: usize) -> Option<Model> {
+        let data = if candidate.has_free_states() { self.whole } else { self.data };
+        self.work.fit(candidate, data, start).ok().flatten().map(|fitted| fitted.model)
+    }
+
+    /// Fits candidates to everything, each given by its place and start, unless that has been done.
+    pub fn fit_members(&self, trials: &mut [Trial], wanted: &[(usize, usize)]) {
+        let is_missing = |(place, start): &&(usize, usize)| !trials[*place].members.contains_key(start);
+        let missing: Vec<&(usize, usize)> = wanted.iter().filter(is_missing).collect();
+        let fit = |&&(place, start): &&(usize, usize)| self.fit(&trials[place].candidate, start);
+        let fitted: Vec<Option<Model>> = parallel::each(&missing, fit);
+        for (&&(place, start), model) in missing.iter().zip(fitted) {
+            if let Some(model) = model {
+                trials[place].members.insert(start, model);
+            }
         }
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn better(quick: Candidate, data: &Dataset, folds: &[Fold], work: &Au
         folds.iter().map(|fold| Fold { held_out: fold.held_out.clone().warmed_up(rows), ..fold.clone() });
     let folds: Vec<HeldOut> = behind.filter(|fold| fold.held_out.scored() > 0).map(HeldOut::of).collect();
     let mut trials = [Trial::of(quick.clone()), Trial::of(quick.warmed_up(rows))];
-    FoldBench { data, folds: &folds, work }.try_start(&mut trials, &[0, 1], 0);
+    FoldBench { data, whole: data, folds: &folds, work }.try_start(&mut trials, &[0, 1], 0);
     let error = |trial: &Trial| {
         (!trial.starts.is_empty()).then(|| Score::of(&trial.predicted, &folds, |_| true).mean_percent())
     };

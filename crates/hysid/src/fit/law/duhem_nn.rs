@@ -42,8 +42,8 @@ use crate::optimise::levenberg_marquardt::{
 use crate::optimise::multi_start::{MultiStart, RoundPlan, SearchStart};
 use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
-use crate::options::classical::ClassicalModel;
-use crate::options::classical::{ClassicalOptions, FittedError};
+use crate::options::FitSpec;
+use crate::options::classical::{ClassicalModel, ClassicalOptions, FittedError};
 use crate::options::input_options::InputOptions;
 use crate::options::table::check_counts;
 use crate::stop_check::StopCheck;
@@ -392,6 +392,8 @@ struct DuhemTask<'a> {
     targets: Vec<Vec<f64>>,
     /// Outputs of all rows, if states are free.
     whole_targets: Vec<Vec<f64>>,
+    /// Rows of the known beginning of each record with which it is judged.
+    known: Vec<usize>,
     rows: usize,
     /// Weights of the records, if the objective is a sum over records.
     by_record: Option<RecordWeights>,
@@ -428,9 +430,12 @@ impl<'a> DuhemTask<'a> {
         let targets: Vec<Vec<f64>> = series.iter().map(target).collect();
         let rows = targets.iter().flatten().filter(|y| !y.is_nan()).count();
         let further = series.iter().map(further_of).collect();
+        let beginning = FitSpec::Classical(options.clone()).judged_beginning(data.names())?;
+        let scored = data.records().iter().filter(|record| record.scored() > 0);
+        let known = scored.map(|record| beginning.rows(record)).collect();
         let by_record = is_by_record.then(|| RecordWeights::of(&targets, error, is_free));
         let drives = series.iter().map(scaled).collect();
-        Ok(Self { frame, drives, further, targets, whole_targets, rows, by_record, stop })
+        Ok(Self { frame, drives, further, targets, whole_targets, known, rows, by_record, stop })
     }
 
     fn random(&self, seed: u64, start: usize) -> Vec<f64> {

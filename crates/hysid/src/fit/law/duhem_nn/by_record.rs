@@ -23,7 +23,6 @@ use crate::optimise::levenberg_marquardt::{Slope, step_within};
 use crate::optimise::parallel;
 use crate::options::classical::FittedError;
 use crate::stop_check::StopCheck;
-use hysid_core::data::record::KnownBeginning;
 
 /// Records whose sums are formed together.
 const TOGETHER: usize = 16;
@@ -404,7 +403,7 @@ impl DuhemTask<'_> {
     fn errors_after_beginning(&self, cell: &Cell, prior: &StatePrior, record: usize) -> Option<Vec<f64>> {
         let (drive, further) = (&self.drives[record], &self.further[record]);
         let outputs = &self.whole_targets[record];
-        let known = KnownBeginning::JUDGED.rows_of(drive.len(), None);
+        let known = self.known[record];
         let width = further.len() / drive.len();
         let states = cell.found_states(prior, &drive[..known], &further[..known * width], &outputs[..known]);
         let run = CellRun {
