@@ -57,7 +57,7 @@ pub use inverse::{Inverse, Inversion, Inverted, MOST_TRIALS, Reach, Reference};
 use ranges::Ranges;
 use runner::{OutputSpread, Runner};
 pub use simulation::Simulation;
-pub use stepper::{Snapshot, Stepper};
+pub use stepper::{ADAPTATION_ROWS, Snapshot, Stepper, Tracking};
 
 /// A fitted model, which simulates in the user's units.
 #[derive(Debug, Clone, PartialEq)]
