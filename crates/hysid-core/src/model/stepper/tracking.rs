@@ -114,7 +114,7 @@ impl Stepper<'_> {
 /// What a stepper has learned from measured outputs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tracker {
-    /// Middle and half the width of the trained output; a width of 0 counts as 2.
+    /// Middle and half the width of the trained output.
     origin: f64,
     scale: f64,
     /// Output of the model at the last sample.
@@ -135,10 +135,10 @@ pub(super) struct Tracker {
 
 impl Tracker {
     pub fn new(model: &Model) -> Self {
-        let (low, high) = model.trained_ranges().output;
+        let [origin, scale] = model.trained_ranges().middle_and_half_width();
         Self {
-            origin: 0.5 * low + 0.5 * high,
-            scale: if high > low { 0.5 * high - 0.5 * low } else { 1.0 },
+            origin,
+            scale,
             output: None,
             residuals: [None; 3],
             products: [0.0; 3],
