@@ -111,6 +111,9 @@ pub const LARGEST_VALUE: f64 = 1e100;
 /// Most turning points of a lead-in: a model runs along them before the first row of each record.
 pub const MOST_TURNS: usize = 1_000;
 
+/// Shortest memory of [`Stepper::adapt`](crate::model::Stepper::adapt) in rows.
+pub const FEWEST_ADAPTATION_ROWS: usize = 10;
+
 /// A defect of a record, with its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DataError {
@@ -357,6 +360,17 @@ pub enum SampleError {
     /// A wanted output of NaN or infinity.
     #[error("the wanted output is {0}, not a finite number")]
     Wanted(f64),
+    /// A measured output of NaN or infinity.
+    #[error("the measured output is {0}, not a finite number")]
+    Measured(f64),
+    /// A measured output where no sample is committed.
+    #[error(
+        "there is no committed sample that this output was measured at: make a step, or commit the trial, first"
+    )]
+    NotCommitted,
+    /// Rows of memory of an adaptation.
+    #[error("a memory of {0} rows: at least {FEWEST_ADAPTATION_ROWS} are needed")]
+    AdaptationRows(usize),
 }
 
 /// A bound of an [`Inverse`](crate::model::Inverse) that cannot be used, or a row that it cannot take.

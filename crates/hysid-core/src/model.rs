@@ -58,7 +58,7 @@ pub use inverse::{Inverse, Inversion, Inverted, MOST_TRIALS, Reach, Reference};
 use ranges::Ranges;
 use runner::{OutputSpread, Runner};
 pub use simulation::Simulation;
-pub use stepper::{Snapshot, Stepper};
+pub use stepper::{ADAPTATION_ROWS, Snapshot, Stepper, Tracking};
 
 /// A fitted model, which simulates in the user's units.
 #[derive(Debug, Clone, PartialEq)]
@@ -200,6 +200,13 @@ impl TrainedRanges {
             return Ok(());
         }
         Err(Error::Parts("a range that it was trained on is none".into()))
+    }
+
+    /// Middle and half the width of the output, 1 if it was constant: the scale of gain and offset in
+    /// [`Stepper::adapt`] (theory.md (8.69)).
+    pub fn middle_and_half_width(&self) -> [f64; 2] {
+        let (low, high) = self.output;
+        [0.5 * low + 0.5 * high, if high > low { 0.5 * high - 0.5 * low } else { 1.0 }]
     }
 }
 

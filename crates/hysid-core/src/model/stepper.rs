@@ -1,6 +1,7 @@
 //! Simulation of a model sample by sample.
 
 mod snapshot;
+mod tracking;
 mod trial;
 
 use std::borrow::Cow;
@@ -15,10 +16,13 @@ use crate::model::input_transform::{InputPast, SeenLeadIn, limited};
 use crate::model::{Model, Predictor};
 use crate::network::Simulator;
 
+use tracking::Tracker;
+
 pub use snapshot::Snapshot;
+pub use tracking::{ADAPTATION_ROWS, Tracking};
 
 /// A sample-by-sample simulation. With the rates that [`Model::simulate`] uses, its outputs are the same to
-/// the last bit.
+/// the last bit, unless measured outputs [correct](Stepper::correct) or [adapt](Stepper::adapt) them.
 #[derive(Debug, Clone)]
 pub struct Stepper<'m> {
     model: Cow<'m, Model>,
@@ -39,6 +43,8 @@ struct StepperState {
     last: Option<(f64, f64)>,
     /// How far outside the trained range the input has been; `None` without a band, and in a member of an ensemble.
     excursion: Option<Excursion>,
+    /// Corrections by measured outputs; not used in a member of an ensemble.
+    tracker: Tracker,
 }
 
 #[derive(Debug, Clone)]
@@ -120,10 +126,11 @@ impl<'m> Stepper<'m> {
             let rows: Vec<f64> = self.lead_in.iter().chain(&inputs[..1]).copied().collect();
             self.state.lead_in(&self.model, &rows, inputs);
         }
-        Ok(self.state.advance(&self.model, inputs, time, rate))
+        let output = self.state.advance(&self.model, inputs, time, rate);
+        Ok(self.state.tracker.step(output))
     }
 
-    /// Returns to the initial state of the model.
+    /// Returns to the initial state of the model and forgets what was learned from measured outputs.
     pub fn reset(&mut self) {
         self.committed = None;
         self.state.reset(&self.model);
@@ -131,7 +138,7 @@ impl<'m> Stepper<'m> {
         self.lead_in.clone_from(&self.model.lead_in);
     }
 
-    /// Returns to another initial state.
+    /// Returns to another initial state and forgets what was learned from measured outputs.
     ///
     /// # Errors
     /// An unknown state. The stepper is then unchanged.
@@ -168,6 +175,7 @@ impl StepperState {
             seen: Vec::with_capacity(model.inputs() + model.preprocessing.added_inputs()),
             last: None,
             excursion: None,
+            tracker: Tracker::new(model),
         }
     }
 
@@ -293,5 +301,6 @@ impl StepperState {
         }
         self.past = InputPast::default();
         self.last = None;
+        self.tracker = Tracker::new(model);
     }
 }

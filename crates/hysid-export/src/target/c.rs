@@ -1,4 +1,5 @@
-//! C99: a header and a source file of the model, the same of its inverse, and a program that tests them.
+//! C99: a header and a source file of the model, the same of its corrections and of its inverse, and a program that tests
+//! them.
 
 pub(crate) mod elementary;
 mod header;
@@ -6,6 +7,7 @@ mod inverse;
 mod inverse_test;
 mod self_test;
 mod source;
+mod tracking;
 
 use crate::error::Error;
 use crate::reserved;
@@ -24,6 +26,7 @@ pub(super) const BACK_END: BackEnd = BackEnd {
 
 fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
     let mut files = sources(subject);
+    files.extend(tracking::files(subject));
     files.push(test(subject));
     Ok(files.into())
 }
@@ -62,6 +65,12 @@ one, `-DHYSID_TWO_ROUNDINGS` makes it as fast; the outputs then differ from thos
     };
     filled(
         include_str!("c/usage.md.txt"),
-        &[("NAME", name), ("@inverse@", &inverse), ("@fast@", fast), ("@more@", &more)],
+        &[
+            ("NAME", name),
+            ("UPPER", &name.to_uppercase()),
+            ("@inverse@", &inverse),
+            ("@fast@", fast),
+            ("@more@", &more),
+        ],
     )
 }

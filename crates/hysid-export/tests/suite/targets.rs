@@ -18,3 +18,4 @@ mod opensees;
 mod python;
 mod states;
 mod tools;
+mod tracking;

@@ -33,6 +33,7 @@ mod space_dilatation;
 mod specimens;
 mod stopping;
 mod structural_laws;
+mod tracking;
 mod training;
 
 /// The models of the tests of `hysid-export`.

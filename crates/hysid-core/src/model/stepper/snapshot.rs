@@ -3,6 +3,7 @@
 use crate::law::ClassicalState;
 use crate::model::ensemble::Excursion;
 use crate::model::input_transform::InputPast;
+use crate::model::stepper::tracking::Tracker;
 use crate::model::stepper::{StepperMemory, StepperState};
 use crate::network::MemoryState;
 
@@ -13,6 +14,7 @@ pub struct Snapshot {
     past: InputPast,
     last: Option<(f64, f64)>,
     excursion: Option<Excursion>,
+    pub(super) tracker: Tracker,
 }
 
 #[derive(Debug, Clone)]
@@ -31,7 +33,13 @@ impl Snapshot {
                 StoredMemory::Ensemble(ensemble.members.iter().map(Self::of).collect(), ensemble.excursion)
             }
         };
-        Self { memory, past: state.past, last: state.last, excursion: state.excursion }
+        Self {
+            memory,
+            past: state.past,
+            last: state.last,
+            excursion: state.excursion,
+            tracker: state.tracker,
+        }
     }
 
     /// Makes the state what it was; panics for a state of another model.
@@ -51,6 +59,7 @@ impl Snapshot {
         state.past = self.past;
         state.last = self.last;
         state.excursion = self.excursion;
+        state.tracker = self.tracker;
     }
 
     /// The first input of the last sample; `None` before the first.
