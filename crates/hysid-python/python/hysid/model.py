@@ -520,10 +520,11 @@ class Model(StoredModel):
         --------
         >>> import hysid
         >>> train, test = hysid.specimen("terfenol-rod").data()
-        >>> stepper = hysid.fit(train.x, train.y, model="prandtl-ishlinskii").stepper()
-        >>> for x, y in zip(test.x, test.y):
+        >>> model = hysid.fit(train.x, train.y, model="prandtl-ishlinskii")
+        >>> stepper = model.stepper()
+        >>> for x, measured in zip(test.x, 0.9 * model.simulate(test.x)):
         ...     output = stepper.step(x)
-        ...     stepper.adapt(0.9 * y)
+        ...     stepper.adapt(measured)
         >>> round(stepper.tracking.gain, 1)
         0.9
         """
