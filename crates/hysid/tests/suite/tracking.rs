@@ -196,7 +196,7 @@ fn step(stepper: &mut Stepper<'_>, path: &Record, row: usize) -> f64 {
 fn every_model_steps_tries_and_begins_anew_as_it_is_corrected() {
     let data = Dataset::new(ColumnNames::plain(1), vec![record(200, "a"), record(150, "b")]).unwrap();
     let path = record(130, "path");
-    for name in ModelName::all().into_iter().chain([ModelName::AUTO]) {
+    for name in ModelName::all().chain([ModelName::AUTO]) {
         let request = small(name, Some(RateMethod::Backward));
         if name.check_data(&data, Some(RateMethod::Backward)).is_err() {
             continue;
