@@ -10,7 +10,7 @@ use hysid::diagnosis::ModelDiagnosis;
 use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::selection::Selection;
-use hysid::model::{self, BandLevel, ParameterInUnits, Prediction};
+use hysid::model::{self, ADAPTATION_ROWS, BandLevel, ParameterInUnits, Prediction};
 use hysid_app::{Identified, origin, page_text};
 use hysid_export::description::RateSource;
 use hysid_export::{FmiVersion, InverseOptions, MANIFEST, Options, Precision, Target, files_of};
@@ -347,6 +347,37 @@ fn inputs(x: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
         .map_err(|_| needed())
 }
 
+/// State of the corrections of a `Stepper` by measured outputs.
+#[pyclass(frozen, get_all, module = "hysid._hysid")]
+pub struct Tracking {
+    /// Gain of the output; 1 unless `adapt` is used.
+    gain: f64,
+    /// Offset of the output, in its unit: `y` is about `gain * model + offset`.
+    offset: f64,
+    /// Disturbance that is added to the output, in its unit.
+    disturbance: f64,
+    /// Factor by which the disturbance fades from row to row.
+    decay: f64,
+    /// Share of a residual that becomes disturbance; 0 while the residuals are not correlated.
+    kalman_gain: f64,
+    /// Root mean square of the recent residuals behind gain and offset; None before the first measured output.
+    residual: Option<f64>,
+    /// True if it is at most twice the validation error of the model; None for a model without one, and before 100
+    /// measured outputs.
+    memory_fits: Option<bool>,
+}
+
+#[pymethods]
+impl Tracking {
+    fn __repr__(&self) -> String {
+        let Self { gain, offset, disturbance, .. } = self;
+        format!("Tracking(gain={gain:?}, offset={offset:?}, disturbance={disturbance:?})")
+    }
+}
+
+/// The signature of `adapt` has the default as a number, for the stubs.
+const _: () = assert!(ADAPTATION_ROWS == 1000);
+
 /// A model that is run sample by sample.
 #[pyclass(module = "hysid._hysid")]
 pub struct Stepper {
@@ -376,6 +407,29 @@ impl Stepper {
         rate: Option<f64>,
     ) -> PyResult<(f64, f64)> {
         self.stepper.trial_with_tangent(&inputs(x)?, time.unwrap_or(f64::NAN), rate).map_err(refused)
+    }
+
+    /// Takes the output measured at the last sample and corrects the outputs from the next sample on, by a disturbance
+    /// that fades. It is learned from the residuals; where they are not correlated, nothing is corrected. The memory of
+    /// the model is not corrected.
+    #[pyo3(signature = (y))]
+    fn correct(&mut self, y: f64) -> PyResult<()> {
+        self.stepper.correct(y).map_err(refused)
+    }
+
+    /// Takes the output measured at the last sample and adapts gain and offset of the output from the next sample on, with
+    /// a memory of so many rows. Call it before `correct`. The memory of the model is not corrected.
+    #[pyo3(signature = (y, rows=1000))]
+    fn adapt(&mut self, y: f64, rows: i64) -> PyResult<()> {
+        self.stepper.adapt(y, usize::try_from(rows).unwrap_or_default()).map_err(refused)
+    }
+
+    /// State of the corrections at the last committed sample.
+    #[getter]
+    fn tracking(&self) -> Tracking {
+        let model::Tracking { gain, offset, disturbance, decay, kalman_gain, residual, memory_fits } =
+            self.stepper.tracking();
+        Tracking { gain, offset, disturbance, decay, kalman_gain, residual, memory_fits }
     }
 
     /// Makes the state of the last trial the committed one.

@@ -127,6 +127,27 @@ def test_trials_leave_the_committed_state_as_it_is(quick_model):
         assert other.step(x) == y
 
 
+def test_measured_outputs_correct_a_stepper(quick_model):
+    stepper, plain = quick_model.stepper(), quick_model.stepper()
+    with pytest.raises(ValueError, match="no committed sample"):
+        stepper.correct(1.0)
+    assert stepper.tracking.residual is None and stepper.tracking.gain == 1.0
+    for x in 0.5 * np.sin(0.1 * np.arange(1000)):
+        corrected, output = stepper.step(x), plain.step(x)
+        stepper.adapt(0.9 * output + 0.01, rows=100)
+        stepper.correct(0.9 * output + 0.01)
+    assert abs(corrected - 0.9 * output - 0.01) < 0.1 * abs(corrected - output)
+    before = stepper.tracking
+    assert (before.gain, before.offset) == pytest.approx((0.9, 0.01), abs=0.01) and before.memory_fits is None
+    assert repr(before).startswith("Tracking(gain=0.9")
+    for arguments, expected in [((np.nan,), "measured output is NaN"), ((1.0, 9), "at least 10"), ((1.0, -1), "at least")]:
+        with pytest.raises(ValueError, match=expected):
+            stepper.adapt(*arguments)
+    assert stepper.tracking.gain == before.gain
+    stepper.reset()
+    assert stepper.tracking.residual is None
+
+
 def test_links_and_pipes_stay_what_they_are(quick_model, tmp_path):
     link, path = tmp_path / "link.json", tmp_path / "model.json"
     link.symlink_to("model.json")

@@ -26,7 +26,7 @@ fn a_folder_appears_with_all_that_its_manifest_lists() {
     let bench = with_model();
     let ran = bench.run("export stage-2.json --to c");
     assert_eq!((ran.status, ran.stdout.as_str()), (Some(0), ""), "{}", ran.stderr);
-    assert_eq!(ran.stderr, "wrote stage_2_c: 6 files; stage_2_c/README.md says how to use them\n");
+    assert_eq!(ran.stderr, "wrote stage_2_c: 8 files; stage_2_c/README.md says how to use them\n");
     let folder = bench.path("stage_2_c");
     let manifest: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.join("manifest.json")).unwrap()).unwrap();

@@ -165,6 +165,7 @@ pages! {
     compensate_hysteresis: "how-to/compensate-hysteresis.md",
     cycles: "cycles.md",
     diagnose: "how-to/diagnose.md",
+    drift: "how-to/drift.md",
     export_as_fmu: "how-to/export-as-fmu.md",
     export_to_c: "how-to/export-to-c.md",
     export_to_matlab: "how-to/export-to-matlab.md",

@@ -28,7 +28,7 @@ from hysid._summary import Summary
 from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
 from hysid._results import Errors, Member, Prediction
-from hysid.model import Model, Stepper
+from hysid.model import Model, Stepper, Tracking
 from hysid.progress import tqdm_progress
 from hysid.specimens import Records, Specimen, specimen, specimens
 
@@ -70,6 +70,7 @@ __all__ = [
     "Segment",
     "Specimen",
     "Stepper",
+    "Tracking",
     "Summary",
     "Validation",
     "classical",

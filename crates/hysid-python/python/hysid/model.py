@@ -29,9 +29,10 @@ if TYPE_CHECKING:
 
     from hysid._data import Values
 
-__all__ = ["Model", "Stepper"]
+__all__ = ["Model", "Stepper", "Tracking"]
 
 Stepper = _hysid.Stepper
+Tracking = _hysid.Tracking
 
 
 class Model(StoredModel):
@@ -506,10 +507,26 @@ class Model(StoredModel):
     def stepper(self) -> Stepper:
         """Give an independent stepper with the methods `step` and `reset`.
 
+        Outputs that are measured in operation correct those of the model: after a `step`, `correct(y)` takes a
+        disturbance from them that fades, `adapt(y, rows=1000)` a gain and an offset that drift; `tracking` has what was
+        learned. The memory of the model is not corrected.
+
         Returns
         -------
         Stepper
             In the initial state of the model; its `reset` takes another one by its name.
+
+        Examples
+        --------
+        >>> import hysid
+        >>> train, test = hysid.specimen("terfenol-rod").data()
+        >>> model = hysid.fit(train.x, train.y, model="prandtl-ishlinskii")
+        >>> stepper = model.stepper()
+        >>> for x, measured in zip(test.x, 0.9 * model.simulate(test.x)):
+        ...     output = stepper.step(x)
+        ...     stepper.adapt(measured)
+        >>> round(stepper.tracking.gain, 1)
+        0.9
         """
         return self._native.stepper()
 

@@ -16,6 +16,9 @@ mod compare;
 #[path = "../../../../examples/diagnose.rs"]
 mod diagnose;
 #[allow(dead_code)]
+#[path = "../../../../examples/drift.rs"]
+mod drift;
+#[allow(dead_code)]
 #[path = "../../../../examples/identify.rs"]
 mod identify;
 #[allow(dead_code)]
@@ -46,5 +49,5 @@ macro_rules! prints {
 
 prints!(
     a_law_with_known_parameters: classical_law, a_closed_loop: closed_loop, a_comparison: compare,
-    a_diagnosis: diagnose, from_columns_to_a_file: identify, sample_by_sample: step, a_cross_validation: validate
+    a_diagnosis: diagnose, a_drifting_gain: drift, from_columns_to_a_file: identify, sample_by_sample: step, a_cross_validation: validate
 );

@@ -113,19 +113,23 @@ fn white_residuals_are_not_corrected() {
 
 #[test]
 fn rows_that_were_not_measured_break_pairs_only() {
-    let (model, mut generator) = (plays(), Generator::seed_from_u64(1));
-    let mut state = 0.0;
-    let measured = |row: usize, output: f64| {
-        state = 0.95 * state + 0.03 * normal(&mut generator);
-        if row % 7 < 2 { f64::NAN } else { output + state }
+    let model = plays();
+    let measured = |period: usize| {
+        let (mut generator, mut state) = (Generator::seed_from_u64(1), 0.0);
+        move |row: usize, output: f64| {
+            state = 0.95 * state + 0.03 * normal(&mut generator);
+            if row.is_multiple_of(period) { f64::NAN } else { output + state }
+        }
     };
     let take = |stepper: &mut Stepper<'_>, y: f64| {
         if !y.is_nan() {
             stepper.correct(y).unwrap();
         }
     };
-    let found = follow(&model, measured, take);
+    let found = follow(&model, measured(7), take);
     assert!((found.decay - 0.95).abs() < 0.03 && found.kalman_gain > 0.9, "{}", found.decay);
+    // Without a pair of consecutive rows, nothing is corrected.
+    assert_eq!(follow(&model, measured(2), take).last.kalman_gain, 0.0);
 }
 
 #[test]
