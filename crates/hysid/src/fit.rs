@@ -14,7 +14,7 @@ mod validate;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::initial_state::InitialState;
-use crate::data::record::Dataset;
+use crate::data::record::{Dataset, Record};
 use crate::error::{Channel, DataProblem, OptionError, Result};
 use crate::fit::progress::{Fitted, Observer};
 use crate::options::classical::ClassicalModel;
@@ -32,6 +32,7 @@ pub use validate::cross_validate;
 pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
     check_warm_up(data, request)?;
     check_free_states(request)?;
+    check_known_beginning(data, request)?;
     match request {
         FitSpec::Auto(options) => auto::fit(data, options, observer),
         FitSpec::Network(_) | FitSpec::Classical(_) => one_model::identify(data, request, observer),
@@ -101,12 +102,22 @@ fn check_warm_up(data: &Dataset, request: &FitSpec) -> Result<()> {
     }
 }
 
+/// Checks that a known beginning leaves something to score.
+fn check_known_beginning(data: &Dataset, request: &FitSpec) -> Result<()> {
+    let beginning = request.judged_beginning(data.names())?;
+    let rest = |record: &Record| record.output().iter().skip(beginning.rows(record)).any(|y| !y.is_nan());
+    if data.scored() == 0 || data.records().iter().any(rest) {
+        return Ok(());
+    }
+    Err(data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingAfterBeginning))
+}
+
 #[cfg(test)]
 mod tests {
     use hysid_core::elementary::sin;
 
     use super::*;
-    use crate::data::record::{ColumnNames, Record};
+    use crate::data::record::ColumnNames;
     use crate::options::chosen::NamedOptions;
 
     fn data(rows: usize, inputs: usize) -> Dataset {

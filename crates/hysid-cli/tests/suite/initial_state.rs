@@ -123,6 +123,8 @@ fn a_state_is_found_from_a_known_beginning() {
     bench.refuses_in_part(
         "1 evaluate found.json blank.csv --known 40 => column \"B_T\": is blank in the first 40 rows, from which the state
          1 evaluate found.json cut.csv --known 120 => column \"B_T\" is blank after the known beginning
+         1 fit train.csv -o free.json --model masing --known 100000 => column \"B_T\" is blank after the known beginning
+         1 validate train.csv --model masing --known 100000 => column \"B_T\" is blank after the known beginning
          2 evaluate found.json cut.csv --known 0 => give a number of rows
          1 evaluate found.json cut.csv --known 0.5s => no unit of time is known
          2 evaluate found.json cut.csv --known 40 --initial-state virgin => cannot be used with
