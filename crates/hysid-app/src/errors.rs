@@ -94,12 +94,18 @@ pub fn section(report: &Report) -> Part {
 }
 
 fn explanation(report: &Report) -> Part {
-    let begins = match crate::initial_state(report.model) {
-        None => "starts each record in the virgin state",
-        Some(_) => "starts each record in its initial state",
+    let options = &report.model.provenance().options;
+    let beginning = options.judged_beginning(report.model.names()).unwrap_or_default();
+    let run = match crate::initial_state(report.model) {
+        _ if !beginning.is_none() => {
+            "the model gets the input and the first measured outputs of each record, from which it finds its state and \
+             which are not scored"
+        }
+        None => "the model gets only the input, and starts each record in the virgin state",
+        Some(_) => "the model gets only the input, and starts each record in its initial state",
     };
     let mut text = format!(
-        "All errors are those of a free run: the model gets only the input, and {begins}. RMSE is the root mean \
+        "All errors are those of a free run: {run}. RMSE is the root mean \
          square error; NRMSE is the RMSE in percent of the standard deviation or the range of the measured \
          output; fit is 100 % minus the NRMSE in % of std. ",
     );

@@ -9,6 +9,8 @@
 mod pooled;
 mod row_folds;
 
+use std::collections::{HashMap, HashSet};
+
 use hysid_core::elementary::{exp, ln};
 use serde::Serialize;
 
@@ -58,9 +60,11 @@ impl Fold {
         if beginning.is_none() {
             return self;
         }
+        let trained = names(&self.train);
+        let whole: HashMap<&str, &Record> =
+            all.records().iter().map(|record| (record.name(), record)).collect();
         let known = |record: &Record| {
-            let whole = all.records().iter().find(|whole| whole.name() == record.name());
-            let whole = whole.filter(|_| !holds(&self.train, record));
+            let whole = whole.get(record.name()).filter(|_| !trained.contains(record.name()));
             whole.map_or(&[][..], |whole| &whole.output()[..beginning.rows(whole)])
         };
         let held_out = self.held_out.clone().with_known_outputs(known);
@@ -69,9 +73,10 @@ impl Fold {
 
     /// The records of `all` data that this is fitted to, with all their outputs; `None` if parts of a record are held out.
     pub(crate) fn trained_of(&self, all: &Dataset) -> Option<Dataset> {
-        let is_cut = self.held_out.records().iter().any(|record| holds(&self.train, record));
-        let is_trained = |index: usize| holds(&self.train, &all.records()[index]);
-        (!is_cut).then(|| all.partition(is_trained).0)
+        let trained = names(&self.train);
+        let is_trained = |record: &Record| trained.contains(record.name());
+        let is_cut = self.held_out.records().iter().any(is_trained);
+        (!is_cut).then(|| all.partition(|index| is_trained(&all.records()[index])).0)
     }
 
     /// The predictions of a model for the held-out rows with an output, in free run.
@@ -85,9 +90,9 @@ impl Fold {
     }
 }
 
-/// True if the data have a record of this name.
-fn holds(data: &Dataset, record: &Record) -> bool {
-    data.records().iter().any(|other| other.name() == record.name())
+/// Names of the records.
+fn names(data: &Dataset) -> HashSet<&str> {
+    data.records().iter().map(Record::name).collect()
 }
 
 /// Largest difference of an amplitude or a speed, relative to those of other records, that does not count as outside.
@@ -526,6 +531,29 @@ mod tests {
         };
         assert_eq!(names([1.0, 1.4]), ["a", "b", "20 to 50 %, from the rest", "55 to 85 %, from the rest"]);
         assert_eq!(names([1.0, 3.0]), ["a", "b"]);
+    }
+
+    /// The known beginning of a record has all its outputs, however few are scored behind it.
+    #[test]
+    fn whole_records_that_are_held_out_have_a_known_beginning() {
+        let all = data(vec![record("a", 200, 1.0), record("b", 150, 1.3), record("c", 100, 0.8)]);
+        let few = all.thinned(90);
+        let beginning = KnownBeginning::Rows(40);
+        for (fold, record) in folds(&few, 3).into_iter().zip(all.records()) {
+            let begun = fold.clone().with_known_beginning(beginning, &all);
+            let [held] = begun.held_out.records() else { panic!("one record is held out") };
+            assert_eq!((held.name(), held.known()), (record.name(), &record.output()[..40]));
+            assert!(held.output()[..40].iter().all(|y| y.is_nan()) && held.scored() > 0);
+            assert_eq!(begun.train.scored(), fold.train.scored());
+            let trained = begun.trained_of(&all).unwrap();
+            assert_eq!(trained.scored(), all.scored() - record.scored());
+        }
+        let one = data(vec![record("r", 200, 1.0)]);
+        let cut = folds(&one, 5).swap_remove(0);
+        assert!(cut.trained_of(&one).is_none());
+        let scored = cut.held_out.scored();
+        let begun = cut.with_known_beginning(beginning, &one).held_out;
+        assert!(begun.records()[0].known().is_empty() && begun.scored() == scored);
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! The option for the known beginning of records.
 
+use std::str::FromStr;
+
 use clap::Args;
-use hysid::data::known_beginning::{KnownBeginning, KnownSpan};
-use hysid::data::record::ColumnNames;
+use hysid::data::known_beginning::KnownSpan;
 use hysid::{Model, Result};
 
 /// Known beginning of each record.
@@ -12,24 +13,15 @@ pub struct KnownOptions {
     ///
     /// A number of rows, such as 100, or a time with its unit, such as 0.5s. Use it for records that are cut out of a longer
     /// past. These rows are not scored. Later rows need no output.
-    #[arg(long, value_name = "ROWS|TIME", value_parser = known_span, conflicts_with = "initial_state")]
+    #[arg(long, value_name = "ROWS|TIME", value_parser = KnownSpan::from_str, conflicts_with = "initial_state")]
     pub known: Option<KnownSpan>,
 }
 
 impl KnownOptions {
-    /// The beginning of records with these columns.
-    pub fn beginning(&self, names: &ColumnNames) -> Result<KnownBeginning> {
-        self.known.as_ref().map_or_else(|| Ok(KnownBeginning::default()), |known| known.beginning(names))
-    }
-
     /// The model with this known beginning.
     pub fn of(&self, model: Model) -> Result<Model> {
-        let beginning = self.beginning(model.names())?;
+        let Some(known) = &self.known else { return Ok(model) };
+        let beginning = known.beginning(model.names())?;
         Ok(model.with_known_beginning(beginning))
     }
-}
-
-/// A known beginning on a command line.
-pub fn known_span(text: &str) -> Result<KnownSpan> {
-    text.parse()
 }

@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::initial_state::InitialState;
 use crate::data::record::{ColumnNames, Record};
 use crate::data::unit::of_column;
 use crate::error::{Error, OptionError, Result};
@@ -29,6 +30,23 @@ impl Default for KnownBeginning {
 impl KnownBeginning {
     /// The beginning of each record with which a model with free initial states is judged: a tenth of its rows. Designed.
     pub const JUDGED: Self = Self::Share(0.1);
+
+    /// The beginning with which models are judged on data with these columns: that which was asked for, or
+    /// [`KnownBeginning::JUDGED`] for a model with free initial states.
+    ///
+    /// # Errors
+    /// As [`KnownSpan::beginning`].
+    pub fn judged(
+        asked: Option<&KnownSpan>,
+        state: Option<InitialState>,
+        names: &ColumnNames,
+    ) -> Result<Self> {
+        match (asked, state) {
+            (Some(asked), _) => asked.beginning(names),
+            (None, Some(InitialState::Free)) => Ok(Self::JUDGED),
+            (None, _) => Ok(Self::default()),
+        }
+    }
 
     /// True without a known beginning.
     pub fn is_none(self) -> bool {

@@ -115,13 +115,10 @@ impl Record {
         if rows == 0 && self.known.is_empty() {
             return self;
         }
-        let output = |row: usize| *self.known.get(row).unwrap_or(&self.output[row]);
-        let whole: Vec<f64> = (0..self.len()).map(output).collect();
-        let rows = rows.min(self.len());
-        self.known = whole[..rows].to_vec();
-        self.output = whole;
-        self.output[..rows].fill(f64::NAN);
-        self
+        let before = std::mem::take(&mut self.known);
+        self.output[..before.len()].copy_from_slice(&before);
+        let known = self.output[..rows.min(self.len())].to_vec();
+        self.with_known_outputs(&known)
     }
 
     /// The same record with these outputs known at its beginning, in the place of its own.

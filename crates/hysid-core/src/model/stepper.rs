@@ -39,12 +39,20 @@ struct StepperState {
     past: InputPast,
     /// Inputs of the last sample as the model saw them.
     seen: Vec<f64>,
-    /// Time and first input of the last sample.
-    last: Option<(f64, f64)>,
+    last: Option<LastSample>,
     /// How far outside the trained range the input has been; `None` without a band, and in a member of an ensemble.
     excursion: Option<Excursion>,
-    /// Corrections by measured outputs; not used in a member of an ensemble.
-    tracker: Tracker,
+    /// Corrections by measured outputs, once there are any.
+    tracker: Option<Box<Tracker>>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct LastSample {
+    time: f64,
+    /// First input.
+    input: f64,
+    /// Output without corrections.
+    output: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -127,10 +135,10 @@ impl<'m> Stepper<'m> {
             self.state.lead_in(&self.model, &rows, inputs);
         }
         let output = self.state.advance(&self.model, inputs, time, rate);
-        Ok(self.state.tracker.step(output))
+        Ok(self.state.tracker.as_mut().map_or(output, |tracker| tracker.step(output)))
     }
 
-    /// Returns to the initial state of the model and forgets what was learned from measured outputs.
+    /// Returns to the initial state of the model, without corrections by measured outputs.
     pub fn reset(&mut self) {
         self.committed = None;
         self.state.reset(&self.model);
@@ -138,7 +146,7 @@ impl<'m> Stepper<'m> {
         self.lead_in.clone_from(&self.model.lead_in);
     }
 
-    /// Returns to another initial state and forgets what was learned from measured outputs.
+    /// Returns to another initial state, without corrections by measured outputs.
     ///
     /// # Errors
     /// An unknown state. The stepper is then unchanged.
@@ -175,7 +183,7 @@ impl StepperState {
             seen: Vec::with_capacity(model.inputs() + model.preprocessing.added_inputs()),
             last: None,
             excursion: None,
-            tracker: Tracker::new(model),
+            tracker: None,
         }
     }
 
@@ -209,12 +217,12 @@ impl StepperState {
     }
 
     fn elapsed(&self, time: f64) -> f64 {
-        self.last.map_or(0.0, |(before, _)| time - before)
+        self.last.map_or(0.0, |before| time - before.time)
     }
 
     /// The rate of the first input: that which is given, or a backward difference; `None` for a model without.
     fn rate(&self, model: &Model, inputs: &[f64], elapsed: f64, given: Option<f64>) -> Option<f64> {
-        let backward = || self.last.map_or(0.0, |(_, before)| (inputs[0] - before) / elapsed);
+        let backward = || self.last.map_or(0.0, |before| (inputs[0] - before.input) / elapsed);
         model.rate.map(|_| given.unwrap_or_else(backward))
     }
 
@@ -281,7 +289,7 @@ impl StepperState {
             }
             _ => unreachable!("the memory was made for the body"),
         };
-        self.last = Some((time, inputs[0]));
+        self.last = Some(LastSample { time, input: inputs[0], output: y });
         if let Some(excursion) = &mut self.excursion {
             excursion.take(inputs[0]);
         }
@@ -301,6 +309,6 @@ impl StepperState {
         }
         self.past = InputPast::default();
         self.last = None;
-        self.tracker = Tracker::new(model);
+        self.tracker = None;
     }
 }

@@ -160,8 +160,7 @@ impl FitSpec {
         self.initial_state() == Some(InitialState::Free)
     }
 
-    /// The known beginning with which models are judged on data with these columns: that which was asked for, or one by
-    /// default if they have free states.
+    /// The known beginning with which models are judged on data with these columns ([`KnownBeginning::judged`]).
     ///
     /// # Errors
     /// A duration in another unit than the time.
@@ -171,11 +170,7 @@ impl FitSpec {
             Self::Classical(options) => &options.known,
             Self::Auto(options) => &options.known,
         };
-        match known {
-            Some(known) => known.beginning(names),
-            None if self.has_free_states() => Ok(KnownBeginning::JUDGED),
-            None => Ok(KnownBeginning::default()),
-        }
+        KnownBeginning::judged(known.as_ref(), self.initial_state(), names)
     }
 
     /// The same with another initial state of every record.

@@ -235,9 +235,10 @@ options! {
         used_by: |_, _| true,
     }
     known: KnownSpan {
-        meaning: "Measured beginning of each record that the model will be used on, from which it will find its state, as \
-                  with --known of `hysid evaluate`. Held-out records are judged with it; `auto` then also tries free \
-                  initial states",
+        meaning: "Measured beginning of the records on which the model will be used, as in `hysid evaluate --known`. Errors \
+                  are then those after such a beginning of each record, and `auto` also tries free initial states. With \
+                  free initial states, a tenth of the rows by default. Parts of records that are held out have no known \
+                  beginning",
         group: Training,
         values: OptionValues::Span,
         default: |_, _| Preset::Off,

@@ -143,9 +143,10 @@ def fit(
         parameters, for records that are cut out of a longer past; duhem-nn and auto). Default: chosen by
         cross-validation for auto; otherwise virgin.
     known : int | str, optional
-        Measured beginning of each record that the model will be used on, from which it will find its state, as with
-        --known of `hysid evaluate`. Held-out records are judged with it; `auto` then also tries free initial states.
-        Default: off.
+        Measured beginning of the records on which the model will be used, as in `hysid evaluate --known`. Errors are
+        then those after such a beginning of each record, and `auto` also tries free initial states. With free initial
+        states, a tenth of the rows by default. Parts of records that are held out have no known beginning. Default:
+        off.
     training : {"subgradient", "levenberg-marquardt", "hybrid", "genetic"}, optional
         Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic algorithm,
         or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default: subgradient.

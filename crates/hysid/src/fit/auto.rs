@@ -43,6 +43,7 @@ use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::initial_state::InitialState;
+use crate::data::known_beginning::KnownBeginning;
 use crate::data::metrics::Errors;
 use crate::data::record::{Dataset, Record, SpeedEvidence};
 use crate::error::{Error, Result};
@@ -117,7 +118,7 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     let evidence = LoopEvidence::of(data);
     let folds =
         if evidence.is_one_loop() { folds_of_loop(&few) } else { folds_to_choose_by(&few, MOST_FOLDS) };
-    let beginning = FitSpec::Auto(options.clone()).judged_beginning(data.names())?;
+    let beginning = KnownBeginning::judged(options.known.as_ref(), options.initial_state, data.names())?;
     let folds = folds.into_iter().map(|fold| fold.with_known_beginning(beginning, data)).collect();
     let work = AutoWork::new(observer, FITS_EXPECTED);
 

@@ -4,7 +4,7 @@ use crate::law::ClassicalState;
 use crate::model::ensemble::Excursion;
 use crate::model::input_transform::InputPast;
 use crate::model::stepper::tracking::Tracker;
-use crate::model::stepper::{StepperMemory, StepperState};
+use crate::model::stepper::{LastSample, StepperMemory, StepperState};
 use crate::network::MemoryState;
 
 /// The memory of a [`Stepper`](crate::model::Stepper) at one moment.
@@ -12,9 +12,9 @@ use crate::network::MemoryState;
 pub struct Snapshot {
     memory: StoredMemory,
     past: InputPast,
-    last: Option<(f64, f64)>,
+    last: Option<LastSample>,
     excursion: Option<Excursion>,
-    pub(super) tracker: Tracker,
+    pub(super) tracker: Option<Box<Tracker>>,
 }
 
 #[derive(Debug, Clone)]
@@ -38,7 +38,7 @@ impl Snapshot {
             past: state.past,
             last: state.last,
             excursion: state.excursion,
-            tracker: state.tracker,
+            tracker: state.tracker.clone(),
         }
     }
 
@@ -59,11 +59,11 @@ impl Snapshot {
         state.past = self.past;
         state.last = self.last;
         state.excursion = self.excursion;
-        state.tracker = self.tracker;
+        state.tracker.clone_from(&self.tracker);
     }
 
     /// The first input of the last sample; `None` before the first.
     pub(super) fn last_input(&self) -> Option<f64> {
-        self.last.map(|(_, input)| input)
+        self.last.map(|last| last.input)
     }
 }

@@ -75,7 +75,7 @@ impl Stepper<'_> {
     /// A measured output that is not finite; no sample yet, or a trial that is not committed. Nothing changes then.
     pub fn correct(&mut self, y: f64) -> Result<()> {
         let output = self.measurable(y)?;
-        self.state.tracker.correct(output, y);
+        self.tracker().correct(output, y);
         Ok(())
     }
 
@@ -93,21 +93,25 @@ impl Stepper<'_> {
         if rows < FEWEST_ADAPTATION_ROWS {
             return Err(SampleError::AdaptationRows(rows).into());
         }
-        self.state.tracker.adapt(output, y, rows as f64);
+        self.tracker().adapt(output, y, rows as f64);
         Ok(())
     }
 
     /// State of the corrections at the last committed sample.
     pub fn tracking(&self) -> Tracking {
-        let tracker = self.committed.as_ref().map_or(self.state.tracker, |committed| committed.tracker);
+        let tracker = self.committed.as_ref().map_or(&self.state.tracker, |committed| &committed.tracker);
+        let tracker = tracker.as_deref().copied().unwrap_or_else(|| Tracker::new(&self.model));
         tracker.tracking(self.model.provenance().validation.as_ref().map(|errors| errors.rmse))
+    }
+
+    fn tracker(&mut self) -> &mut Tracker {
+        self.state.tracker.get_or_insert_with(|| Box::new(Tracker::new(&self.model)))
     }
 
     /// The output of the model at the committed sample, if this output can be one that was measured there.
     fn measurable(&self, y: f64) -> Result<f64> {
-        let output = self.state.tracker.output.filter(|_| self.committed.is_none());
-        let output = output.ok_or(SampleError::NotCommitted)?;
-        if y.is_finite() { Ok(output) } else { Err(SampleError::Measured(y).into()) }
+        let last = self.state.last.filter(|_| self.committed.is_none()).ok_or(SampleError::NotCommitted)?;
+        if y.is_finite() { Ok(last.output) } else { Err(SampleError::Measured(y).into()) }
     }
 }
 
@@ -117,8 +121,6 @@ pub(super) struct Tracker {
     /// Middle and half the width of the trained output.
     origin: f64,
     scale: f64,
-    /// Output of the model at the last sample.
-    output: Option<f64>,
     /// Residuals of the last sample and of the two before, where outputs were measured.
     residuals: [Option<f64>; 3],
     /// Sums of the products of residuals 0, 1 and 2 samples apart, and of their weights.
@@ -139,7 +141,6 @@ impl Tracker {
         Self {
             origin,
             scale,
-            output: None,
             residuals: [None; 3],
             products: [0.0; 3],
             weights: [0.0; 3],
@@ -154,7 +155,6 @@ impl Tracker {
     /// Takes the output of the model at the next sample and returns the corrected one.
     pub fn step(&mut self, output: f64) -> f64 {
         self.residuals = [None, self.residuals[0], self.residuals[1]];
-        self.output = Some(output);
         self.disturbance *= self.decay; // (8.66)
         let correction = self.adaptation(output) + self.disturbance; // (8.65)
         // Without a correction, the sign of a zero remains too.

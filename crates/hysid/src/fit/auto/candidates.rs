@@ -428,3 +428,26 @@ fn is_allowed(candidate: &Candidate, to: &CandidateRequest<'_>) -> bool {
         && decided.history.is_none_or(|wanted| wanted == shaping.history)
         && (data.names().inputs.len() == 1 || is_network || takes_several)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::known_beginning::KnownSpan;
+    use crate::data::record::{ColumnNames, Record};
+
+    #[test]
+    fn free_states_are_tried_for_records_with_a_known_beginning() {
+        let x: Vec<f64> = (0..100).map(|row| f64::from(row % 20)).collect();
+        let record = Record::new("r", vec![x.clone()], x).unwrap();
+        let data = Dataset::new(ColumnNames::of(None, &["x"], "y"), vec![record]).unwrap();
+        let free = |known, initial_state| {
+            let options = AutoOptions { known, initial_state, ..AutoOptions::default() };
+            let all = candidates(&data, &options);
+            (all.len(), all.iter().filter(|candidate| candidate.has_free_states()).count())
+        };
+        let (all, none) = free(None, None);
+        let (with_free, some) = free(Some(KnownSpan::Rows(10)), None);
+        assert!(none == 0 && some > 0 && with_free == all + some);
+        assert_eq!(free(Some(KnownSpan::Rows(10)), Some(InitialState::Virgin)), (all, 0));
+    }
+}

@@ -18,6 +18,7 @@ use std::ops::ControlFlow;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::initial_state::InitialState;
+use crate::data::known_beginning::KnownBeginning;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
 use crate::error::{Error, LARGEST_VALUE, Result};
@@ -42,7 +43,6 @@ use crate::optimise::levenberg_marquardt::{
 use crate::optimise::multi_start::{MultiStart, RoundPlan, SearchStart};
 use crate::optimise::parallel;
 use crate::optimise::random::{generator, normal};
-use crate::options::FitSpec;
 use crate::options::classical::{ClassicalModel, ClassicalOptions, FittedError};
 use crate::options::input_options::InputOptions;
 use crate::options::table::check_counts;
@@ -430,7 +430,8 @@ impl<'a> DuhemTask<'a> {
         let targets: Vec<Vec<f64>> = series.iter().map(target).collect();
         let rows = targets.iter().flatten().filter(|y| !y.is_nan()).count();
         let further = series.iter().map(further_of).collect();
-        let beginning = FitSpec::Classical(options.clone()).judged_beginning(data.names())?;
+        let (known, state) = (options.known.as_ref(), options.shaping.initial_state);
+        let beginning = KnownBeginning::judged(known, state, data.names())?;
         let scored = data.records().iter().filter(|record| record.scored() > 0);
         let known = scored.map(|record| beginning.rows(record)).collect();
         let by_record = is_by_record.then(|| RecordWeights::of(&targets, error, is_free));
