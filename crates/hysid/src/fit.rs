@@ -13,13 +13,10 @@ pub(crate) mod sums;
 mod validate;
 
 use crate::data::FEWEST_ROWS;
-use crate::data::initial_state::InitialState;
 use crate::data::record::{Dataset, Record};
-use crate::error::{Channel, DataProblem, OptionError, Result};
+use crate::error::{Channel, DataProblem, Result};
 use crate::fit::progress::{Fitted, Observer};
-use crate::options::classical::ClassicalModel;
-use crate::options::fit_spec::AutoOptions;
-use crate::options::{FitSpec, ModelName};
+use crate::options::FitSpec;
 
 pub use memory_need::MemoryNeed;
 pub use validate::cross_validate;
@@ -31,7 +28,6 @@ pub use validate::cross_validate;
 /// Data from which no model can be identified, invalid options, or a stop before there was a model.
 pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
     check_warm_up(data, request)?;
-    check_free_states(request)?;
     check_known_beginning(data, request)?;
     match request {
         FitSpec::Auto(options) => auto::fit(data, options, observer),
@@ -61,26 +57,6 @@ pub fn memory_need(data: &Dataset, request: &FitSpec, threads: usize) -> Result<
             Ok(MemoryNeed { bytes: of_candidates, ..largest }.and(10.0 * memory_need::numbers(data)))
         }
     }
-}
-
-/// Rejects the initial state `free` for a model without free states.
-fn check_free_states(request: &FitSpec) -> Result<()> {
-    let model = match request {
-        FitSpec::Auto(AutoOptions { only: Some(only), .. }) => only.model(),
-        other => other.model(),
-    };
-    let can = match model {
-        ModelName::Network(_) => false,
-        ModelName::Classical(law) => law.facts().has_free_states,
-        ModelName::Auto(_) => true,
-    };
-    if can || !request.has_free_states() {
-        return Ok(());
-    }
-    let with_states = ClassicalModel::ALL.iter().filter(|law| law.facts().has_free_states);
-    let names: Vec<&str> = with_states.map(|law| law.name()).collect();
-    let needed = format!("{} has no free states; {} and auto have", model.name(), names.join(", "));
-    Err(OptionError::value("initial_state", InitialState::Free.name(), needed).into())
 }
 
 /// Checks that a warm-up leaves enough to train on.

@@ -8,14 +8,17 @@
 //! periodic           the turning points of the record itself
 //! ```
 //!
-//! A *free* state is no lead-in: the states of a model before each record are found together with its parameters, and before a
-//! new record from its [known beginning](crate::data::record::Record::with_known_beginning).
+//! A *free* state is found for each record together with the parameters of the model, and for a new record from its [known
+//! beginning](crate::data::record::Record::with_known_beginning): the internal states of a law that has free states, or else
+//! the past, a lead-in of up to three turning points.
 //!
 //! A *lead-in* is what the first input did before the first row of a record: its turning points, in its unit.
 //! `l` and `h` are the ends of the trained range of the first input, and `c` is its origin. A model is driven
 //! from its virgin state along the lead-in and then to the input of the first row, with one step for each
 //! leg. The legs are quasi-static: the rate is 0, and each takes an infinite time, so that relaxation is
 //! complete. Further inputs have their values of the first row. The rows of a lead-in have no output.
+
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
@@ -110,15 +113,39 @@ const WORTH_A_TURN: f64 = 0.05;
 /// Halvings of the step of the search.
 const HALVINGS: usize = 6;
 
-/// The past of the first input with the lowest misfit: a lead-in of up to three turning points within this range, in its
-/// unit. It begins from the states that are tried where the initial state is unknown.
-pub fn found_past((low, high): (f64, f64), mut misfit: impl FnMut(&[f64]) -> f64) -> Vec<f64> {
+/// The past of the first input that suits so many first rows of a record: a lead-in of up to three turning points within this
+/// range, in its unit. `misfit` is the sum of the squared errors of some of the rows after a past.
+///
+/// It is found from the first two thirds of the rows. A past that is worse in the last third than `otherwise`, from which the
+/// record begins without known outputs, is none: then a model that is wrong took its own error for a state. So `otherwise` is
+/// the past that is returned.
+pub fn found_past(
+    (low, high): (f64, f64),
+    rows: usize,
+    otherwise: &[f64],
+    mut misfit: impl FnMut(&[f64], Range<usize>) -> f64,
+) -> Vec<f64> {
+    if !(high - low).is_finite() {
+        return otherwise.to_vec();
+    }
+    let first = (2 * rows).div_ceil(3);
+    let tried = lead_ins_tried((low, high)).into_iter().chain([otherwise.to_vec()]);
+    let found = longer_past((low, high), tried, |past| misfit(past, 0..first));
+    if misfit(&found, first..rows) > misfit(otherwise, first..rows) {
+        return otherwise.to_vec();
+    }
+    longer_past((low, high), [found], |past| misfit(past, 0..rows))
+}
+
+/// The past with the lowest misfit: the best of those given, moved, and with further turning points.
+fn longer_past(
+    (low, high): (f64, f64),
+    given: impl IntoIterator<Item = Vec<f64>>,
+    mut misfit: impl FnMut(&[f64]) -> f64,
+) -> Vec<f64> {
     let mut best = Vec::new();
     let mut least = f64::INFINITY;
-    if !(high - low).is_finite() {
-        return best;
-    }
-    for past in lead_ins_tried((low, high)) {
+    for past in given {
         let found = misfit(&past);
         if found < least {
             (best, least) = (past, found);

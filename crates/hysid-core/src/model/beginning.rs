@@ -6,6 +6,7 @@ use crate::data::known_beginning::KnownBeginning;
 use crate::data::record::{Dataset, Record};
 use crate::error::{Channel, DataProblem, Result};
 use crate::model::Model;
+use crate::model::runner::Runner;
 
 impl Model {
     /// The same model, which takes the first outputs of each record as a [known
@@ -18,6 +19,16 @@ impl Model {
     /// The known beginning of records that have none of their own.
     pub fn known_beginning(&self) -> KnownBeginning {
         self.beginning
+    }
+
+    /// The past of the first input that suits all outputs of a record, in its unit: up to three turning points, from which a
+    /// free run of this single model has the lowest error. Empty for a model with free states of its own.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`].
+    pub fn past_before(&self, record: &Record) -> Result<Vec<f64>> {
+        let excitation = record.excitation().knowing(record.output());
+        Runner::of_model(self).past_before(&excitation)
     }
 
     /// The record with the known beginning of this model, if it has none of its own.

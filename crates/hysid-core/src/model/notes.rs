@@ -53,12 +53,17 @@ impl Model {
     fn initial_state_note(&self) -> Option<String> {
         let provenance = self.provenance();
         let found = provenance.selection.as_ref().and_then(|selection| selection.found_states);
+        let range = self.trained_ranges().inputs[0];
+        let all = in_words(self.lead_in(), range);
         if provenance.options.has_free_states() {
-            return Some(
-                "initial state: found for each training record together with the parameters; a new record begins with the \
-                 mean of these states (0 in an odd network), unless its first outputs are known (known)"
-                    .into(),
-            );
+            let first = match provenance.options.model().has_free_states() {
+                true => "with the mean of these states (0 in an odd network)",
+                false => &all,
+            };
+            return Some(format!(
+                "initial state: found for each training record together with the parameters; a new record begins {first}, \
+                 unless its first outputs are known (known)"
+            ));
         }
         if found.is_none() && provenance.options.initial_state() != Some(InitialState::Unknown) {
             return None;
@@ -77,7 +82,6 @@ impl Model {
                  initial state is given (initial_state)"
             ));
         }
-        let range = self.trained_ranges().inputs[0];
         let mut counts: Vec<(String, usize)> = Vec::new();
         for known in &provenance.lead_ins {
             let state = in_words(&known.lead_in, range);
@@ -86,7 +90,6 @@ impl Model {
                 None => counts.push((state, 1)),
             }
         }
-        let all = in_words(self.lead_in(), range);
         let begin = match counts.as_slice() {
             [] => format!("all records begin {all}"),
             counts => {

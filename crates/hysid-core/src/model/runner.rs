@@ -42,6 +42,8 @@ pub(super) struct Runner<'m> {
     is_periodic: bool,
     /// The memory has been driven along the lead-in of the record.
     is_begun: bool,
+    /// Past that was found for the last of the singles before a record with a known beginning.
+    past: Vec<f64>,
     /// Outputs of the known beginning of the record, and the rows that were simulated.
     known: Vec<f64>,
     simulated: usize,
@@ -131,6 +133,7 @@ impl<'m> Runner<'m> {
             lead_in: &[],
             is_periodic: false,
             is_begun: false,
+            past: Vec::new(),
             known: Vec::new(),
             simulated: 0,
             residual: 0.0,
@@ -202,14 +205,14 @@ impl<'m> Runner<'m> {
         if std::mem::replace(&mut self.is_begun, true) {
             return Ok(());
         }
-        if excitation.known().iter().any(|y| !y.is_nan()) {
-            return self.begin_known(excitation, first);
-        }
         let lead_in = match excitation.lead_in() {
             Some(lead_in) => Cow::Borrowed(lead_in),
             None if self.is_periodic => Cow::Owned(lead_in_of_period(excitation.inputs()[0])),
             None => Cow::Borrowed(self.lead_in),
         };
+        if excitation.known().iter().any(|y| !y.is_nan()) {
+            return self.begin_known(excitation, first, &lead_in);
+        }
         if lead_in.is_empty() {
             return Ok(());
         }
@@ -219,8 +222,9 @@ impl<'m> Runner<'m> {
         Ok(())
     }
 
-    /// Finds the state before a record with a known beginning, each member of an ensemble its own.
-    fn begin_known(&mut self, excitation: &Excitation<'_>, first: usize) -> Result<()> {
+    /// Finds the state before a record with a known beginning, each member of an ensemble its own. `otherwise` is the lead-in
+    /// of a record without one.
+    fn begin_known(&mut self, excitation: &Excitation<'_>, first: usize, otherwise: &[f64]) -> Result<()> {
         self.known = excitation.known().to_vec();
         self.known.truncate(excitation.len() - first);
         let rows = first..first + self.known.len();
@@ -229,11 +233,18 @@ impl<'m> Runner<'m> {
         let chunk =
             Chunk { name: excitation.name(), inputs: &inputs, rates: &self.rates, steps: &self.steps };
         for single in self.body.singles_mut() {
-            single.begin_known(&chunk, &self.known, self.range)?;
+            self.past = single.begin_known(&chunk, &self.known, self.range, otherwise)?;
         }
         let rows: Vec<f64> = self.body.singles().iter().map(SingleRunner::residual_rows).collect();
         self.remaining = remaining_share(median(rows));
         Ok(())
+    }
+
+    /// The past that suits the outputs of a whole record.
+    pub fn past_before(&mut self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
+        self.reset();
+        self.begin(excitation, 0)?;
+        Ok(std::mem::take(&mut self.past))
     }
 
     /// Rates and steps of some rows.
@@ -386,8 +397,15 @@ impl<'m> SingleRunner<'m> {
         }
     }
 
-    /// Begins with the state that suits the outputs of the first rows: free states of a law, or a past of the input.
-    fn begin_known(&mut self, chunk: &Chunk<'_>, known: &[f64], range: (f64, f64)) -> Result<()> {
+    /// Begins with the state that suits the outputs of the first rows: free states of a law, or a past of the input, which is
+    /// returned.
+    fn begin_known(
+        &mut self,
+        chunk: &Chunk<'_>,
+        known: &[f64],
+        range: (f64, f64),
+        otherwise: &[f64],
+    ) -> Result<Vec<f64>> {
         let nothing = InputTransform::default();
         let preprocessing = self.preprocessing.unwrap_or(&nothing);
         if let Mechanism::Law(law, state, _) = &mut self.mechanism {
@@ -400,24 +418,24 @@ impl<'m> SingleRunner<'m> {
             let further: Vec<&[f64]> = seen[1..].iter().map(Vec::as_slice).collect();
             if let Some(states) = law.found_states(&samples, &further, known) {
                 **state = law.begun_with(&states);
-                return Ok(());
+                return Ok(Vec::new());
             }
         }
         let first_row: Vec<f64> = chunk.inputs.iter().map(|input| input[0]).collect();
         let mut outputs = vec![0.0; known.len()];
         let mut trial = self.clone();
-        let misfit = |past: &[f64]| -> f64 {
+        let misfit = |past: &[f64], rows: Range<usize>| -> f64 {
             trial.reset();
             trial.begin_after(past, &first_row);
             if trial.run(chunk, &mut outputs).is_err() {
                 return f64::INFINITY;
             }
-            let errors = outputs.iter().zip(known).filter(|(_, y)| !y.is_nan());
+            let errors = outputs[rows.clone()].iter().zip(&known[rows]).filter(|(_, y)| !y.is_nan());
             errors.map(|(output, y)| (output - y) * (output - y)).sum()
         };
-        let past = found_past(range, misfit);
+        let past = found_past(range, known.len(), otherwise, misfit);
         self.begin_after(&past, &first_row);
-        Ok(())
+        Ok(past)
     }
 
     fn begin_after(&mut self, past: &[f64], first_row: &[f64]) {

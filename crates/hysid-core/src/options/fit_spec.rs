@@ -146,6 +146,15 @@ impl FitSpec {
         }
     }
 
+    /// Seed of the random numbers.
+    pub fn seed(&self) -> u64 {
+        match self {
+            Self::Network(options) => options.seed,
+            Self::Classical(options) => options.seed,
+            Self::Auto(options) => options.seed,
+        }
+    }
+
     /// Initial state of every record; `None` if it is not decided.
     pub fn initial_state(&self) -> Option<InitialState> {
         match self {

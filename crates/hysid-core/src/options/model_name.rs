@@ -64,6 +64,16 @@ impl ModelName {
         matches!(self, Self::Classical(law) if law.needs_rate())
     }
 
+    /// True if its internal states before each record can be found together with its parameters; for another model, the past
+    /// of the input is.
+    pub fn has_free_states(self) -> bool {
+        match self {
+            Self::Network(_) => false,
+            Self::Classical(law) => law.facts().has_free_states,
+            Self::Auto(_) => true,
+        }
+    }
+
     /// True if it takes more than one input.
     pub fn takes_further_inputs(self) -> bool {
         match self {

@@ -224,8 +224,9 @@ options! {
     initial_state: InitialState {
         meaning: "State of the memory at the beginning of each record: without history, after a visit of the upper or \
                   the lower end of the input range, demagnetised, periodic (each record is a period of a steady state), \
-                  unknown (one of a few histories, chosen for each record before the fit), or free (internal states, \
-                  fitted together with the parameters, for records that are cut out of a longer past; duhem-nn and auto)",
+                  unknown (one of a few histories, chosen for each record before the fit), or free (found for each record \
+                  together with the parameters, for records that are cut out of a longer past: the internal states of \
+                  duhem-nn, up to three turning points before the first row with any other model)",
         group: Training,
         values: OptionValues::Names(initial_states),
         default: |model, _| match model {

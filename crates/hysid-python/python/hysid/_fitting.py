@@ -139,9 +139,10 @@ def fit(
     initial_state : str, optional
         State of the memory at the beginning of each record: without history, after a visit of the upper or the lower
         end of the input range, demagnetised, periodic (each record is a period of a steady state), unknown (one of a
-        few histories, chosen for each record before the fit), or free (internal states, fitted together with the
-        parameters, for records that are cut out of a longer past; duhem-nn and auto). Default: chosen by
-        cross-validation for auto; otherwise virgin.
+        few histories, chosen for each record before the fit), or free (found for each record together with the
+        parameters, for records that are cut out of a longer past: the internal states of duhem-nn, up to three turning
+        points before the first row with any other model). Default: chosen by cross-validation for auto; otherwise
+        virgin.
     known : int | str, optional
         Measured beginning of the records on which the model will be used, as in `hysid evaluate --known`. Errors are
         then those after such a beginning of each record, and `auto` also tries free initial states. With free initial

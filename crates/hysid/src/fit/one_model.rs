@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::data::record::Dataset;
+use crate::data::initial_state::InitialState;
+use crate::data::record::{Dataset, Record};
 use crate::error::Result;
 use crate::fit::initial_state::StateRequest;
 use crate::fit::law;
@@ -13,6 +14,7 @@ use crate::law::facts::Origin;
 use crate::model::history::{HistoryPoint, Phase, Run};
 use crate::model::input_transform::TransformedData;
 use crate::model::{Model, Predictor, ProvenanceDraft};
+use crate::optimise::parallel;
 use crate::options::FitSpec;
 use crate::options::classical::ClassicalOptions;
 use crate::options::network::Method;
@@ -21,6 +23,59 @@ use crate::termination::Termination;
 
 /// As [`fit::identify`](crate::fit::identify), of one model, which `auto` is not.
 pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
+    match request.has_free_states() && !request.model().has_free_states() {
+        true => after_found_pasts(data, request, observer),
+        false => from_given_states(data, request, observer),
+    }
+}
+
+/// Fits of a model and of the past before each record, one after the other, at most. Designed.
+const ROUNDS: usize = 3;
+
+/// Share of the training error that a further round must take away. Designed.
+const WORTH_A_ROUND: f64 = 0.01;
+
+/// A fit of a model without free states of its own: each record begins in one of the states that are tried where the initial
+/// state is unknown; the past before it is found with the model, and the model is fitted after these pasts again (theory.md (11.12)).
+fn after_found_pasts(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
+    let is_given = |record: &Record| record.lead_in().is_some();
+    let mut begun = match data.records().iter().any(is_given) {
+        true => data.clone(),
+        false => StateRequest {
+            state: Some(InitialState::Unknown),
+            origin: Origin::OfData,
+            rate: request.rate(),
+            seed: request.seed(),
+        }
+        .of(data, observer)?
+        .into_owned(),
+    };
+    let mut best = from_given_states(&begun, request, observer)?;
+    let mut least = best.model.evaluate(&begun)?.rmse;
+    for _ in 0..ROUNDS {
+        if best.model.provenance().termination == Termination::Stopped {
+            break;
+        }
+        let past = |record: &Record| best.model.past_before(record);
+        let pasts: Vec<Vec<f64>> =
+            parallel::each(begun.records(), past).into_iter().collect::<Result<_>>()?;
+        let after = begun.clone().with_lead_ins(|place, _| pasts[place].clone())?;
+        let fitted = from_given_states(&after, request, observer)?;
+        let error = fitted.model.evaluate(&after)?.rmse;
+        if error >= least {
+            break;
+        }
+        let is_worth_another = error < (1.0 - WORTH_A_ROUND) * least;
+        (best, begun, least) = (fitted, after, error);
+        if !is_worth_another {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// A fit after the given lead-ins of the records.
+fn from_given_states(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
     match request {
         FitSpec::Network(options) => network::fit(data, options, observer),
         FitSpec::Classical(options) if options.model.is_network() => random_stops(data, options, observer),

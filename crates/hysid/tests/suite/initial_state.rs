@@ -426,6 +426,42 @@ fn a_known_beginning_tells_the_past_of_a_record() {
     }
 }
 
+/// Records that are cut out of a longer past: a fit that finds their pasts with the model is far better than one that takes
+/// them for virgin.
+#[test]
+fn pasts_are_found_together_with_the_model() {
+    let past = |k: f64| vec![0.9 * sin(7.1 * k), 0.9 * sin(4.3 * k + 1.0), 0.6 * sin(2.9 * k)];
+    let cut = |k: f64| measured(&format!("cut {k}"), &past(k), path(200, 0.8 + 0.05 * k, 0.06 + 0.01 * k));
+    let all: Vec<Record> = (0..14).map(|k| cut(f64::from(k))).collect();
+    let (train, unseen) = (untimed(all[2..].to_vec()), untimed(all[..2].to_vec()));
+    let options = ClassicalOptions { operators: Some(24), ..ClassicalOptions::of(ClassicalModel::Preisach) };
+    let error = |state| {
+        let request = FitSpec::Classical(options.clone()).with_initial_state(state);
+        let model = identify(&train, &request, &mut |_| ControlFlow::Continue(())).unwrap().model;
+        model.with_known_beginning(KnownBeginning::Rows(80)).evaluate(&unseen).unwrap().rmse
+    };
+    let (virgin, free) = (error(None), error(Some(InitialState::Free)));
+    assert!(free < 0.5 * virgin, "{free} with found pasts, {virgin} without");
+}
+
+/// A model that is wrong takes its own error for a state: what it finds must not be worse than no past.
+#[test]
+fn a_wrong_model_is_not_led_astray_by_a_known_beginning() {
+    let train = untimed(vec![measured("train", &[], path(500, 1.0, 0.11))]);
+    for model in [ClassicalModel::PrandtlIshlinskii, ClassicalModel::BoucWen] {
+        let options = ClassicalOptions { starts: Some(4), ..ClassicalOptions::of(model) };
+        let fitted = identify(&train, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(()));
+        let model = fitted.unwrap().model;
+        let cut = |k: i32| measured(&format!("cut {k}"), &[], path(300, 0.5, 0.03 * f64::from(k)));
+        let cuts: Vec<Record> = (1..9).map(cut).collect();
+        let blank = cuts.iter().map(|cut| cut.clone().scored_where(|row| row >= 100)).collect();
+        let virgin = model.evaluate(&untimed(blank)).unwrap().rmse;
+        let beginning = KnownBeginning::Rows(100);
+        let known = model.clone().with_known_beginning(beginning).evaluate(&untimed(cuts)).unwrap().rmse;
+        assert!(known < 1.03 * virgin, "{}: {known} known, {virgin} virgin", model.name().name());
+    }
+}
+
 /// Known rows are not scored, and a division into blocks changes nothing.
 #[test]
 fn a_known_beginning_is_not_scored_and_may_be_taken_in_blocks() {

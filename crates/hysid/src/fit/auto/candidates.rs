@@ -176,9 +176,17 @@ impl Candidate {
         OTHER_PENALTIES[..count].iter().copied().map(with).collect()
     }
 
-    /// True if the states before each record are found together with its parameters.
+    /// The same, whose pasts are found together with its parameters; `None` for a model that begins with other states.
+    pub fn with_found_pasts(&self) -> Option<Self> {
+        if self.request.initial_state().is_some() || self.is_dynamic() {
+            return None;
+        }
+        Some(Self { kind: self.kind, request: self.request.with_initial_state(Some(InitialState::Free)) })
+    }
+
+    /// True for a model with free states, which are found together with its parameters.
     pub fn has_free_states(&self) -> bool {
-        self.request.has_free_states()
+        self.request.has_free_states() && self.request.model().has_free_states()
     }
 
     /// True for a model with inertia, which is fitted to rows without gaps.

@@ -62,7 +62,7 @@ impl Stages<'_, '_, '_> {
             trial.members.insert(0, model);
         }
         self.first_starts(others);
-        let refined = self.refined();
+        let refined = [self.refined(), self.with_found_pasts()].concat();
         self.expect(refined.len(), laws.len());
         self.first_starts(refined.into_iter().map(Trial::of).collect());
         self.expect(0, laws.len());
@@ -225,6 +225,22 @@ impl Stages<'_, '_, '_> {
         let is_without_noise = networks.first().is_some_and(|best| score(best) < 2.0 * ln(WITHOUT_NOISE));
         let refined = |trial: &&Trial| trial.candidate.with_other_penalties(is_without_noise);
         networks.iter().take(REFINED).flat_map(refined).collect()
+    }
+
+    /// The best candidate of each kind so far with pasts that are found together with its parameters, for records with a known
+    /// beginning.
+    fn with_found_pasts(&self) -> Vec<Candidate> {
+        if self.options.known.is_none() || self.options.initial_state.is_some() || self.options.only.is_some()
+        {
+            return Vec::new();
+        }
+        let score = |trial: &&Trial| Score::of(&trial.predicted, self.bench.folds, |_| true).sum();
+        let best_of = |kind: CandidateKind| {
+            let of_kind = |trial: &&Trial| trial.is_complete() && trial.candidate.kind == kind;
+            let best = self.trials.iter().filter(of_kind).min_by(|a, b| score(a).total_cmp(&score(b)));
+            best?.candidate.with_found_pasts()
+        };
+        CandidateKind::ALL.into_iter().filter_map(best_of).collect()
     }
 
     /// The laws whose search on all data comes near the best candidate so far, with the fits found.
