@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::data::known_beginning::KnownBeginning;
 use crate::data::record::{Dataset, Record};
-use crate::error::{Channel, DataProblem, Result};
+use crate::error::Result;
 use crate::model::Model;
 
 impl Model {
@@ -25,14 +25,7 @@ impl Model {
     /// # Errors
     /// A beginning without any output.
     pub fn begun<'r>(&self, record: &'r Record) -> Result<Cow<'r, Record>> {
-        let rows = self.beginning.rows(record);
-        if rows == 0 || !record.known().is_empty() {
-            return Ok(Cow::Borrowed(record));
-        }
-        if record.output()[..rows].iter().all(|y| y.is_nan()) {
-            return Err(record.defect(Some(0), Some(Channel::Output), DataProblem::NothingKnown(rows)));
-        }
-        Ok(Cow::Owned(record.clone().with_known_beginning(rows)))
+        self.beginning.of(record)
     }
 }
 
