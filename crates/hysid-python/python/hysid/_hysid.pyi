@@ -13,6 +13,7 @@ __all__ = [
     "Inverse",
     "Plan",
     "ProgressLine",
+    "RecordState",
     "Stepper",
     "Tracking",
     "__version__",
@@ -99,6 +100,7 @@ class Model:
         inputs: list[_Column],
         rate: _Column | None,
         initial_state: str | None,
+        state: RecordState | None,
     ) -> _Column: ...
     def predict(
         self,
@@ -109,9 +111,20 @@ class Model:
         probability: float,
         of_ten: int,
         initial_state: str | None,
+        state: RecordState | None,
     ) -> list[_Column]: ...
+    def find_state(
+        self,
+        name: str,
+        time: _Column | None,
+        inputs: list[_Column],
+        rate: _Column | None,
+        known: _Column,
+    ) -> RecordState: ...
     def selection(self) -> list[str] | None: ...
-    def evaluate(self, data: Dataset, after_warm_up: bool, initial_state: str | None, known: int) -> str: ...
+    def evaluate(
+        self, data: Dataset, after_warm_up: bool, initial_state: str | None, known: str | None
+    ) -> str: ...
     def warm_up(self) -> int: ...
     def notes(self) -> list[str]: ...
     def range_warnings(self, data: Dataset) -> list[str]: ...
@@ -119,7 +132,7 @@ class Model:
     def parameter_intervals(self, data: Dataset) -> str | None: ...
     def diagnose(self) -> str: ...
     def cycles(self, division: str | None, field: str | None, smoothing_factor: int | None) -> str: ...
-    def stepper(self) -> Stepper: ...
+    def stepper(self, state: RecordState | None) -> Stepper: ...
     def inverse(
         self,
         limits: tuple[float, float] | None,
@@ -157,6 +170,9 @@ class ProgressLine:
         columns: int,
         bar: bool,
     ) -> str: ...
+
+@final
+class RecordState: ...
 
 @final
 class Stepper:
