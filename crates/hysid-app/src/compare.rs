@@ -8,6 +8,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use hysid::Error;
+use hysid::data::known_beginning::KnownSpan;
 use hysid::data::metrics::Errors;
 use hysid::data::record::Dataset;
 use hysid::fit::identify;
@@ -33,7 +34,8 @@ pub struct CompareRequest<'a> {
     pub train: &'a Dataset,
     /// Test data, which no model is fitted to; without them, models are compared on the training data.
     pub test: Option<&'a Dataset>,
-    /// Models with their options, in the order in which their fits begin: the slowest first saves time.
+    /// Models with their options, in the order in which their fits begin: the slowest first saves time. All have the
+    /// same known beginning; errors are those after it.
     pub specs: Vec<FitSpec>,
     /// Seconds for each fit; by default 20, and no limit for `auto`.
     pub time_limit: Option<f64>,
@@ -88,6 +90,7 @@ pub struct CompareRow {
 /// A fitted model and its errors.
 #[derive(Debug)]
 pub struct ComparedFit {
+    /// The model, with the known beginning of the comparison.
     pub model: Model,
     pub train: Errors,
     /// Errors on the test data, if there are any.
@@ -135,12 +138,29 @@ impl ComparedFit {
     }
 }
 
+/// Checks before the fits that all models can be judged after the known beginning.
+fn check_beginning(request: &CompareRequest<'_>) -> Result<(), (Error, ComparedData)> {
+    let of_train = |error| (error, ComparedData::Train);
+    let of_test = |error| (error, ComparedData::Test);
+    let Some(spec) = request.specs.first() else { return Ok(()) };
+    let beginning = spec.judged_beginning(request.train.names()).map_err(of_train)?;
+    if beginning.is_none() {
+        return Ok(());
+    }
+    beginning.check_rest(request.train).map_err(of_train)?;
+    request.test.map_or(Ok(()), |test| beginning.check_rest(test)).map_err(of_test)?;
+    let records = request.test.unwrap_or(request.train).records();
+    let known = records.iter().try_for_each(|record| beginning.of(record).map(drop));
+    known.map_err(if request.test.is_some() { of_test } else { of_train })
+}
+
 /// Fits all models in parallel, each within its time limit and on one thread, or on an equal share of the threads if these
 /// are at least twice as many as the models.
 ///
 /// # Errors
-/// Threads that cannot be started.
+/// A known beginning that no model can be judged after; threads that cannot be started.
 pub fn compare(request: &CompareRequest<'_>, observer: &dyn CompareObserver) -> Result<CompareOutcome> {
+    check_beginning(request).map_err(|(error, data)| Problem::from(observer.explain(error, data)))?;
     let count = request.specs.len();
     let workers = match request.threads {
         Some(threads) => threads,
@@ -207,7 +227,8 @@ impl CompareTask<'_> {
             let is_over = began.elapsed().as_secs_f64() >= limit || observer.is_to_stop();
             if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        let model = fitted.map_err(of_train)?.model;
+        let beginning = spec.judged_beginning(train.names()).map_err(of_train)?;
+        let model = fitted.map_err(of_train)?.model.with_known_beginning(beginning);
         let fit_seconds = began.elapsed().as_secs_f64();
         let test = test.map(|test| model.evaluate(test)).transpose();
         Ok(ComparedFit {
@@ -262,6 +283,8 @@ pub enum PrintedFit<'a> {
         parameters: usize,
         train: &'a Errors,
         test: Option<&'a Errors>,
+        /// Known beginning of each record: errors are those after it.
+        known: Option<&'a KnownSpan>,
         fit_seconds: f64,
         simulate_ns_per_sample: Option<f64>,
         termination: Termination,
@@ -289,6 +312,12 @@ impl CompareOutcome {
             1 => "one thread".into(),
             threads => format!("{threads} threads"),
         }
+    }
+
+    /// The known beginning with which errors were judged, in words.
+    fn beginning(&self) -> Option<String> {
+        let known = self.rows.iter().find_map(|row| row.spec.known())?;
+        Some(format!("They are those after a known beginning of each record: {known}."))
     }
 
     /// The comparison as plain text in 80 columns.
@@ -319,8 +348,9 @@ impl CompareOutcome {
             note => note + "\n",
         };
         text + &format!(
-            "\nErrors: NRMSE of free runs, in % of the standard deviation of the output.\nSorted by the error \
+            "\nErrors: NRMSE of free runs, in % of the standard deviation of the output.\n{}Sorted by the error \
              on {data}.\nEach fit ran on {}.\n{stopped}",
+            self.beginning().map_or_else(String::new, |words| words + "\n"),
             self.threads()
         )
     }
@@ -337,6 +367,7 @@ impl CompareOutcome {
                     parameters: fitted.model.parameters(),
                     train: &fitted.train,
                     test: fitted.test.as_ref(),
+                    known: row.spec.known(),
                     fit_seconds: fitted.fit_seconds,
                     simulate_ns_per_sample: fitted.simulate_ns_per_sample,
                     termination: fitted.model.provenance().termination,

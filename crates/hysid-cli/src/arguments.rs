@@ -20,6 +20,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use hysid::Model;
 use hysid::data::initial_state::InitialState;
+use hysid::data::known_beginning::KnownSpan;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::model::{BAND_OF_TEN, BAND_PROBABILITIES, BandLevel};
 use hysid::options::ModelName;
@@ -523,6 +524,12 @@ pub struct Compare {
     pub overwriting: Overwriting,
     #[command(flatten)]
     pub columns: ColumnOptions,
+    /// Measured beginning of each record, from which each model finds its state
+    ///
+    /// A number of rows, such as 100, or a time with its unit, such as 0.5s. Errors are those after it. `auto` also tries free
+    /// initial states.
+    #[arg(long, value_name = "ROWS|TIME", value_parser = KnownSpan::from_str)]
+    pub known: Option<KnownSpan>,
     /// Time for each model, after which its best fit so far is used [default: 20, none for auto]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = RUN)]
     pub time_limit: Option<f64>,

@@ -76,6 +76,9 @@ pub enum Error {
     /// A probability that no band is calibrated for.
     #[error("a band of {probability}: choose a probability from {least} to {most}")]
     Probability { probability: f64, least: f64, most: f64 },
+    /// A state that another model has found.
+    #[error("the state was found by another model: find it with this one")]
+    StateOfOtherModel,
     /// A number of data sets of ten that no band is made for.
     #[error("a band for {0} of ten data sets: choose 5 to 9 of ten")]
     DataSetsOfTen(usize),

@@ -614,7 +614,7 @@ impl Model {
 
     /// As [`Model::simulate`], from borrowed columns.
     pub fn response(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
-        self.check_time(excitation)?;
+        self.check(excitation)?;
         Runner::of_model(self).record(excitation)
     }
 
@@ -642,7 +642,7 @@ impl Model {
     pub fn predict(&self, excitation: &Excitation<'_>, level: impl Into<BandLevel>) -> Result<Prediction> {
         let level = level.into();
         let band = self.checked_band(level)?;
-        self.check_time(excitation)?;
+        self.check(excitation)?;
         let mut output = vec![0.0; excitation.len()];
         let mut spreads = vec![OutputSpread::default(); excitation.len()];
         Runner::of_model(self).rows(excitation, 0, &mut output, Some(&mut spreads))?;
@@ -702,7 +702,7 @@ impl Model {
     /// # Errors
     /// As [`Model::simulate`], and data without any output.
     pub fn evaluate(&self, data: &Dataset) -> Result<Errors> {
-        data.records().iter().try_for_each(|record| self.check_time(&record.excitation()))?;
+        data.records().iter().try_for_each(|record| self.check(&record.excitation()))?;
         data.records().iter().try_for_each(|record| self.begun(record).map(drop))?;
         errors(Runner::of_model(self), &begun(data, self.beginning))
     }
@@ -723,7 +723,9 @@ impl Model {
         behind(data, self.warm_up()).map(|behind| self.evaluate(&behind)).transpose()
     }
 
-    fn check_time(&self, excitation: &Excitation<'_>) -> Result<()> {
+    /// Checks that an excitation has what the model needs.
+    fn check(&self, excitation: &Excitation<'_>) -> Result<()> {
+        excitation.state().map_or(Ok(()), |state| self.check_state(state))?;
         if self.needs_time() && excitation.time().is_none() {
             return Err(excitation.defect(None, Some(Channel::Time), DataProblem::NoTimeForModel));
         }

@@ -7,6 +7,7 @@ use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
+use hysid::data::known_beginning::KnownBeginning;
 use hysid::fit;
 use hysid::fit::cross_validate;
 use hysid::fit::progress::Progress;
@@ -20,7 +21,7 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 
 use crate::data::Dataset;
-use crate::failure::refused;
+use crate::failure::{explained, refused};
 use crate::interruption::waited_for;
 use crate::model::Model;
 
@@ -50,6 +51,12 @@ impl FitSpec {
     fn variants(options: &str, rate: &str, data: &Dataset) -> PyResult<Vec<Self>> {
         let Self { chosen, request } = Self::new(options, rate, data)?;
         Ok(request.variants().into_iter().map(|request| Self { chosen: chosen.clone(), request }).collect())
+    }
+
+    /// Checks options that are the same for several models, as a JSON object.
+    #[staticmethod]
+    fn check(options: &str) -> PyResult<()> {
+        NamedOptions::of(serde_json::from_str(options).map_err(refused)?).map(drop).map_err(refused)
     }
 
     /// The name of the model, and of the variant of its law if it has more than one.
@@ -199,14 +206,15 @@ pub fn compare(
         Ok(hysid_app::compare::compare(&request, &CompareProgress { exchange, done }))
     };
     let (outcome, interrupted) = attended(py, None, None, progress, work)?;
-    let outcome = outcome.map_err(|problem| PyRuntimeError::new_err(problem.to_string()))?;
+    let outcome = outcome.map_err(|problem| explained(&problem))?;
     let row = |row: CompareRow| {
         let label = row.label();
         Ok(match row.fit {
             Ok(fit) => {
                 let test =
                     fit.test.map(|errors| serde_json::to_string(&errors)).transpose().map_err(refused)?;
-                (label, Some(Model::new(fit.model)), test, Some(fit.fit_seconds), None)
+                let model = fit.model.with_known_beginning(KnownBeginning::default());
+                (label, Some(Model::new(model)), test, Some(fit.fit_seconds), None)
             }
             Err(why) => (label, None, None, None, Some(why)),
         })

@@ -36,7 +36,7 @@ mod _hysid {
     #[pymodule_export]
     use crate::labels::{axis_label, figure_label, name_and_unit};
     #[pymodule_export]
-    use crate::model::{Model, Stepper, Tracking};
+    use crate::model::{Model, RecordState, Stepper, Tracking};
     #[pymodule_export]
     use crate::plan::{Plan, plan};
     #[pymodule_export]

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use hysid::data::initial_state::InitialState;
-use hysid::data::known_beginning::KnownBeginning;
-use hysid::data::record::Excitation;
+use hysid::data::known_beginning::KnownSpan;
+use hysid::data::record::{self, Excitation};
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
@@ -149,8 +149,9 @@ impl Model {
         self.model.needs_time()
     }
 
-    /// Free run over one record. Without the name of an initial state it
-    /// begins as the training records did.
+    /// Free run over one record. Without the name of an initial state or a state that was found it begins as the training
+    /// records did.
+    #[allow(clippy::too_many_arguments)]
     fn simulate<'py>(
         &self,
         py: Python<'py>,
@@ -159,9 +160,10 @@ impl Model {
         inputs: Vec<Column<'_>>,
         rate: Option<Column<'_>>,
         initial_state: Option<&str>,
+        state: Option<PyRef<'_, RecordState>>,
     ) -> PyResult<NewColumn<'py>> {
-        let model = self.begun(initial_state)?;
-        let run = move |excitation: &Excitation<'_>| model.response(excitation);
+        let (model, state) = (self.begun(initial_state)?, state.map(|state| state.state.clone()));
+        let run = move |excitation: Excitation<'_>| model.response(&excitation.with_state(&state));
         Ok(PyArray1::from_vec(
             py,
             driven(py, self.model.work_of_longest_row(), name, time, inputs, rate, run)?,
@@ -180,13 +182,31 @@ impl Model {
         probability: f64,
         of_ten: usize,
         initial_state: Option<&str>,
+        state: Option<PyRef<'_, RecordState>>,
     ) -> PyResult<[NewColumn<'py>; 3]> {
-        let model = self.begun(initial_state)?;
+        let (model, state) = (self.begun(initial_state)?, state.map(|state| state.state.clone()));
         let level = BandLevel { probability, of_ten };
-        let run = move |excitation: &Excitation<'_>| model.predict(excitation, level);
+        let run = move |excitation: Excitation<'_>| model.predict(&excitation.with_state(&state), level);
         let Prediction { output, low, high } =
             driven(py, self.model.work_of_longest_row(), name, time, inputs, rate, run)?;
         Ok([output, low, high].map(|column| PyArray1::from_vec(py, column)))
+    }
+
+    /// Its state before the first row of a record, from the outputs of the first rows.
+    fn find_state(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        time: Option<Column<'_>>,
+        inputs: Vec<Column<'_>>,
+        rate: Option<Column<'_>>,
+        known: Column<'_>,
+    ) -> PyResult<RecordState> {
+        let (model, known) = (Arc::clone(&self.model), values(&known)?);
+        let run =
+            move |excitation: Excitation<'_>| model.find_state(&excitation.with_known_beginning(&known)?);
+        let work = RUNS_OF_SEARCH * self.model.work_of_longest_row();
+        Ok(RecordState { state: driven(py, work, name, time, inputs, rate, run)? })
     }
 
     /// The choice among candidates and the reason, in two lines; `None` if there was no choice.
@@ -194,20 +214,23 @@ impl Model {
         self.model.provenance().selection.as_ref().map(Selection::summary)
     }
 
-    /// Errors of free runs over all records, as JSON; without the rows of a warm-up if requested.
+    /// Errors of free runs over all records, as JSON; without the rows of a warm-up if requested. `known` is a number of rows or
+    /// a time with its unit.
     fn evaluate(
         &self,
         py: Python<'_>,
         data: &Dataset,
         after_warm_up: bool,
         initial_state: Option<&str>,
-        known: usize,
+        known: Option<&str>,
     ) -> PyResult<String> {
         let set = Arc::clone(&data.set);
         let model = self.begun(initial_state)?;
-        let beginning = KnownBeginning::Rows(known);
-        let model =
-            if known == 0 { model } else { Arc::new((*model).clone().with_known_beginning(beginning)) };
+        let known = known.map(|known| known.parse::<KnownSpan>()?.beginning(model.names())).transpose();
+        let model = match known.map_err(refused)? {
+            Some(beginning) => Arc::new((*model).clone().with_known_beginning(beginning)),
+            None => model,
+        };
         let evaluate = move || match after_warm_up && model.warm_up() > 0 {
             true => model.evaluate_after_warm_up(&set),
             false => model.evaluate(&set).map(Some),
@@ -272,9 +295,11 @@ impl Model {
         crate::cycles::of_model(py, &self.model, division, field, smoothing_factor)
     }
 
-    /// Runs it sample by sample, from its initial state.
-    fn stepper(&self) -> Stepper {
-        Stepper { stepper: model::Model::clone(&self.model).into_stepper() }
+    /// Runs it sample by sample, from its initial state or a state that was found.
+    fn stepper(&self, state: Option<PyRef<'_, RecordState>>) -> PyResult<Stepper> {
+        let mut stepper = model::Model::clone(&self.model).into_stepper();
+        state.map_or(Ok(()), |state| stepper.reset_to_record(&state.state)).map_err(refused)?;
+        Ok(Stepper { stepper })
     }
 
     /// Its inverse, from its initial state.
@@ -299,6 +324,22 @@ impl Model {
     }
 }
 
+/// Runs over the known rows in the search of a state, about so many.
+const RUNS_OF_SEARCH: f64 = 100.0;
+
+/// State of a model before the first row of a record, as `Model.find_state` finds it.
+#[pyclass(frozen, module = "hysid._hysid")]
+pub struct RecordState {
+    state: record::RecordState,
+}
+
+#[pymethods]
+impl RecordState {
+    fn __repr__(&self) -> String {
+        format!("RecordState({})", self.state)
+    }
+}
+
 /// Runs something over a copy of one record: what another thread does to the arrays meanwhile changes nothing.
 fn driven<T: Send + 'static>(
     py: Python<'_>,
@@ -307,7 +348,7 @@ fn driven<T: Send + 'static>(
     time: Option<Column<'_>>,
     inputs: Vec<Column<'_>>,
     rate: Option<Column<'_>>,
-    run: impl Fn(&Excitation<'_>) -> hysid::Result<T> + Send + 'static,
+    run: impl Fn(Excitation<'_>) -> hysid::Result<T> + Send + 'static,
 ) -> PyResult<T> {
     let name = name.to_owned();
     let inputs = inputs.iter().map(values).collect::<PyResult<Vec<_>>>()?;
@@ -322,7 +363,7 @@ fn driven<T: Send + 'static>(
         if let Some(rate) = &rate {
             excitation = excitation.with_given_rate(rate)?;
         }
-        run(&excitation)
+        run(excitation)
     })
 }
 

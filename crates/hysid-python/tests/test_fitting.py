@@ -214,6 +214,21 @@ def test_models_are_compared(spring_and_slider):
         hysid.compare(x, y, models=["foo"])
 
 
+@pytest.mark.filterwarnings("ignore:.* what the model was trained on:hysid.HysidWarning")
+def test_models_are_compared_after_a_known_beginning(spring_and_slider):
+    x, y = spring_and_slider
+    test = (x[300:], y[300:])
+    comparison = hysid.compare(x, y, test=test, models=["masing"], known=50)
+    errors = comparison[0].test
+    assert (comparison.known, errors.samples, comparison[0].train.samples) == (50, 250, 550)
+    assert errors == comparison.best.evaluate(*test, known=50)
+    assert errors.rmse < comparison.best.evaluate(*test).rmse
+    assert str(comparison).endswith("after a known beginning of each record: 50 rows.")
+    for known, words in ((0, "known"), ("soon", "known"), ("0.5s", "no unit of time is known"), (300, "blank after")):
+        with pytest.raises(ValueError, match=words):
+            hysid.compare(x, y, test=test, models=["masing"], known=known)
+
+
 def test_diagnoses_say_what_the_program_says(program, tmp_path):
     import json
 

@@ -183,6 +183,55 @@ def test_bad_files_are_value_errors(quick_model, tmp_path):
         hysid.Model.load(tmp_path / "none.json")
 
 
+def test_a_state_is_found_and_used(spring_and_slider, quick_ensemble):
+    x, y = (values[330:] for values in spring_and_slider)
+    single = hysid.fit(*spring_and_slider, model="masing")
+    for model in (single, quick_ensemble):
+        state = model.find_state(x, y[:80])
+        simulated = model.simulate(x, state=state)
+        # The error of the rows after the known ones.
+        rmse = np.sqrt(np.mean((simulated - y)[80:] ** 2))
+        assert model.evaluate(x, y, known=80).rmse == pytest.approx(rmse, rel=1e-12)
+        padded = np.where(np.arange(len(x)) < 80, y, np.nan)
+        assert np.array_equal(model.simulate(x, state=model.find_state(x, padded)), simulated)
+        stepper = model.stepper(state)
+        assert [stepper.step(value) for value in x[:150]] == simulated[:150].tolist()
+    output, low, high = quick_ensemble.predict(x, state=state)
+    assert np.array_equal(output, simulated) and (low < high).all()
+    assert repr(state).startswith("RecordState(member 1: ") and "; member 2: " in repr(state)
+    found = single.find_state(x, y[:80])
+    assert repr(found).startswith("RecordState(") and "member" not in repr(found)
+
+    frame = pandas.DataFrame({"x": x, "y": y})
+    assert repr(single.find_state(frame, "y")) == repr(single.find_state(frame[["x"]], frame["y"]))
+    refused = {
+        "found by another model": lambda: single.simulate(x, state=state),
+        "by another model": lambda: single.stepper(state),
+        "cannot be used with initial_state": lambda: single.simulate(x, state=found, initial_state="virgin"),
+        "cannot be used with initial": lambda: single.evaluate(x, y, known=5, initial_state="virgin"),
+        "x has 2": lambda: single.simulate(x, records=["a", *["b"] * (len(x) - 1)], state=found),
+        "list of records": lambda: single.find_state([x, x], [y, y]),
+        "output: has 270 values": lambda: single.find_state(x[:9], y),
+        "is blank in the first 0 rows": lambda: single.find_state(x, []),
+        "is blank in the first 9 rows": lambda: single.find_state(x, np.full(9, np.nan)),
+        "known 0": lambda: single.evaluate(x, y, known=0),
+        "known soon": lambda: single.evaluate(x, y, known="soon"),
+        "no unit of time": lambda: single.evaluate(x, y, known="0.5s"),
+    }
+    for words, call in refused.items():
+        with pytest.raises(ValueError, match=words):
+            call()
+    with pytest.raises(TypeError, match="state"):
+        single.simulate(x, state="virgin")
+
+
+def test_a_known_beginning_is_a_time_too(spring_and_slider):
+    x, y = spring_and_slider
+    time = {"t_s": 0.5 * np.arange(len(x))}
+    model = hysid.fit(x, y, time, model="masing", rate="none")
+    assert model.evaluate(x, y, time, known="40s") == model.evaluate(x, y, time, known=81)
+
+
 def test_models_are_pickled_and_compared(quick_model):
     again = pickle.loads(pickle.dumps(quick_model))
     assert again == quick_model and hash(again) == hash(quick_model)

@@ -94,6 +94,7 @@ mod tests {
 
     use super::*;
     use crate::data::record::ColumnNames;
+    use crate::options::ModelName;
     use crate::options::chosen::NamedOptions;
 
     fn data(rows: usize, inputs: usize) -> Dataset {

@@ -38,8 +38,9 @@ impl CompareOutcome {
             )
         }));
         let words = format!(
-            "NRMSE of free runs, in percent of the standard deviation of the output. Each fit ran on {}. \
+            "NRMSE of free runs, in percent of the standard deviation of the output. {}Each fit ran on {}. \
              {}",
+            self.beginning().map_or_else(String::new, |words| words + " "),
             self.threads(),
             stopped_note(rows)
         );

@@ -47,8 +47,8 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     let train = data_with(tables, roles, arguments.columns.reading.zero)?;
     let mut requests = Vec::new();
     for &model in &models {
-        let chosen =
-            NamedOptions { model: Some(model), seed: Some(arguments.seed), ..NamedOptions::default() };
+        let (seed, known) = (Some(arguments.seed), arguments.known.clone());
+        let chosen = NamedOptions { model: Some(model), seed, known, ..NamedOptions::default() };
         let request = arguments.columns.rate.request(&chosen, &train.set).with_context(|| file.clone())?;
         requests.extend(request.variants());
     }

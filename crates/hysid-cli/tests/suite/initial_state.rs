@@ -94,6 +94,64 @@ fn a_state_that_is_none_is_refused() {
     }
 }
 
+/// Test records after pasts of their own: with their beginning known, the error is that of the model, not of the state.
+#[test]
+fn models_are_compared_after_a_known_beginning() {
+    let bench = bench();
+    let cuts = [("e", -1.0, 0.4, 0.115), ("f", 0.9, 0.35, 0.12)];
+    let cuts: Vec<Vec<String>> =
+        cuts.iter().flat_map(|&(name, past, size, pace)| rows(name, past, size, pace)).collect();
+    bench.put("cuts.csv", csv("record,H_A_m,B_T", ",", "\n", &cuts));
+    let compare = |options: &str| {
+        let models = "prandtl-ishlinskii,duhem-nn --time-limit 2";
+        bench.json(&format!("compare train.csv --models {models} --json --no-report {options}"))
+    };
+    let row = |rows: &Value, model: &str| {
+        let found = rows.as_array().unwrap().iter().find(|row| row["model"] == model);
+        found.unwrap().clone()
+    };
+    let (without, with) = (compare("--test cuts.csv"), compare("--test cuts.csv --known 40"));
+    for model in ["prandtl-ishlinskii", "duhem-nn"] {
+        let (without, with) = (row(&without, model), row(&with, model));
+        assert_eq!((&without["known"], &with["known"]), (&Value::Null, &Value::from(40)));
+        assert_eq!((&without["test"]["samples"], &with["test"]["samples"]), (&240.into(), &160.into()));
+        assert_eq!(with["train"]["samples"], 4 * 80);
+        let error = |row: &Value| row["test"]["nrmse_std_percent"].as_f64().unwrap();
+        assert!(error(&with) < 0.6 * error(&without), "{with}, without {without}");
+    }
+    // The same as a fit with this option, and its evaluation.
+    bench.succeeds("fit train.csv -o m.json --no-report --model prandtl-ishlinskii --known 40");
+    let evaluated = bench.json("evaluate m.json cuts.csv --known 40 --json");
+    assert_eq!(evaluated["nrmse_std_percent"], row(&with, "prandtl-ishlinskii")["test"]["nrmse_std_percent"]);
+
+    let told = bench.succeeds("compare train.csv --models prandtl-ishlinskii --known 40").stdout;
+    let words = "after a known beginning of each record: 40 rows.";
+    assert!(told.contains(words) && bench.text("train-compared.html").contains(words), "{told}");
+    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+
+    let mut blank = rows("g", 1.0, 0.4, 0.115);
+    blank.iter_mut().take(40).for_each(|row| row[2].clear());
+    bench.put("blank.csv", csv("record,H_A_m,B_T", ",", "\n", &blank));
+    let refused = |status: i32, options: &str, words: &str| {
+        let ran = bench.run(&format!("compare train.csv --models masing --no-report {options}"));
+        assert_eq!(ran.status, Some(status), "{options}: {}", ran.stderr);
+        assert!(ran.stderr.contains(words) && !ran.stderr.contains("1/1"), "{options}: {}", ran.stderr);
+    };
+    refused(2, "--known 0", "give a number of rows, such as 100");
+    refused(2, "--known soon", "give a number of rows, such as 100");
+    refused(1, "--known 0.5s", "no unit of time is known");
+    refused(1, "--known 120", "train.csv: column \"B_T\" is blank after the known beginning");
+    refused(1, "--known 120 --test cuts.csv", "train.csv: column \"B_T\" is blank after the known beginning");
+    refused(
+        1,
+        "--known 40 --test blank.csv",
+        "blank.csv, line 2, column \"B_T\": is blank in the first 40 rows",
+    );
+    // Records of the training data that are longer than those of the test data.
+    bench.put("short.csv", csv("record,H_A_m,B_T", ",", "\n", &cuts[..60]));
+    refused(1, "--known 60 --test short.csv", "short.csv: column \"B_T\" is blank after the known beginning");
+}
+
 #[test]
 fn a_state_is_found_from_a_known_beginning() {
     let bench = bench();

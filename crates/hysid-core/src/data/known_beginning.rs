@@ -1,13 +1,15 @@
 //! Known beginnings of records: how many of their first rows have a known output.
 
+use std::borrow::Cow;
+use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
 use crate::data::initial_state::InitialState;
-use crate::data::record::{ColumnNames, Record};
+use crate::data::record::{ColumnNames, Dataset, Record};
 use crate::data::unit::of_column;
-use crate::error::{Error, OptionError, Result};
+use crate::error::{Channel, DataProblem, Error, OptionError, Result};
 
 /// The known beginning of records: how many of their first rows have a known output.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,6 +70,35 @@ impl KnownBeginning {
             (Self::Time(_), None) => 0,
         }
     }
+
+    /// The record with this known beginning, if it has none of its own.
+    ///
+    /// # Errors
+    /// A beginning without any output.
+    pub fn of<'r>(self, record: &'r Record) -> Result<Cow<'r, Record>> {
+        let rows = self.rows(record);
+        if rows == 0 || !record.known().is_empty() {
+            return Ok(Cow::Borrowed(record));
+        }
+        if record.output()[..rows].iter().all(|y| y.is_nan()) {
+            return Err(record.defect(Some(0), Some(Channel::Output), DataProblem::NothingKnown(rows)));
+        }
+        Ok(Cow::Owned(record.clone().with_known_beginning(rows)))
+    }
+
+    /// Checks that some record of the data has an output after this beginning.
+    ///
+    /// # Errors
+    /// An output that is blank there.
+    pub fn check_rest(self, data: &Dataset) -> Result<()> {
+        let rest = |record: &Record| record.output().iter().skip(self.rows(record)).any(|y| !y.is_nan());
+        match data.records().iter().any(rest) {
+            true => Ok(()),
+            false => {
+                Err(data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingAfterBeginning))
+            }
+        }
+    }
 }
 
 /// A known beginning as a user gives it: a number of rows, or a duration with its unit.
@@ -104,6 +135,18 @@ impl KnownSpan {
             Some(of_time) => Err(refused(format!("the unit of time is {of_time}"))),
             None => Err(refused("no unit of time is known; give a number of rows".into())),
         }
+    }
+}
+
+impl fmt::Display for KnownSpan {
+    /// `100 rows`, or a duration as it was given.
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let text = match self {
+            Self::Rows(rows) => &rows.to_string(),
+            Self::Time(text) => text,
+        };
+        let rows = if text == "1" { " row" } else { " rows" };
+        write!(to, "{text}{}", if text.parse::<usize>().is_ok() { rows } else { "" })
     }
 }
 

@@ -9,6 +9,7 @@ mod excitation;
 mod fingerprint;
 mod protocols;
 mod speeds;
+mod state;
 mod thinning;
 mod values;
 
@@ -21,6 +22,8 @@ pub use excitation::Excitation;
 pub use fingerprint::Fingerprint;
 pub use protocols::{ProtocolDifference, RepeatedProtocol, protocols};
 pub use speeds::SpeedEvidence;
+pub use state::RecordState;
+pub(crate) use state::{FadingResidual, MemberState};
 pub use thinning::Thinning;
 pub use values::Values;
 
@@ -106,6 +109,7 @@ impl Record {
             given_rate: self.given_rate(),
             lead_in: self.lead_in(),
             known: &self.known,
+            state: None,
         }
     }
 

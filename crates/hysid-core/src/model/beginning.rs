@@ -3,10 +3,9 @@
 use std::borrow::Cow;
 
 use crate::data::known_beginning::KnownBeginning;
-use crate::data::record::{Dataset, Record};
-use crate::error::{Channel, DataProblem, Result};
-use crate::model::Model;
-use crate::model::runner::Runner;
+use crate::data::record::{Dataset, Excitation, Fingerprint, Record, RecordState};
+use crate::error::{Channel, DataProblem, Error, Result};
+use crate::model::{Ensemble, Model, Runner};
 
 impl Model {
     /// The same model, which takes the first outputs of each record as a [known
@@ -21,14 +20,41 @@ impl Model {
         self.beginning
     }
 
-    /// The past of the first input that suits all outputs of a record, in its unit: up to three turning points, from which a
-    /// free run of this single model has the lowest error. Empty for a model with free states of its own.
+    /// State before the first row of a record, from the outputs of its [known beginning](Excitation::with_known_beginning).
+    ///
+    /// A free run [from it](Excitation::with_state) has the outputs of a run with this known beginning, and a stepper may
+    /// [begin in it](crate::model::Stepper::reset_to_record). If the rate of a row depends on rows behind it, the excitation
+    /// needs the rows behind the known ones too.
     ///
     /// # Errors
-    /// As [`Model::simulate`].
-    pub fn past_before(&self, record: &Record) -> Result<Vec<f64>> {
-        let excitation = record.excitation().knowing(record.output());
-        Runner::of_model(self).past_before(&excitation)
+    /// As [`Model::simulate`], and a known beginning without any output.
+    pub fn find_state(&self, excitation: &Excitation<'_>) -> Result<RecordState> {
+        self.check(excitation)?;
+        let known = excitation.known();
+        if known.iter().all(|y| y.is_nan()) {
+            let problem = DataProblem::NothingKnown(known.len());
+            return Err(excitation.defect(Some(0), Some(Channel::Output), problem));
+        }
+        let state = Runner::of_model(self).find_state(excitation, 0)?;
+        Ok(RecordState { model: self.fingerprint(), ..state })
+    }
+
+    /// Checks that this model has found the state.
+    pub(super) fn check_state(&self, state: &RecordState) -> Result<()> {
+        if state.model == self.fingerprint() { Ok(()) } else { Err(Error::StateOfOtherModel) }
+    }
+
+    /// Hash of the trained ranges and of the training errors of the model and its members.
+    fn fingerprint(&self) -> Fingerprint {
+        let mut fingerprint = Fingerprint::default();
+        let members = self.ensemble().map_or(&[][..], Ensemble::members);
+        for model in members.iter().chain([self]) {
+            let ranges = model.trained.inputs.iter().chain([&model.trained.output]);
+            let train = &model.provenance.train;
+            let numbers = ranges.flat_map(|&(low, high)| [low, high]).chain([train.mse]);
+            fingerprint.add(numbers, train.max_abs_error);
+        }
+        fingerprint
     }
 
     /// The record with the known beginning of this model, if it has none of its own.
@@ -36,14 +62,7 @@ impl Model {
     /// # Errors
     /// A beginning without any output.
     pub fn begun<'r>(&self, record: &'r Record) -> Result<Cow<'r, Record>> {
-        let rows = self.beginning.rows(record);
-        if rows == 0 || !record.known().is_empty() {
-            return Ok(Cow::Borrowed(record));
-        }
-        if record.output()[..rows].iter().all(|y| y.is_nan()) {
-            return Err(record.defect(Some(0), Some(Channel::Output), DataProblem::NothingKnown(rows)));
-        }
-        Ok(Cow::Owned(record.clone().with_known_beginning(rows)))
+        self.beginning.of(record)
     }
 }
 

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::data::initial_state::{found_past, lead_in_of_period};
 use crate::data::rate::RateMethod;
-use crate::data::record::Excitation;
+use crate::data::record::{Excitation, FadingResidual, Fingerprint, MemberState, RecordState};
 use crate::error::{DataProblem, Result};
 use crate::law::series::lead_in_samples;
 use crate::law::{Classical, ClassicalState, Sample, remaining_share};
@@ -42,14 +42,8 @@ pub(super) struct Runner<'m> {
     is_periodic: bool,
     /// The memory has been driven along the lead-in of the record.
     is_begun: bool,
-    /// Past that was found for the last of the singles before a record with a known beginning.
-    past: Vec<f64>,
-    /// Outputs of the known beginning of the record, and the rows that were simulated.
-    known: Vec<f64>,
-    simulated: usize,
-    /// Residual at the last known row, and how much of it remains from row to row.
-    residual: f64,
-    remaining: f64,
+    /// Residual at the end of the known beginning of the record, if it remains.
+    residual: Option<FadingResidual>,
     /// Trained ranges to compare with, if requested, and the method for the rate.
     ranges: Option<(Ranges, Option<RateMethod>)>,
 }
@@ -133,11 +127,7 @@ impl<'m> Runner<'m> {
             lead_in: &[],
             is_periodic: false,
             is_begun: false,
-            past: Vec::new(),
-            known: Vec::new(),
-            simulated: 0,
-            residual: 0.0,
-            remaining: 0.0,
+            residual: None,
             ranges: None,
         }
     }
@@ -162,8 +152,7 @@ impl<'m> Runner<'m> {
     /// Back to the initial state, before another record.
     pub fn reset(&mut self) {
         self.is_begun = false;
-        self.known.clear();
-        (self.simulated, self.residual) = (0, 0.0);
+        self.residual = None;
         self.body.singles_mut().iter_mut().for_each(SingleRunner::reset);
         self.excursion = Excursion::beyond(self.range);
     }
@@ -188,10 +177,7 @@ impl<'m> Runner<'m> {
         outputs: &mut [f64],
         mut spreads: Option<&mut [OutputSpread]>,
     ) -> Result<()> {
-        let (expected, found) = (self.body.inputs(), excitation.inputs().len());
-        if expected != found {
-            return Err(excitation.defect(None, None, DataProblem::Inputs { expected, found }));
-        }
+        self.check_inputs(excitation)?;
         for (index, outputs) in outputs.chunks_mut(CHUNK).enumerate() {
             let rows = index * CHUNK..index * CHUNK + outputs.len();
             let spreads = spreads.as_deref_mut().map(|spreads| &mut spreads[rows.clone()]);
@@ -200,51 +186,79 @@ impl<'m> Runner<'m> {
         Ok(())
     }
 
+    fn check_inputs(&self, excitation: &Excitation<'_>) -> Result<()> {
+        let (expected, found) = (self.body.inputs(), excitation.inputs().len());
+        if expected == found {
+            return Ok(());
+        }
+        Err(excitation.defect(None, None, DataProblem::Inputs { expected, found }))
+    }
+
     /// Drives the memory along the lead-in, before the first row of a record, which is here.
     fn begin(&mut self, excitation: &Excitation<'_>, first: usize) -> Result<()> {
         if std::mem::replace(&mut self.is_begun, true) {
             return Ok(());
         }
-        let lead_in = match excitation.lead_in() {
-            Some(lead_in) => Cow::Borrowed(lead_in),
-            None if self.is_periodic => Cow::Owned(lead_in_of_period(excitation.inputs()[0])),
-            None => Cow::Borrowed(self.lead_in),
+        let first_row: Vec<f64> = excitation.inputs().iter().map(|input| input[first]).collect();
+        let found = match excitation.state() {
+            Some(state) => Some(Cow::Borrowed(state)),
+            None if excitation.known().iter().all(|y| y.is_nan()) => None,
+            None => Some(Cow::Owned(self.find_state(excitation, first)?)),
         };
-        if excitation.known().iter().any(|y| !y.is_nan()) {
-            return self.begin_known(excitation, first, &lead_in);
+        if let Some(state) = found {
+            self.residual = state.residual;
+            self.body.begin_in(&state.members, &first_row);
+            return Ok(());
         }
+        let lead_in = self.lead_in_of(excitation);
         if lead_in.is_empty() {
             return Ok(());
         }
-        let first_row: Vec<f64> = excitation.inputs().iter().map(|input| input[first]).collect();
         let rows: Vec<f64> = lead_in.iter().chain(&first_row[..1]).copied().collect();
         self.body.singles_mut().iter_mut().for_each(|single| single.lead_in(&rows, &first_row));
         Ok(())
     }
 
-    /// Finds the state before a record with a known beginning, each member of an ensemble its own. `otherwise` is the lead-in
-    /// of a record without one.
-    fn begin_known(&mut self, excitation: &Excitation<'_>, first: usize, otherwise: &[f64]) -> Result<()> {
-        self.known = excitation.known().to_vec();
-        self.known.truncate(excitation.len() - first);
-        let rows = first..first + self.known.len();
+    /// Lead-in of a record without a known beginning: its own, or that of the model.
+    fn lead_in_of<'e>(&self, excitation: &Excitation<'e>) -> Cow<'e, [f64]>
+    where
+        'm: 'e,
+    {
+        match excitation.lead_in() {
+            Some(lead_in) => Cow::Borrowed(lead_in),
+            None if self.is_periodic => Cow::Owned(lead_in_of_period(excitation.inputs()[0])),
+            None => Cow::Borrowed(self.lead_in),
+        }
+    }
+
+    /// Finds the state before the first row of a record with a known beginning, which is here: each member of an ensemble
+    /// its own. The memory remains in its initial state.
+    pub fn find_state(&mut self, excitation: &Excitation<'_>, first: usize) -> Result<RecordState> {
+        self.check_inputs(excitation)?;
+        let known = excitation.known();
+        let known = &known[..known.len().min(excitation.len() - first)];
+        let rows = first..first + known.len();
         self.fill(excitation, rows.clone())?;
         let inputs: Vec<&[f64]> = excitation.inputs().iter().map(|input| &input[rows.clone()]).collect();
         let chunk =
             Chunk { name: excitation.name(), inputs: &inputs, rates: &self.rates, steps: &self.steps };
-        for single in self.body.singles_mut() {
-            self.past = single.begin_known(&chunk, &self.known, self.range, otherwise)?;
+        let singles = self.body.singles();
+        let otherwise = self.lead_in_of(excitation);
+        let state_of = |single: &SingleRunner<'_>| single.found_state(&chunk, known, self.range, &otherwise);
+        let members: Vec<MemberState> = singles.iter().map(state_of).collect();
+        let remaining = remaining_share(median(singles.iter().map(SingleRunner::residual_rows).collect()));
+        let mut state =
+            RecordState { members, residual: None, range: self.range, model: Fingerprint::default() };
+        if remaining > 0.0 {
+            let (mut body, mut outputs) = (self.body.clone(), vec![0.0; known.len()]);
+            let first_row: Vec<f64> = inputs.iter().map(|input| input[0]).collect();
+            body.begin_in(&state.members, &first_row);
+            body.run(&chunk, &mut self.excursion.clone(), &mut outputs, None)?;
+            let residuals = known.iter().zip(&outputs).map(|(y, output)| y - output);
+            let residual = residuals.rev().find(|residual| !residual.is_nan()).unwrap_or_default();
+            state.residual = Some(FadingResidual { rows: known.len(), residual, remaining });
         }
-        let rows: Vec<f64> = self.body.singles().iter().map(SingleRunner::residual_rows).collect();
-        self.remaining = remaining_share(median(rows));
-        Ok(())
-    }
-
-    /// The past that suits the outputs of a whole record.
-    pub fn past_before(&mut self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
-        self.reset();
-        self.begin(excitation, 0)?;
-        Ok(std::mem::take(&mut self.past))
+        Ok(state)
     }
 
     /// Rates and steps of some rows.
@@ -259,21 +273,6 @@ impl<'m> Runner<'m> {
             _ => 0.0,
         }));
         Ok(())
-    }
-
-    /// Adds what remains of the residual at the end of the known beginning.
-    fn correct(&mut self, outputs: &mut [f64]) {
-        for output in outputs {
-            match self.known.get(self.simulated) {
-                Some(known) if known.is_nan() => {}
-                Some(known) => self.residual = known - *output,
-                None => {
-                    self.residual *= self.remaining;
-                    *output += self.residual;
-                }
-            }
-            self.simulated += 1;
-        }
     }
 
     fn chunk(
@@ -292,17 +291,9 @@ impl<'m> Runner<'m> {
         if let Some((ranges, method)) = &mut self.ranges {
             ranges.take(&inputs, method.map(|method| chunk.rate(method)));
         }
-        match &mut self.body {
-            RunnerKind::Single(single) => {
-                single.run(&chunk, outputs)?;
-                for (spread, &x) in spreads.into_iter().flatten().zip(inputs[0]) {
-                    *spread = OutputSpread { disagreement: 0.0, outside: self.excursion.take(x) };
-                }
-            }
-            RunnerKind::Ensemble(members) => members.run(&chunk, &mut self.excursion, outputs, spreads)?,
-        }
-        if !self.known.is_empty() {
-            self.correct(outputs);
+        self.body.run(&chunk, &mut self.excursion, outputs, spreads)?;
+        if let Some(residual) = &mut self.residual {
+            outputs.iter_mut().for_each(|output| *output = residual.corrected(*output));
         }
         Ok(())
     }
@@ -326,6 +317,33 @@ impl<'m> RunnerKind<'m> {
         match self {
             Self::Single(single) => std::slice::from_mut(single),
             Self::Ensemble(members) => &mut members.members,
+        }
+    }
+
+    /// Begins a record in these states of the members; the memory is in its initial state.
+    fn begin_in(&mut self, members: &[MemberState], first_row: &[f64]) {
+        self.singles_mut()
+            .iter_mut()
+            .zip(members)
+            .for_each(|(single, state)| single.begin_in(state, first_row));
+    }
+
+    fn run(
+        &mut self,
+        chunk: &Chunk<'_>,
+        excursion: &mut Excursion,
+        outputs: &mut [f64],
+        spreads: Option<&mut [OutputSpread]>,
+    ) -> Result<()> {
+        match self {
+            Self::Single(single) => {
+                single.run(chunk, outputs)?;
+                for (spread, &x) in spreads.into_iter().flatten().zip(chunk.inputs[0]) {
+                    *spread = OutputSpread { disagreement: 0.0, outside: excursion.take(x) };
+                }
+                Ok(())
+            }
+            Self::Ensemble(members) => members.run(chunk, excursion, outputs, spreads),
         }
     }
 
@@ -397,18 +415,18 @@ impl<'m> SingleRunner<'m> {
         }
     }
 
-    /// Begins with the state that suits the outputs of the first rows: free states of a law, or a past of the input, which is
-    /// returned.
-    fn begin_known(
-        &mut self,
+    /// The state that suits the outputs of the first rows best: free states of a law, or a past of the input. `otherwise` is
+    /// the past without known outputs.
+    fn found_state(
+        &self,
         chunk: &Chunk<'_>,
         known: &[f64],
         range: (f64, f64),
         otherwise: &[f64],
-    ) -> Result<Vec<f64>> {
+    ) -> MemberState {
         let nothing = InputTransform::default();
         let preprocessing = self.preprocessing.unwrap_or(&nothing);
-        if let Mechanism::Law(law, state, _) = &mut self.mechanism {
+        if let Mechanism::Law(law, ..) = &self.mechanism {
             let mut seen = Vec::new();
             see(preprocessing, chunk.inputs, &mut InputPast::default(), &mut seen);
             let rate = self.rate.map(|method| chunk.rate(method));
@@ -417,8 +435,7 @@ impl<'m> SingleRunner<'m> {
             let samples: Vec<Sample> = seen[0].iter().enumerate().map(sample).collect();
             let further: Vec<&[f64]> = seen[1..].iter().map(Vec::as_slice).collect();
             if let Some(states) = law.found_states(&samples, &further, known) {
-                **state = law.begun_with(&states);
-                return Ok(Vec::new());
+                return MemberState::Free(states);
             }
         }
         let first_row: Vec<f64> = chunk.inputs.iter().map(|input| input[0]).collect();
@@ -433,9 +450,15 @@ impl<'m> SingleRunner<'m> {
             let errors = outputs[rows.clone()].iter().zip(&known[rows]).filter(|(_, y)| !y.is_nan());
             errors.map(|(output, y)| (output - y) * (output - y)).sum()
         };
-        let past = found_past(range, known.len(), otherwise, misfit);
-        self.begin_after(&past, &first_row);
-        Ok(past)
+        MemberState::Past(found_past(range, known.len(), otherwise, misfit))
+    }
+
+    fn begin_in(&mut self, state: &MemberState, first_row: &[f64]) {
+        match (state, &mut self.mechanism) {
+            (MemberState::Past(past), _) => self.begin_after(past, first_row),
+            (MemberState::Free(states), Mechanism::Law(law, state, _)) => **state = law.begun_with(states),
+            (MemberState::Free(_), Mechanism::Network(_)) => {}
+        }
     }
 
     fn begin_after(&mut self, past: &[f64], first_row: &[f64]) {

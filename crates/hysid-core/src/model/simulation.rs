@@ -2,7 +2,7 @@
 
 use std::mem;
 
-use crate::data::record::Excitation;
+use crate::data::record::{Excitation, RecordState};
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, Result};
 use crate::model::runner::{OutputSpread, Runner};
@@ -32,6 +32,8 @@ struct RowWindow {
     lead_in: Option<Vec<f64>>,
     /// Outputs of the known beginning of the record.
     known: Vec<f64>,
+    /// State before its first row, if it was found before.
+    state: Option<RecordState>,
     /// Rows of the record before the window.
     before: usize,
     simulated: usize,
@@ -56,7 +58,7 @@ impl<'m> Simulation<'m> {
     /// # Errors
     /// As [`Model::simulate`], with the row in the record; time that does not increase from block to block.
     pub fn take(&mut self, rows: &Excitation<'_>) -> Result<Prediction> {
-        self.model.check_time(rows)?;
+        self.model.check(rows)?;
         self.window.append(rows)?;
         let is_in_beginning = self.window.simulated == 0 && self.window.before == 0;
         let waits = self.model.is_periodic() && self.window.lead_in.is_none()
@@ -136,6 +138,7 @@ impl RowWindow {
             self.rate = rows.given_rate().map(|_| Vec::new());
             self.lead_in = rows.lead_in().map(<[f64]>::to_vec);
             self.known = rows.known().to_vec();
+            self.state = rows.state().cloned();
         }
         let (expected, found) = (self.inputs.len(), rows.inputs().len());
         if expected != found {
@@ -166,7 +169,7 @@ impl RowWindow {
     fn excitation<'a>(&'a self, name: &'a str) -> Excitation<'a> {
         let inputs = self.inputs.iter().map(Vec::as_slice).collect();
         let excitation = Excitation::unchecked(name, self.time.as_deref(), inputs, self.rate.as_deref());
-        excitation.after(self.lead_in.as_deref()).knowing(&self.known)
+        excitation.after(self.lead_in.as_deref()).knowing(&self.known).with_state(&self.state)
     }
 
     /// Drops all rows that are simulated but so many, the last ones.

@@ -7,6 +7,7 @@ mod trial;
 use std::borrow::Cow;
 
 use crate::data::initial_state::InitialState;
+use crate::data::record::{FadingResidual, MemberState, RecordState};
 use crate::error::{Error, LARGEST_VALUE, Result, SampleError};
 use crate::law::series::lead_in_samples;
 use crate::law::{ClassicalState, Sample};
@@ -29,8 +30,8 @@ pub struct Stepper<'m> {
     state: StepperState,
     /// The state before the last trial, if that is not committed.
     committed: Option<Snapshot>,
-    /// Lead-in of the record.
-    lead_in: Vec<f64>,
+    /// State before the first sample: one of all members of an ensemble, or one of each.
+    beginning: Vec<MemberState>,
 }
 
 #[derive(Debug, Clone)]
@@ -42,6 +43,8 @@ struct StepperState {
     last: Option<LastSample>,
     /// How far outside the trained range the input has been; `None` without a band, and in a member of an ensemble.
     excursion: Option<Excursion>,
+    /// Residual at the end of a known beginning, if it remains.
+    residual: Option<FadingResidual>,
     /// Corrections by measured outputs, once there are any.
     tracker: Option<Box<Tracker>>,
 }
@@ -51,7 +54,7 @@ struct LastSample {
     time: f64,
     /// First input.
     input: f64,
-    /// Output without corrections.
+    /// Output without corrections by measured outputs.
     output: f64,
 }
 
@@ -93,7 +96,7 @@ impl<'m> Stepper<'m> {
     pub(super) fn new(model: Cow<'m, Model>) -> Self {
         let mut state = StepperState::virgin(&model);
         state.excursion = excursion(&model);
-        Self { state, committed: None, lead_in: model.lead_in.clone(), model }
+        Self { state, committed: None, beginning: vec![MemberState::Past(model.lead_in.clone())], model }
     }
 
     /// The model that is simulated.
@@ -130,20 +133,20 @@ impl<'m> Stepper<'m> {
 
     fn advance(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
         self.state.check(&self.model, inputs, time, rate)?;
-        if self.state.last.is_none() && !self.lead_in.is_empty() {
-            let rows: Vec<f64> = self.lead_in.iter().chain(&inputs[..1]).copied().collect();
-            self.state.lead_in(&self.model, &rows, inputs);
+        if self.state.last.is_none() {
+            self.state.begin_in(&self.model, &self.beginning, inputs);
         }
-        let output = self.state.advance(&self.model, inputs, time, rate);
+        let mut output = self.state.advance(&self.model, inputs, time, rate);
+        if let (Some(residual), Some(last)) = (&mut self.state.residual, &mut self.state.last) {
+            output = residual.corrected(output);
+            last.output = output;
+        }
         Ok(self.state.tracker.as_mut().map_or(output, |tracker| tracker.step(output)))
     }
 
     /// Returns to the initial state of the model, without corrections by measured outputs.
     pub fn reset(&mut self) {
-        self.committed = None;
-        self.state.reset(&self.model);
-        self.state.excursion = excursion(&self.model);
-        self.lead_in.clone_from(&self.model.lead_in);
+        self.begin(vec![MemberState::Past(self.model.lead_in.clone())]);
     }
 
     /// Returns to another initial state, without corrections by measured outputs.
@@ -151,11 +154,27 @@ impl<'m> Stepper<'m> {
     /// # Errors
     /// An unknown state. The stepper is then unchanged.
     pub fn reset_to(&mut self, state: InitialState) -> Result<()> {
-        self.lead_in = self.model.lead_in_of(state)?;
+        self.begin(vec![MemberState::Past(self.model.lead_in_of(state)?)]);
+        Ok(())
+    }
+
+    /// Returns to the state before the first row of a record ([`Model::find_state`]), without corrections by measured outputs.
+    /// The next samples are those of the record from its first row on.
+    ///
+    /// # Errors
+    /// A state that another model has found. The stepper is then unchanged.
+    pub fn reset_to_record(&mut self, state: &RecordState) -> Result<()> {
+        self.model.check_state(state)?;
+        self.begin(state.members.clone());
+        self.state.residual = state.residual;
+        Ok(())
+    }
+
+    fn begin(&mut self, beginning: Vec<MemberState>) {
+        self.beginning = beginning;
         self.committed = None;
         self.state.reset(&self.model);
         self.state.excursion = excursion(&self.model);
-        Ok(())
     }
 }
 
@@ -183,6 +202,7 @@ impl StepperState {
             seen: Vec::with_capacity(model.inputs() + model.preprocessing.added_inputs()),
             last: None,
             excursion: None,
+            residual: None,
             tracker: None,
         }
     }
@@ -226,17 +246,27 @@ impl StepperState {
         model.rate.map(|_| given.unwrap_or_else(backward))
     }
 
-    /// Drives the memory along a lead-in, whose last row has the first input of the first sample.
-    fn lead_in(&mut self, model: &Model, rows: &[f64], first_row: &[f64]) {
-        if let (Predictor::Ensemble(ensemble), StepperMemory::Ensemble(memory)) =
-            (&model.body, &mut self.memory)
-        {
-            for (state, member) in memory.members.iter_mut().zip(ensemble.members()) {
-                state.lead_in(member, rows, first_row);
+    /// Begins before the first sample in one state of all members of an ensemble, or one of each.
+    fn begin_in(&mut self, model: &Model, beginning: &[MemberState], first_row: &[f64]) {
+        match (&model.body, &mut self.memory, beginning) {
+            (Predictor::Ensemble(ensemble), StepperMemory::Ensemble(memory), _) => {
+                let members = memory.members.iter_mut().zip(ensemble.members());
+                for ((state, member), beginning) in members.zip(beginning.chunks(1).cycle()) {
+                    state.begin_in(member, beginning, first_row);
+                }
             }
-            return;
+            (Predictor::Law(law), StepperMemory::Law(state), [MemberState::Free(states), ..]) => {
+                **state = law.begun_with(states);
+            }
+            (_, _, [MemberState::Past(past), ..]) if !past.is_empty() => self.lead_in(model, past, first_row),
+            _ => {}
         }
-        let SeenLeadIn { first, others } = model.preprocessing.lead_in(rows, first_row, &mut self.past);
+    }
+
+    /// Drives the memory of a single model along a lead-in and to the first input of the first sample.
+    fn lead_in(&mut self, model: &Model, lead_in: &[f64], first_row: &[f64]) {
+        let rows: Vec<f64> = lead_in.iter().chain(&first_row[..1]).copied().collect();
+        let SeenLeadIn { first, others } = model.preprocessing.lead_in(&rows, first_row, &mut self.past);
         match (&model.body, &mut self.memory) {
             (Predictor::Network { scaling, .. }, StepperMemory::Network(simulator, u)) => {
                 let mut channels: Vec<[f64; 1]> = vec![[0.0]; u.len()];
@@ -309,6 +339,6 @@ impl StepperState {
         }
         self.past = InputPast::default();
         self.last = None;
-        self.tracker = None;
+        (self.residual, self.tracker) = (None, None);
     }
 }

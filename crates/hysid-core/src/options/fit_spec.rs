@@ -169,17 +169,22 @@ impl FitSpec {
         self.initial_state() == Some(InitialState::Free)
     }
 
-    /// The known beginning with which models are judged on data with these columns ([`KnownBeginning::judged`]).
-    ///
-    /// # Errors
-    /// A duration in another unit than the time.
-    pub fn judged_beginning(&self, names: &ColumnNames) -> Result<KnownBeginning> {
+    /// Known beginning of the records that the model will be used on, if one was asked for.
+    pub fn known(&self) -> Option<&KnownSpan> {
         let known = match self {
             Self::Network(options) => &options.known,
             Self::Classical(options) => &options.known,
             Self::Auto(options) => &options.known,
         };
-        KnownBeginning::judged(known.as_ref(), self.initial_state(), names)
+        known.as_ref()
+    }
+
+    /// The known beginning with which models are judged on data with these columns ([`KnownBeginning::judged`]).
+    ///
+    /// # Errors
+    /// A duration in another unit than the time.
+    pub fn judged_beginning(&self, names: &ColumnNames) -> Result<KnownBeginning> {
+        KnownBeginning::judged(self.known(), self.initial_state(), names)
     }
 
     /// The same with another initial state of every record.

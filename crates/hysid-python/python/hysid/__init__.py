@@ -28,7 +28,7 @@ from hysid._summary import Summary
 from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
 from hysid._results import Errors, Member, Prediction
-from hysid.model import Model, Stepper, Tracking
+from hysid.model import Model, RecordState, Stepper, Tracking
 from hysid.progress import tqdm_progress
 from hysid.specimens import Records, Specimen, specimen, specimens
 
@@ -63,6 +63,7 @@ __all__ = [
     "Prediction",
     "Progress",
     "RecordSplit",
+    "RecordState",
     "Records",
     "ResidualFinding",
     "Residuals",

@@ -58,9 +58,16 @@ class Compared:
 
 
 class Comparison(Sequence[Compared]):
-    """Results of all models, the lowest error on unseen data first."""
+    """Results of all models, the lowest error on unseen data first.
 
-    def __init__(self, rows: list[Compared]) -> None:
+    Attributes
+    ----------
+    known : int or str or None
+        Known beginning of each record: all errors are those after it.
+    """
+
+    def __init__(self, rows: list[Compared], known: int | str | None = None) -> None:
+        self.known = known
         self._rows = sorted(rows, key=lambda row: row.judged)
 
     def __getitem__(self, place: Any) -> Any:
@@ -120,6 +127,9 @@ class Comparison(Sequence[Compared]):
                 for name in ("unseen_percent", "train_percent")
             )
             lines.append(f"{row['model']:<34}{errors}{row['parameters']:>11}{row['fit_seconds']:>8.2g}")
+        if self.known is not None:
+            rows = "" if isinstance(self.known, str) else " rows"
+            lines.append(f"Errors are those after a known beginning of each record: {self.known}{rows}.")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
@@ -143,6 +153,7 @@ def compare(
     *,
     test: Any = None,
     models: Sequence[ModelName] | None = None,
+    known: int | str | None = None,
     time_limit: float | None = None,
     seed: int | None = None,
     threads: int | None = None,
@@ -159,6 +170,9 @@ def compare(
         the models are compared on the training data.
     models : sequence of str, optional
         Names of the models, also ``"auto"``; by default all of `hysid.models`.
+    known : int or str, optional
+        Measured beginning of each record, from which each model finds its state: a number of rows, or a time with its unit
+        such as ``"0.5s"``. Errors are those after it, and ``"auto"`` also tries free initial states.
     time_limit : float, optional
         Time for each model in seconds, after which its best fit so far is used; by default 20, and no limit for
         ``"auto"``.
@@ -174,6 +188,11 @@ def compare(
     -------
     Comparison
         The lowest error on unseen data first.
+
+    Raises
+    ------
+    ValueError
+        Invalid data or options, or a known beginning that leaves nothing to score or has no output.
 
     Examples
     --------
@@ -195,11 +214,12 @@ def compare(
         if name not in ("auto", *_hysid.model_names(), "epnn"):
             raise ValueError(f"model `{name}` is unknown: choose one of auto, {', '.join(_hysid.model_names())}")
 
+    _hysid.FitSpec.check(as_json({"seed": seed, "known": known}))
     rows: list[Compared] = []
     requests: list[_hysid.FitSpec] = []
     for name in names:
         try:
-            options = as_json({"model": name, "seed": seed})
+            options = as_json({"model": name, "seed": seed, "known": known})
             requests += _hysid.FitSpec.variants(options, str(rate) if named else "given", data)
         except ValueError as error:
             rows.append(Compared(name, error=str(error)))
@@ -212,7 +232,7 @@ def compare(
         fitted, interrupted = _hysid.compare(data, requests, tested, workers, limit, of_native(callback))
     if interrupted:
         raise KeyboardInterrupt
-    return Comparison(rows + [_compared(*row) for row in fitted])
+    return Comparison(rows + [_compared(*row) for row in fitted], known)
 
 
 def _compared(

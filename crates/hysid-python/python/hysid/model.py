@@ -12,9 +12,9 @@ import numpy as np
 
 from hysid import _hysid
 from hysid._arguments import name_of, pair, real, truth, whole
-from hysid._columns import Column
+from hysid._columns import Column, column_of
 from hysid._cycles import Cycles, named_options
-from hysid._data import Columns, columns, in_units_of, shaped_like
+from hysid._data import Columns, columns, in_units_of, is_record_list, shaped_like
 from hysid._diagnosis import ModelDiagnosis
 from hysid._inverse import Inverse, Inversion, Reference
 from hysid._residuals import ParameterInterval, Residuals, intervals_of
@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 
     from hysid._data import Values
 
-__all__ = ["Model", "Stepper", "Tracking"]
+__all__ = ["Model", "RecordState", "Stepper", "Tracking"]
 
+RecordState = _hysid.RecordState
 Stepper = _hysid.Stepper
 Tracking = _hysid.Tracking
 
@@ -80,6 +81,7 @@ class Model(StoredModel):
         records: Given = None,
         *,
         initial_state: str | None = None,
+        state: RecordState | None = None,
         same_units: bool = False,
     ) -> AnySeries: ...
     @overload
@@ -91,6 +93,7 @@ class Model(StoredModel):
         records: Given = None,
         *,
         initial_state: str | None = None,
+        state: RecordState | None = None,
         same_units: bool = False,
     ) -> Any: ...
     @overload
@@ -102,6 +105,7 @@ class Model(StoredModel):
         records: Given = None,
         *,
         initial_state: str | None = None,
+        state: RecordState | None = None,
         same_units: bool = False,
     ) -> list[AnySeries]: ...
     @overload
@@ -113,6 +117,7 @@ class Model(StoredModel):
         records: Given = None,
         *,
         initial_state: str | None = None,
+        state: RecordState | None = None,
         same_units: bool = False,
     ) -> list[Any]: ...
     @overload
@@ -124,6 +129,7 @@ class Model(StoredModel):
         records: Given = None,
         *,
         initial_state: str | None = None,
+        state: RecordState | None = None,
         same_units: bool = False,
     ) -> list[np.ndarray]: ...
     @overload
@@ -135,6 +141,7 @@ class Model(StoredModel):
         records: Given = None,
         *,
         initial_state: str | None = None,
+        state: RecordState | None = None,
         same_units: bool = False,
     ) -> np.ndarray: ...
     def simulate(
@@ -145,6 +152,7 @@ class Model(StoredModel):
         records: Given = None,
         *,
         initial_state: str | None = None,
+        state: RecordState | None = None,
         same_units: bool = False,
     ) -> Any:
         """Simulate the output from the inputs, from the initial state of the memory.
@@ -167,6 +175,8 @@ class Model(StoredModel):
             upper end of the trained input range), ``"saturated-down"``, ``"demagnetised"`` or ``"periodic"`` (after one
             period of the record itself). By default that of most training records, which is ``"virgin"`` unless the
             fit found or was given another.
+        state : RecordState, optional
+            State before the first row of `x`, as `find_state` found it; for a single record, in the place of `initial_state`.
         same_units : bool
             Do not convert units. Otherwise, units in the names of pandas objects are converted to those of the
             training, and a conversion that is not known is an error.
@@ -181,11 +191,11 @@ class Model(StoredModel):
         Raises
         ------
         ValueError
-            Invalid inputs.
+            Invalid inputs, or a state of another model.
         """
-        state = name_of("initial_state", initial_state)
         arranged = self._converted(self._columns(x, None, time, rate, records), same_units)
-        return shaped_like(x, self._simulated(arranged, state), self.output, "_model")
+        beginning = _beginning(arranged, initial_state, state)
+        return shaped_like(x, self._simulated(arranged, *beginning), self.output, "_model")
 
     def predict(
         self,
@@ -197,6 +207,7 @@ class Model(StoredModel):
         probability: float = 0.9,
         of_ten: int = 5,
         initial_state: str | None = None,
+        state: RecordState | None = None,
         same_units: bool = False,
     ) -> Prediction:
         """Simulate with a prediction band that contains the measured output in a given share of the rows.
@@ -217,6 +228,8 @@ class Model(StoredModel):
             about twice as wide.
         initial_state : str, optional
             As of `simulate`.
+        state : RecordState, optional
+            As of `simulate`.
         same_units : bool
             As of `simulate`.
 
@@ -228,7 +241,7 @@ class Model(StoredModel):
         Raises
         ------
         ValueError
-            Invalid inputs, an invalid probability, or a model without a band: ``model="auto"``, or
+            Invalid inputs, a state of another model, an invalid probability, or a model without a band: ``model="auto"``, or
             ``members`` above 1, calibrates one if there are enough data to hold some out.
 
         Examples
@@ -243,25 +256,34 @@ class Model(StoredModel):
         """
         probability = real("probability", probability)
         of_ten = whole("of_ten", of_ten, 5, 9)
-        state = name_of("initial_state", initial_state)
         arranged = self._converted(self._columns(x, None, time, rate, records), same_units)
-        predicted = self._predicted(arranged, probability, of_ten, state)
+        beginning = _beginning(arranged, initial_state, state)
+        predicted = self._predicted(arranged, probability, of_ten, *beginning)
         self._warn_of_range(arranged)
         suffixes = ("_model", "_model_low", "_model_high")
         return Prediction(*(shaped_like(x, values, self.output, suffix) for values, suffix in zip(predicted, suffixes)))
 
     def _predicted(
-        self, arranged: Columns, probability: float, of_ten: int = 5, initial_state: str | None = None
+        self,
+        arranged: Columns,
+        probability: float,
+        of_ten: int = 5,
+        initial_state: str | None = None,
+        state: RecordState | None = None,
     ) -> tuple[np.ndarray, ...]:
         """Output, lower and upper edge of the band."""
         runs = [
-            self._native.predict(name, *driving, probability, of_ten, initial_state)
+            self._native.predict(name, *driving, probability, of_ten, initial_state, state)
             for name, driving in _of_records(arranged)
         ]
         return tuple(np.concatenate(parts) for parts in zip(*runs))
 
-    def _simulated(self, arranged: Columns, initial_state: str | None = None) -> np.ndarray:
-        outputs = [self._native.simulate(name, *driving, initial_state) for name, driving in _of_records(arranged)]
+    def _simulated(
+        self, arranged: Columns, initial_state: str | None = None, state: RecordState | None = None
+    ) -> np.ndarray:
+        outputs = [
+            self._native.simulate(name, *driving, initial_state, state) for name, driving in _of_records(arranged)
+        ]
         self._warn_of_range(arranged)
         return outputs[0] if len(outputs) == 1 else np.concatenate(outputs)
 
@@ -276,6 +298,69 @@ class Model(StoredModel):
             for column, (low, high) in zip(arranged.inputs, ranges)
         )
 
+    def find_state(
+        self,
+        x: Values,
+        y: ArrayLike | str,
+        *,
+        time: Given = None,
+        rate: Given = None,
+        same_units: bool = False,
+    ) -> RecordState:
+        """Find the state of the memory before the first row of a record from the outputs of its first rows.
+
+        For records that are cut out of a longer past. Free states of ``"duhem-nn"`` are found by least squares; for every
+        other model and each member of an ensemble, the past of the input with the lowest error on these rows is searched,
+        with up to three turning points.
+
+        Parameters
+        ----------
+        x : array of shape (n,) or (n, inputs)
+            The inputs of one record, in the units of the training.
+        y : array of shape (m,), or name of a column
+            The measured outputs of its first m rows, m ≤ n; NaN where the output is not known.
+        time, rate : array of shape (n,), optional
+            As of `simulate`.
+        same_units : bool
+            As of `simulate`.
+
+        Returns
+        -------
+        RecordState
+            For the argument `state` of `simulate`, `predict` and `stepper` of this model. They begin at the first row of `x`
+            again, and give what a run with these known rows gives. If a rate depends on later rows (``"central"``), give
+            some rows of `x` behind the known ones too.
+
+        Raises
+        ------
+        ValueError
+            Invalid inputs, more outputs than inputs, or no output at all.
+
+        Examples
+        --------
+        >>> import hysid
+        >>> train, test = hysid.specimen("terfenol-rod").data()
+        >>> model = hysid.fit(train.x, train.y, model="preisach", operators=20)
+        >>> x, y = test.x[5200:], test.y[5200:]
+        >>> state = model.find_state(x, y[:60])
+        >>> state
+        RecordState(after -0.7, then 1.1)
+        >>> output = model.simulate(x, state=state)
+        >>> bool(abs(output - y)[60:].mean() < 0.5 * abs(model.simulate(x) - y)[60:].mean())
+        True
+        """
+        if is_record_list(x):
+            raise ValueError("x: a state is that of one record, and x is a list of records")
+        is_column = isinstance(y, str)
+        arranged = self._columns(x, y if is_column else None, time, rate, None)
+        if not is_column:
+            arranged = arranged._replace(output=column_of(y, "output"))
+        arranged = self._converted(arranged, same_units)
+        if arranged.output is None:
+            raise ValueError("y: the outputs of the first rows are needed")
+        ((name, driving),) = _of_records(arranged)
+        return self._native.find_state(name, *driving, arranged.output.values)
+
     def evaluate(
         self,
         x: Values,
@@ -285,7 +370,7 @@ class Model(StoredModel):
         records: Given = None,
         *,
         initial_state: str | None = None,
-        known: int = 0,
+        known: int | str | None = None,
         same_units: bool = False,
         after_warm_up: bool = False,
     ) -> Errors:
@@ -301,9 +386,10 @@ class Model(StoredModel):
             As of `simulate`.
         initial_state : str, optional
             As of `simulate`.
-        known : int
-            Rows at the beginning of each record from whose outputs the state is found; they are not scored. For records
-            that are cut out of a longer past.
+        known : int or str, optional
+            Measured beginning of each record from which its state is found: a number of rows, or a time with its unit
+            such as ``"0.5s"``. These rows are not scored. For records that are cut out of a longer past; in the place of
+            `initial_state`.
         same_units : bool
             As of `simulate`.
         after_warm_up : bool
@@ -320,7 +406,9 @@ class Model(StoredModel):
             Invalid inputs, or no measured output.
         """
         state = name_of("initial_state", initial_state)
-        known = whole("known", known, 0)
+        if known is not None:
+            _check_alone("known", initial_state)
+            known = known if isinstance(known, str) else str(whole("known", known, 1))
         arranged = self._converted(self._columns(x, y, time, rate, records), same_units)
         after_warm_up = truth("after_warm_up", after_warm_up)
         return self._evaluated(arranged, after_warm_up=after_warm_up, initial_state=state, known=known)
@@ -455,7 +543,7 @@ class Model(StoredModel):
         *,
         after_warm_up: bool = False,
         initial_state: str | None = None,
-        known: int = 0,
+        known: str | None = None,
     ) -> Errors:
         data = arranged.dataset()
         errors = Errors(**json.loads(self._native.evaluate(data, after_warm_up, initial_state, known)))
@@ -488,7 +576,7 @@ class Model(StoredModel):
         """
         stepper = self._stepper
         if stepper is None:
-            stepper = self._stepper = self._native.stepper()
+            stepper = self._stepper = self._native.stepper(None)
         return stepper.step(x, time, rate)
 
     def reset(self, initial_state: str | None = None) -> None:
@@ -500,21 +588,32 @@ class Model(StoredModel):
             As of `simulate`, but not ``"periodic"``: a model with periodic records begins in the virgin state here.
         """
         state = name_of("initial_state", initial_state)
-        stepper = self._native.stepper()
+        stepper = self._native.stepper(None)
         stepper.reset(state)
         self._stepper = stepper
 
-    def stepper(self) -> Stepper:
+    def stepper(self, state: RecordState | None = None) -> Stepper:
         """Give an independent stepper with the methods `step` and `reset`.
 
         Outputs that are measured in operation correct those of the model: after a `step`, `correct(y)` takes a
         disturbance from them that fades, `adapt(y, rows=1000)` a gain and an offset that drift; `tracking` has what was
         learned. The memory of the model is not corrected.
 
+        Parameters
+        ----------
+        state : RecordState, optional
+            State before the first sample, as `find_state` found it: the samples are those of its record, from the first row
+            on. By default the initial state of the model.
+
         Returns
         -------
         Stepper
-            In the initial state of the model; its `reset` takes another one by its name.
+            Its `reset` goes to the initial state of the model, or to another one by its name.
+
+        Raises
+        ------
+        ValueError
+            A state of another model.
 
         Examples
         --------
@@ -528,7 +627,7 @@ class Model(StoredModel):
         >>> round(stepper.tracking.gain, 1)
         0.9
         """
-        return self._native.stepper()
+        return self._native.stepper(state)
 
     def inverse(
         self,
@@ -707,6 +806,22 @@ class Model(StoredModel):
 
     def _columns(self, x: Any, y: Any, time: Any, rate: Any, records: Any) -> Columns:
         return columns(x, y, time, rate, records, self.inputs)
+
+
+def _check_alone(name: str, initial_state: str | None) -> None:
+    if initial_state is not None:
+        raise ValueError(f"{name}: it cannot be used with initial_state")
+
+
+def _beginning(
+    arranged: Columns, initial_state: str | None, state: RecordState | None
+) -> tuple[str | None, RecordState | None]:
+    """Name of the initial state, and the state that was found; at most one of them is given."""
+    if state is not None:
+        _check_alone("state", initial_state)
+        if len(arranged.records) != 1:
+            raise ValueError(f"state: it is that of one record, and x has {len(arranged.records)}")
+    return name_of("initial_state", initial_state), state
 
 
 def _of_records(

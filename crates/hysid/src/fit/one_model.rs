@@ -56,7 +56,7 @@ fn after_found_pasts(data: &Dataset, request: &FitSpec, observer: &mut Observer<
         if best.model.provenance().termination == Termination::Stopped {
             break;
         }
-        let past = |record: &Record| best.model.past_before(record);
+        let past = |record: &Record| past_before(record, &best.model);
         let pasts: Vec<Vec<f64>> =
             parallel::each(begun.records(), past).into_iter().collect::<Result<_>>()?;
         let after = begun.clone().with_lead_ins(|place, _| pasts[place].clone())?;
@@ -72,6 +72,15 @@ fn after_found_pasts(data: &Dataset, request: &FitSpec, observer: &mut Observer<
         }
     }
     Ok(best)
+}
+
+/// The past of a record that suits all its outputs best; its own without outputs.
+fn past_before(record: &Record, model: &Model) -> Result<Vec<f64>> {
+    if record.scored() == 0 {
+        return Ok(record.lead_in().unwrap_or_default().to_vec());
+    }
+    let state = model.find_state(&record.excitation().with_known_beginning(record.output())?)?;
+    Ok(state.past().unwrap_or_default().to_vec())
 }
 
 /// A fit after the given lead-ins of the records.

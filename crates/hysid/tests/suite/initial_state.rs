@@ -502,6 +502,44 @@ fn a_known_beginning_is_not_scored_and_may_be_taken_in_blocks() {
 }
 
 #[test]
+fn a_state_is_found_once_and_used_everywhere() {
+    let train = untimed(vec![measured("train", &[], path(400, 1.0, 0.11))]);
+    let options = ClassicalOptions { operators: Some(12), ..ClassicalOptions::of(ClassicalModel::Preisach) };
+    let single = model_of(&train, &FitSpec::Classical(options));
+    let network = small(ModelName::Network(Family::Xpnn), None);
+    let options =
+        AutoOptions { only: Some(Box::new(network)), members: 2, starts: 2, ..AutoOptions::default() };
+    let ensemble = model_of(&train, &FitSpec::Auto(options));
+    let cut = measured("cut", &[0.9, -0.4], path(200, 0.5, 0.13));
+    for model in [&single, &ensemble] {
+        runs_from_its_state(model, &cut, 60);
+    }
+    let known = cut.clone().with_known_beginning(60);
+    let state = |model: &Model| model.find_state(&known.excitation()).unwrap();
+    let of_both = state(&ensemble).to_string();
+    assert!(of_both.contains("member 1: ") && of_both.contains("; member 2: "), "{of_both}");
+    assert!(state(&single).to_string().starts_with("after "), "{}", state(&single));
+    // The band is that of the run with the known beginning.
+    let of_ensemble = state(&ensemble);
+    assert_eq!(
+        ensemble.predict(&cut.excitation().with_state(&of_ensemble), 0.9).unwrap(),
+        ensemble.predict(&known.excitation(), 0.9).unwrap()
+    );
+
+    let refused = single.response(&cut.excitation().with_state(&of_ensemble)).unwrap_err().to_string();
+    assert!(refused.contains("was found by another model"), "{refused}");
+    assert!(single.stepper().reset_to_record(&of_ensemble).is_err());
+    assert!(ensemble.simulation().take(&cut.excitation().with_state(&state(&single))).is_err());
+    // A copy of the model, and one with another initial state, are the same model.
+    let copy = Model::from_json(&single.to_json()).unwrap().with_initial_state(InitialState::SaturatedUp);
+    assert!(copy.unwrap().response(&cut.excitation().with_state(&state(&single))).is_ok());
+    let error = single.find_state(&cut.excitation()).unwrap_err().to_string();
+    assert!(error.contains("is blank in the first 0 rows"), "{error}");
+    let blank = cut.excitation().with_known_beginning(&[f64::NAN; 5]).unwrap();
+    assert!(single.find_state(&blank).unwrap_err().to_string().contains("is blank in the first 5 rows"));
+}
+
+#[test]
 fn a_time_is_so_many_rows() {
     let record = measured("r", &[], path(40, 1.0, 0.1));
     let timed = record.clone().with_time((0..40).map(|k| 5.0 + 0.5 * f64::from(k)).collect()).unwrap();

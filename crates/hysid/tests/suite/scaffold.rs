@@ -100,3 +100,32 @@ pub fn error_of<L: Law>(law: &L, data: &Dataset, rate: Option<RateMethod>) -> f6
     }
     sums.errors("y").unwrap().nrmse_std_percent.unwrap()
 }
+
+/// Runs of a model from the state that it finds in the first rows of a record: whole, in blocks and sample by sample, they
+/// are those with the known beginning.
+pub fn runs_from_its_state(model: &Model, record: &Record, rows: usize) {
+    let known = record.clone().with_known_beginning(rows);
+    let expected = model.simulate(&known).unwrap();
+    let state = model.find_state(&known.excitation()).unwrap();
+    assert_eq!(model.response(&record.excitation().with_state(&state)).unwrap(), expected, "{state}");
+    let mut simulation = model.simulation();
+    let mut in_blocks = simulation.take(&record.excitation().with_state(&state)).unwrap().output;
+    in_blocks.extend(simulation.finish().unwrap().output);
+    assert_eq!(in_blocks, expected, "{state}");
+    let mut stepper = model.stepper();
+    stepper.step(&inputs_at(record, 3), 0.0, None).unwrap();
+    stepper.reset_to_record(&state).unwrap();
+    for (row, y) in expected.iter().enumerate() {
+        let (inputs, time) = (inputs_at(record, row), record.time().map_or(f64::NAN, |time| time[row]));
+        // A trial changes nothing.
+        assert_eq!(stepper.trial(&inputs, time, None).unwrap(), *y, "row {row}, {state}");
+        assert_eq!(stepper.step(&inputs, time, None).unwrap(), *y, "row {row}, {state}");
+    }
+    stepper.reset();
+    let virgin = model.stepper().step(&inputs_at(record, 0), 0.0, None).unwrap();
+    assert_eq!(stepper.step(&inputs_at(record, 0), 0.0, None).unwrap(), virgin);
+}
+
+fn inputs_at(record: &Record, row: usize) -> Vec<f64> {
+    record.inputs().iter().map(|input| input[row]).collect()
+}

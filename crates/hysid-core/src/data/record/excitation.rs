@@ -1,5 +1,6 @@
 //! The inputs of a simulation, borrowed: no column is copied.
 
+use crate::data::record::state::RecordState;
 use crate::error::{Channel, DataError, DataProblem, Error, LARGEST_VALUE, MOST_TURNS, Result};
 
 /// Rows that are checked together, without a branch for each.
@@ -14,6 +15,7 @@ pub struct Excitation<'a> {
     pub(super) given_rate: Option<&'a [f64]>,
     pub(super) lead_in: Option<&'a [f64]>,
     pub(super) known: &'a [f64],
+    pub(super) state: Option<&'a RecordState>,
 }
 
 impl<'a> Excitation<'a> {
@@ -22,7 +24,7 @@ impl<'a> Excitation<'a> {
     /// # Errors
     /// No rows, differing lengths, an input that is not finite, values beyond [`LARGEST_VALUE`].
     pub fn new(name: &'a str, inputs: Vec<&'a [f64]>) -> Result<Self> {
-        let excitation = Self { name, time: None, inputs, given_rate: None, lead_in: None, known: &[] };
+        let excitation = Self::unchecked(name, None, inputs, None);
         if excitation.inputs.is_empty() {
             return Err(excitation.defect(None, None, DataProblem::Inputs { expected: 1, found: 0 }));
         }
@@ -42,7 +44,7 @@ impl<'a> Excitation<'a> {
         inputs: Vec<&'a [f64]>,
         given_rate: Option<&'a [f64]>,
     ) -> Self {
-        Self { name, time, inputs, given_rate, lead_in: None, known: &[] }
+        Self { name, time, inputs, given_rate, lead_in: None, known: &[], state: None }
     }
 
     /// The same with strictly increasing time stamps, one a row.
@@ -111,6 +113,17 @@ impl<'a> Excitation<'a> {
     /// The same with outputs of a known beginning that were checked before.
     pub(crate) fn knowing(self, known: &'a [f64]) -> Self {
         Self { known, ..self }
+    }
+
+    /// The same from a state that the model has found ([`Model::find_state`](crate::model::Model::find_state)), in the place
+    /// of a lead-in and a known beginning. The first row is that of the record in which the state was found.
+    pub fn with_state(self, state: impl Into<Option<&'a RecordState>>) -> Self {
+        Self { state: state.into(), ..self }
+    }
+
+    /// The state before the first row, if a model has found it.
+    pub fn state(&self) -> Option<&'a RecordState> {
+        self.state
     }
 
     /// Outputs of the known beginning; empty without.

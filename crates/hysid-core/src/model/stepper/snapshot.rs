@@ -1,5 +1,6 @@
 //! Memory of a stepper at one moment, without the weights of its networks.
 
+use crate::data::record::FadingResidual;
 use crate::law::ClassicalState;
 use crate::model::ensemble::Excursion;
 use crate::model::input_transform::InputPast;
@@ -14,6 +15,7 @@ pub struct Snapshot {
     past: InputPast,
     last: Option<LastSample>,
     excursion: Option<Excursion>,
+    residual: Option<FadingResidual>,
     pub(super) tracker: Option<Box<Tracker>>,
 }
 
@@ -38,6 +40,7 @@ impl Snapshot {
             past: state.past,
             last: state.last,
             excursion: state.excursion,
+            residual: state.residual,
             tracker: state.tracker.clone(),
         }
     }
@@ -59,6 +62,7 @@ impl Snapshot {
         state.past = self.past;
         state.last = self.last;
         state.excursion = self.excursion;
+        state.residual = self.residual;
         state.tracker.clone_from(&self.tracker);
     }
 

@@ -68,7 +68,7 @@ impl Stepper<'_> {
     /// consecutive rows; rows without a measurement in between do no harm.
     ///
     /// **The memory of the model is not corrected.** A model that begins in another state than the system keeps a wrong
-    /// memory: [`Model::with_known_beginning`] (`--known` of the program) finds it from the first outputs of a record.
+    /// memory: [`Model::find_state`] (`--known` of the program) finds it from the first outputs of a record.
     /// The prediction band remains that of the model.
     ///
     /// # Errors

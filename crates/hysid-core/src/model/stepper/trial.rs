@@ -1,5 +1,6 @@
 //! Trial steps, for solvers that iterate.
 
+use crate::data::record::MemberState;
 use crate::error::Result;
 use crate::model::Predictor;
 use crate::model::stepper::{Snapshot, Stepper, StepperMemory};
@@ -51,8 +52,9 @@ impl Stepper<'_> {
         let (Predictor::Law(law), StepperMemory::Law(state)) = (&self.model.body, &self.state.memory) else {
             return None;
         };
-        // The lead-in comes with the first sample.
-        let is_begun = self.state.last.is_some() || self.lead_in.is_empty();
+        // The beginning comes with the first sample.
+        let is_virgin = || self.beginning == [MemberState::Past(Vec::new())];
+        let is_begun = self.state.residual.is_none() && (self.state.last.is_some() || is_virgin());
         let seen = law.input_for(state, output).filter(|_| is_begun)?;
         Some(self.model.preprocessing.original(seen)).filter(|input| input.is_finite())
     }
