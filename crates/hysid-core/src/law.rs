@@ -47,6 +47,7 @@ pub mod properties;
 pub mod ramberg_osgood;
 pub mod rate_dependent_prandtl_ishlinskii;
 pub mod series;
+mod state_search;
 mod tanh_layer;
 #[cfg(test)]
 mod test_paths;

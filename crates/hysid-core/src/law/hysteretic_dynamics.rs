@@ -20,6 +20,7 @@
 //! `ζ` are positive.
 
 mod element;
+mod found_states;
 mod hold;
 #[cfg(test)]
 mod instruction_sets;
@@ -321,6 +322,19 @@ macro_rules! law_of_dynamics {
 
             fn step(&self, motion: &mut Self::State, sample: $crate::law::Sample) -> f64 {
                 self.0.step(motion, sample)
+            }
+
+            fn found_states(
+                &self,
+                samples: &[$crate::law::Sample],
+                _: &[&[f64]],
+                known: &[f64],
+            ) -> Option<Vec<f64>> {
+                Some(self.0.found_states(samples, known))
+            }
+
+            fn begun_with(&self, states: &[f64]) -> Self::State {
+                self.0.begun_with(states)
             }
 
             fn work_of_row(&self, _: f64, time: f64) -> f64 {

@@ -14,6 +14,7 @@ use super::cell::{Cell, Input};
 use super::parameters::CellLayout;
 use super::sensitivities::CellRun;
 use crate::error::LARGEST_VALUE;
+use crate::law::state_search;
 use crate::linear_algebra::{Cholesky, Symmetric};
 use crate::random::uniform;
 use crate::stop_check::StopCheck;
@@ -118,29 +119,10 @@ impl Cell {
             let u = draw(number);
             (search.objective(&u), u)
         });
-        let Some((mut objective, mut u)) = drawn.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+        let Some((objective, u)) = drawn.min_by(|a, b| a.0.total_cmp(&b.0)) else {
             return self.initial.clone();
         };
-        let mut damping = 1e-3;
-        for _ in 0..STEPS {
-            let (gradient, curvature) = search.slope(&u);
-            let mut damped = curvature.clone();
-            (0..size).for_each(|i| damped.add_to_diagonal(i, damping * curvature.diagonal(i)));
-            let mut step = gradient;
-            let Some(factor) = damped.cholesky(StopCheck::never()) else { break };
-            factor.solve(&mut step);
-            let there: Vec<f64> = u.iter().zip(&step).map(|(u, step)| u - step).collect();
-            let found = search.objective(&there);
-            if found < objective {
-                let is_small = objective - found < 1e-6 * objective;
-                (objective, u, damping) = (found, there, 0.1 * damping);
-                if is_small {
-                    break;
-                }
-            } else {
-                damping *= 10.0;
-            }
-        }
+        let u = state_search::descended(u, objective, STEPS, |u| search.objective(u), |u| search.slope(u));
         search.states(&u)
     }
 }

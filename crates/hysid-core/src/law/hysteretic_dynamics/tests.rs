@@ -106,6 +106,32 @@ pub(super) fn in_motion<'a>(
 }
 
 #[test]
+fn a_motion_that_has_begun_is_found_from_its_first_outputs() {
+    for (modes, elements, begins_under_input) in [(1, 1, false), (2, 1, true), (3, 2, false)] {
+        let mut dynamics = model(17, modes, elements, SHAPE, 0.5);
+        dynamics.begins_under_input = begins_under_input;
+        let mut drive = drive(9, 120, 0.21);
+        let beginning = UnitNumbers::new(23).many(2 * modes, 1.0);
+        let mut motion = dynamics.begun_with(&beginning);
+        let outputs: Vec<f64> =
+            samples(&drive).iter().map(|&sample| dynamics.step(&mut motion, sample)).collect();
+        // The run of the fit begins in the same motion.
+        drive.targets = outputs.iter().map(|y| y / dynamics.output_scale).collect();
+        let drives = [drive];
+        let from_rest = DynamicsRun::from_rest(&dynamics, &drives, StopCheck::never());
+        let of_fit = DynamicsRun { beginnings: &beginning, ..from_rest };
+        let (begun, resting) = (of_fit.half_square().unwrap(), from_rest.half_square().unwrap());
+        assert!(begun < 1e-20 && resting > 0.1, "{begun} in this motion, {resting} from rest");
+        let known: Vec<f64> =
+            outputs[..60].iter().enumerate().map(|(k, &y)| if k % 7 == 3 { f64::NAN } else { y }).collect();
+        let found = dynamics.found_states(&samples(&drives[0])[..60], &known);
+        for (found, true_one) in found.iter().zip(&beginning) {
+            assert!((found - true_one).abs() < 0.01, "{modes} modes: {found} for {true_one}");
+        }
+    }
+}
+
+#[test]
 fn derivatives_equal_differences() {
     for (form, modes, elements, shape, begins_under_input, hold) in [
         (DynamicsForm::Oscillator, 1, 1, SHAPE, false, Hold::Cubic),

@@ -52,6 +52,9 @@ pub struct DynamicsMotion {
     pub(super) input_before: f64,
     pub(super) input: f64,
     pub(super) recent: RecentSamples,
+    /// Displacements and then velocities of the modes at the first sample, beside those at rest; empty from rest, and once it
+    /// is taken.
+    pub(super) beginning: Vec<f64>,
     /// Length of the steps that `propagations` are of.
     pub(super) step: f64,
     propagations: Vec<Propagation>,
@@ -87,6 +90,7 @@ impl DynamicsMotion {
             input_before: 0.0,
             input: 0.0,
             recent: RecentSamples::default(),
+            beginning: Vec::new(),
             step: f64::NAN,
             propagations: vec![Propagation::new(1.0, 1.0, 0.0); modes],
             has_begun: false,
@@ -167,6 +171,11 @@ impl DynamicsMotion {
         for k in 1..=steps.count {
             let input = self.input_at(dynamics, k, steps);
             self.advance::<S>(dynamics, input, steps.length);
+        }
+        if !self.beginning.is_empty() {
+            let beginning = std::mem::take(&mut self.beginning);
+            let (displacements, velocities) = beginning.split_at(dynamics.modes.len());
+            self.displace::<S>(dynamics, displacements, velocities);
         }
     }
 
