@@ -5,6 +5,7 @@ use crate::data::metrics::Errors;
 use crate::data::warning::Warning;
 use crate::model::selection::{Selection, WarmUp};
 use crate::model::{Ensemble, Model};
+use crate::options::ModelName;
 use crate::significant::Significant;
 
 /// A validation error below this share of the training error shows rows that are easier than the others. Designed.
@@ -56,9 +57,10 @@ impl Model {
         let range = self.trained_ranges().inputs[0];
         let all = in_words(self.lead_in(), range);
         if provenance.options.has_free_states() {
-            let first = match provenance.options.model().has_free_states() {
-                true => "with the mean of these states (0 in an odd network)",
-                false => &all,
+            let first = match provenance.options.model() {
+                ModelName::Classical(law) if law.has_inertia() => "at rest",
+                model if model.has_free_states() => "with the mean of these states (0 in an odd network)",
+                _ => &all,
             };
             return Some(format!(
                 "initial state: found for each training record together with the parameters; a new record begins {first}, \

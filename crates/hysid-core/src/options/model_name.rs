@@ -69,7 +69,7 @@ impl ModelName {
     pub fn has_free_states(self) -> bool {
         match self {
             Self::Network(_) => false,
-            Self::Classical(law) => law.facts().has_free_states,
+            Self::Classical(law) => law.facts().has_free_states || law.has_inertia(),
             Self::Auto(_) => true,
         }
     }
