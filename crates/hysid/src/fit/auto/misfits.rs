@@ -99,21 +99,27 @@ impl EnsembleSelection<'_, '_, '_> {
     fn fitness(&self, trial: &Trial) -> Option<Fitness> {
         let folds = self.bench.folds;
         let errors = trial.is_complete().then(|| errors_held_out(&trial.predicted, folds, ""))??;
-        Some(Fitness {
-            training: 100.0 * trial.training_error(),
-            held_out: errors.nrmse_std_percent?,
-            score: Score::of(&trial.predicted, folds, |_| true)
-                .at_least(trial.training_error())
-                .mean_percent(),
-        })
+        let least = trial.least_error(folds);
+        let score = Score::of(&trial.predicted, folds, |_| true).at_least(least).mean_percent();
+        let held_out = if self.is_by_record() { score } else { errors.nrmse_std_percent? };
+        Some(Fitness { training: 100.0 * least, held_out, score })
     }
 
     fn fitness_of_ensemble(&self, ensemble: &ValidatedEnsemble) -> Option<Fitness> {
         let provenance = ensemble.model.provenance();
+        let score = ensemble.combination.score(&self.trials, self.bench.folds).mean_percent();
+        if self.is_by_record() {
+            return Some(Fitness { training: 0.0, held_out: score, score });
+        }
         Some(Fitness {
             training: provenance.trained_error().nrmse_std_percent?,
             held_out: provenance.validation.as_ref()?.nrmse_std_percent?,
-            score: ensemble.combination.score(&self.trials, self.bench.folds).mean_percent(),
+            score,
         })
+    }
+
+    /// True if errors are relative to the size of their record.
+    fn is_by_record(&self) -> bool {
+        self.bench.folds.iter().any(|fold| fold.rows.is_by_record())
     }
 }

@@ -103,10 +103,13 @@ impl Score {
     }
 }
 
-/// Squared error of each row, and how far outside the trained range it is.
+/// Weighted squared error of each row, and how far outside the trained range it is.
 fn squares<'a>(predicted: &'a [f64], fold: &'a FoldRows) -> impl Iterator<Item = (f64, f64)> + 'a {
-    let rows = predicted.iter().zip(&fold.measured).zip(&fold.outside);
-    rows.map(|((predicted, measured), outside)| ((predicted - measured) * (predicted - measured), *outside))
+    let rows = predicted.iter().zip(&fold.measured).zip(&fold.outside).enumerate();
+    rows.map(|(row, ((predicted, measured), outside))| {
+        let weight = fold.weights.get(row).copied().unwrap_or(1.0);
+        (weight * (predicted - measured) * (predicted - measured), *outside)
+    })
 }
 
 fn logarithm(squares: impl Iterator<Item = f64>, deviation: f64) -> f64 {

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use crate::data::record::Dataset;
+use crate::data::record::{Dataset, Record};
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::prior::LoopEvidence;
 use crate::fit::auto::score::Score;
@@ -25,6 +25,12 @@ impl HeldOut {
     pub fn of(fold: Fold) -> Self {
         Self { rows: FoldRows::of(&fold), is_beyond: fold.is_beyond(), fold }
     }
+
+    /// The same, whose errors are relative to the size of their record if this is requested.
+    pub fn by_record(mut self, is_by_record: bool) -> Self {
+        self.rows.weigh_by_record(&self.fold, is_by_record);
+        self
+    }
 }
 
 /// The held-out rows of a fold that have an output.
@@ -36,6 +42,8 @@ pub(super) struct FoldRows {
     pub outside: Vec<f64>,
     /// Standard deviation of the measured output, in its unit.
     pub deviation: f64,
+    /// Weight of each squared error, if errors are relative to the size of their record: `(σ_f/ρ_r)²`; otherwise empty.
+    pub weights: Vec<f64>,
 }
 
 impl FoldRows {
@@ -53,8 +61,47 @@ impl FoldRows {
             }
         }
         let (_, deviation) = spread(&measured);
-        Self { measured, outside, deviation: deviation.max(f64::MIN_POSITIVE) }
+        Self { measured, outside, deviation: deviation.max(f64::MIN_POSITIVE), weights: Vec::new() }
     }
+
+    fn weigh_by_record(&mut self, fold: &Fold, is_by_record: bool) {
+        self.weights.clear();
+        let mean = mean_output(&fold.train);
+        for record in fold.held_out.records().iter().filter(|_| is_by_record) {
+            let weight = (self.deviation / size_of(record, mean).max(f64::MIN_POSITIVE)).powi(2);
+            self.weights.extend(record.output().iter().filter(|y| !y.is_nan()).map(|_| weight));
+        }
+    }
+
+    /// True if errors are relative to the size of their record.
+    pub fn is_by_record(&self) -> bool {
+        !self.weights.is_empty()
+    }
+}
+
+/// Ratio of the sizes of the largest and the smallest record from which errors of cut-outs are relative to their record.
+/// Designed.
+const SIZES_DIFFER: f64 = 5.0;
+
+/// True if the outputs of some records are much larger than those of others.
+pub(super) fn sizes_differ(data: &Dataset) -> bool {
+    let mean = mean_output(data);
+    let sizes =
+        data.records().iter().filter(|record| record.scored() > 0).map(|record| size_of(record, mean));
+    let (least, most) =
+        sizes.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), size| (least.min(size), most.max(size)));
+    most > SIZES_DIFFER * least
+}
+
+fn mean_output(data: &Dataset) -> f64 {
+    let measured = data.records().iter().flat_map(Record::output).filter(|y| !y.is_nan());
+    spread(&measured.copied().collect::<Vec<f64>>()).0
+}
+
+/// Root mean square of the output about this mean.
+fn size_of(record: &Record, mean: f64) -> f64 {
+    let measured = || record.output().iter().filter(|y| !y.is_nan());
+    (measured().map(|y| (y - mean) * (y - mean)).sum::<f64>() / measured().count().max(1) as f64).sqrt()
 }
 
 #[derive(Debug, Clone)]
@@ -114,10 +161,16 @@ impl Trial {
         0.01 * errors.min_by(f64::total_cmp).unwrap_or(0.0)
     }
 
+    /// Error on these folds that it is not believed to be better than: that of its fits to everything, which says nothing of
+    /// errors relative to the size of a record.
+    pub fn least_error(&self, folds: &[HeldOut]) -> f64 {
+        if folds.iter().any(|fold| fold.rows.is_by_record()) { 0.0 } else { self.training_error() }
+    }
+
     /// Its score on the folds that are `counted`, with what is known of it beside.
     pub fn score(&self, folds: &[HeldOut], evidence: LoopEvidence, counted: impl Fn(usize) -> bool) -> Score {
         let on_folds = Score::of(&self.predicted, folds, counted);
-        on_folds.at_least(self.training_error()).with_unseen(self.unseen_error(evidence))
+        on_folds.at_least(self.least_error(folds)).with_unseen(self.unseen_error(evidence))
     }
 
     /// Predictions of the start under way, fold by fold, empty where not fitted; `None` if it failed on a `wanted`
