@@ -1,5 +1,6 @@
 //! A fit with its reading of the data, its warnings and its report.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use hysid::data::record::Dataset;
@@ -54,7 +55,11 @@ impl Identified {
     fn residuals_of(&self, name: &str, data: &Dataset) -> Result<Option<(String, Residuals)>> {
         let is_training = name == "training";
         // The rows of a warm-up were not trained on.
-        let data = data.clone().warmed_up(if is_training { self.model.warm_up() } else { 0 });
+        let data = self.model.as_judged(data)?.into_owned().warmed_up(if is_training {
+            self.model.warm_up()
+        } else {
+            0
+        });
         if data.scored() < FEWEST_ROWS {
             return Ok(None);
         }
@@ -88,8 +93,10 @@ impl Identified {
                 _ => residuals.extend(self.residuals_of(name, data)?),
             }
         }
-        let reported: Vec<ReportSet> =
-            sets.iter().map(|(name, data)| ReportSet::of(&self.model, name, data)).collect::<Result<_>>()?;
+        let judged = |&(name, data)| Ok((name, self.model.as_judged(data)?));
+        let judged: Vec<(&str, Cow<'_, Dataset>)> = sets.iter().map(judged).collect::<Result<_>>()?;
+        let reported = judged.iter().map(|(name, data)| ReportSet::of(&self.model, name, data));
+        let reported: Vec<ReportSet> = reported.collect::<Result<_>>()?;
         let training = reported.iter().find(|set| set.name == "training" && self.model.has_inertia());
         let responses = training.map(|set| ModelResponses::of(&self.model, set.data, &set.simulated));
         Ok(page(&Report {
@@ -108,6 +115,6 @@ impl Identified {
 
     /// Measured and simulated loops on a set of data, as an SVG file.
     pub fn loops(&self, name: &str, data: &Dataset) -> Result<String> {
-        Ok(loops(&ReportSet::of(&self.model, name, data)?).file(GENERATOR))
+        Ok(loops(&ReportSet::of(&self.model, name, &*self.model.as_judged(data)?)?).file(GENERATOR))
     }
 }

@@ -96,6 +96,14 @@ pub enum Predictor {
 }
 
 impl Predictor {
+    /// The range of the first input beyond which a record has been outside: that of an ensemble, or of the training data.
+    fn first_input_range(&self, trained: (f64, f64)) -> (f64, f64) {
+        match self {
+            Self::Ensemble(ensemble) => ensemble.range(),
+            Self::Network { .. } | Self::Law(_) => trained,
+        }
+    }
+
     /// Number of parameters that were determined from the data.
     fn parameters(&self) -> usize {
         match self {
@@ -341,9 +349,11 @@ impl Model {
         };
         let rate = rate.filter(|_| uses_rate);
         let judged = begun(data, found.options.judged_beginning(data.names())?);
-        let train = errors(Runner::of_body(&body, Some(&preprocessing), rate), &judged)?;
+        let range = body.first_input_range(data.input_range(0));
+        let runner = || Runner::of_body(&body, Some(&preprocessing), rate, range);
+        let train = errors(runner(), &judged)?;
         let train_after_warm_up = match behind(&judged, warm_up(&body, &found.options)) {
-            Some(behind) => Some(errors(Runner::of_body(&body, Some(&preprocessing), rate), &behind)?),
+            Some(behind) => Some(errors(runner(), &behind)?),
             None => None,
         };
         let provenance = found.on(data, train, train_after_warm_up);
@@ -456,12 +466,9 @@ impl Model {
         &self.preprocessing
     }
 
-    /// The range of the first input beyond which a record has been outside: that of the training data, or of the ensemble.
+    /// The range of the first input beyond which a record has been outside.
     fn first_input_range(&self) -> (f64, f64) {
-        match &self.body {
-            Predictor::Ensemble(ensemble) => ensemble.range(),
-            Predictor::Network { .. } | Predictor::Law(_) => self.trained.inputs[0],
-        }
+        self.body.first_input_range(self.trained.inputs[0])
     }
 
     pub(crate) fn inputs(&self) -> usize {
@@ -678,7 +685,7 @@ impl Model {
     pub fn with_band_over(self, band: Option<Band>, data: &Dataset) -> Result<Self> {
         let Some(band) = band else { return Ok(self.with_band(None)) };
         let mut errors = Predictions::default();
-        for record in begun(data, self.provenance.options.judged_beginning(data.names())?).records() {
+        for record in self.as_judged(data)?.records() {
             let mut output = vec![0.0; record.len()];
             let mut spreads = vec![OutputSpread::default(); record.len()];
             Runner::of_model(&self).rows(&record.excitation(), 0, &mut output, Some(&mut spreads))?;

@@ -30,7 +30,10 @@ impl Run {
     /// Runs a model. Data that it was fitted to begin as they did then.
     pub fn of(model: &Model, data: Dataset) -> Result<Self> {
         let is_training = data.records().iter().any(|record| model.was_trained_on(&record.fingerprint()));
-        let data = if is_training { model.as_trained(&data)?.into_owned() } else { data };
+        let data = match is_training {
+            true => model.as_judged(&*model.as_trained(&data)?)?.into_owned(),
+            false => data,
+        };
         let set = ReportSet::of(model, "", &data)?;
         let without_band = |output: Vec<f64>| Prediction { output, ..Prediction::default() };
         let predicted = match set.predicted {

@@ -2,6 +2,7 @@
 
 use crate::workbench::{Workbench, csv, json};
 use hysid_core::elementary::sin;
+use hysid_core::significant::Significant;
 use serde_json::Value;
 
 /// Rows of a play of threshold 0.5 that was driven to `past` before the record begins at 0.
@@ -123,6 +124,12 @@ fn models_are_compared_after_a_known_beginning() {
     bench.succeeds("fit train.csv -o m.json --no-report --model prandtl-ishlinskii --known 40");
     let evaluated = bench.json("evaluate m.json cuts.csv --known 40 --json");
     assert_eq!(evaluated["nrmse_std_percent"], row(&with, "prandtl-ishlinskii")["test"]["nrmse_std_percent"]);
+
+    // The page of the fit has the same errors as what was printed.
+    let fitted = bench.json(&format!("fit train.csv -o n.json {MODEL} --known 40 --json"))["train"].clone();
+    let (page, rmse) = (bench.text("n.html"), fitted["rmse"].as_f64().unwrap());
+    let row = page.lines().find(|line| line.contains("<th scope=\"row\">training</th>")).unwrap();
+    assert!(row.contains(">320<") && row.contains(&format!(">{:.4}<", Significant(rmse))), "{rmse}: {row}");
 
     let told = bench.succeeds("compare train.csv --models prandtl-ishlinskii --known 40").stdout;
     let words = "after a known beginning of each record: 40 rows.";

@@ -57,6 +57,15 @@ impl Model {
         fingerprint
     }
 
+    /// The data with the known beginning with which the model was judged in its fit, where their records have no longer one:
+    /// on its training data, its errors are then those of its [`Provenance`](crate::model::Provenance).
+    ///
+    /// # Errors
+    /// A duration in another unit than the time.
+    pub fn as_judged<'d>(&self, data: &'d Dataset) -> Result<Cow<'d, Dataset>> {
+        Ok(begun(data, self.provenance.options.judged_beginning(&self.names)?))
+    }
+
     /// The record with the known beginning of this model, if it has none of its own.
     ///
     /// # Errors

@@ -93,26 +93,22 @@ struct Chunk<'a> {
 impl<'m> Runner<'m> {
     /// A run of a model, from its initial state where a record has no other.
     pub fn of_model(model: &'m Model) -> Self {
-        let run = Self::of_body(&model.body, Some(&model.preprocessing), model.rate);
         let range = model.first_input_range();
-        let excursion = Excursion::beyond(range);
-        Self { range, excursion, lead_in: &model.lead_in, is_periodic: model.is_periodic, ..run }
+        let run = Self::of_body(&model.body, Some(&model.preprocessing), model.rate, range);
+        Self { lead_in: &model.lead_in, is_periodic: model.is_periodic, ..run }
     }
 
-    /// A run of what simulates alone, from the virgin state where a record has no other.
+    /// A run of what simulates alone, from the virgin state where a record has no other; `range` is that of its first input
+    /// in training.
     pub fn of_body(
         body: &'m Predictor,
         preprocessing: Option<&'m InputTransform>,
         rate: Option<RateMethod>,
+        range: (f64, f64),
     ) -> Self {
-        let (body, range) = match body {
-            Predictor::Ensemble(ensemble) => {
-                (RunnerKind::Ensemble(Box::new(EnsembleRunner::of(ensemble))), ensemble.range())
-            }
-            body => {
-                let everything = (f64::NEG_INFINITY, f64::INFINITY);
-                (RunnerKind::Single(Box::new(SingleRunner::of(body, preprocessing, rate))), everything)
-            }
+        let body = match body {
+            Predictor::Ensemble(ensemble) => RunnerKind::Ensemble(Box::new(EnsembleRunner::of(ensemble))),
+            body => RunnerKind::Single(Box::new(SingleRunner::of(body, preprocessing, rate))),
         };
         let mut methods: Vec<RateMethod> = body.singles().iter().filter_map(|single| single.rate).collect();
         methods.extend(rate);
