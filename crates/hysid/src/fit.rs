@@ -13,7 +13,7 @@ pub(crate) mod sums;
 mod validate;
 
 use crate::data::FEWEST_ROWS;
-use crate::data::record::{Dataset, Record};
+use crate::data::record::Dataset;
 use crate::error::{Channel, DataProblem, Result};
 use crate::fit::progress::{Fitted, Observer};
 use crate::options::FitSpec;
@@ -28,7 +28,9 @@ pub use validate::cross_validate;
 /// Data from which no model can be identified, invalid options, or a stop before there was a model.
 pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
     check_warm_up(data, request)?;
-    check_known_beginning(data, request)?;
+    if data.scored() > 0 {
+        request.judged_beginning(data.names())?.check_rest(data)?;
+    }
     match request {
         FitSpec::Auto(options) => auto::fit(data, options, observer),
         FitSpec::Network(_) | FitSpec::Classical(_) => one_model::identify(data, request, observer),
@@ -78,22 +80,12 @@ fn check_warm_up(data: &Dataset, request: &FitSpec) -> Result<()> {
     }
 }
 
-/// Checks that a known beginning leaves something to score.
-fn check_known_beginning(data: &Dataset, request: &FitSpec) -> Result<()> {
-    let beginning = request.judged_beginning(data.names())?;
-    let rest = |record: &Record| record.output().iter().skip(beginning.rows(record)).any(|y| !y.is_nan());
-    if data.scored() == 0 || data.records().iter().any(rest) {
-        return Ok(());
-    }
-    Err(data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingAfterBeginning))
-}
-
 #[cfg(test)]
 mod tests {
     use hysid_core::elementary::sin;
 
     use super::*;
-    use crate::data::record::ColumnNames;
+    use crate::data::record::{ColumnNames, Record};
     use crate::options::ModelName;
     use crate::options::chosen::NamedOptions;
 

@@ -118,7 +118,7 @@ fn models_are_compared_after_a_known_beginning() {
         assert_eq!((&without["test"]["samples"], &with["test"]["samples"]), (&240.into(), &160.into()));
         assert_eq!(with["train"]["samples"], 4 * 80);
         let error = |row: &Value| row["test"]["nrmse_std_percent"].as_f64().unwrap();
-        assert!(error(&with) < 0.6 * error(&without), "{with}, without {without}");
+        assert!(error(&with) < 0.8 * error(&without), "{with}, without {without}");
     }
     // The same as a fit with this option, and its evaluation.
     bench.succeeds("fit train.csv -o m.json --no-report --model prandtl-ishlinskii --known 40");
