@@ -180,6 +180,7 @@ pages! {
     plan: "plan.md",
     questions: "questions.md",
     read_files: "how-to/read-files.md",
+    records_from_the_middle: "how-to/records-from-the-middle.md",
     reproduce_the_paper: "how-to/reproduce-the-paper.md",
     restoring_force: "how-to/restoring-force.md",
     structures: "tutorials/structures.md",

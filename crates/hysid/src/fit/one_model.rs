@@ -36,7 +36,7 @@ const ROUNDS: usize = 3;
 const WORTH_A_ROUND: f64 = 0.01;
 
 /// A fit of a model without free states of its own: each record begins in one of the states that are tried where the initial
-/// state is unknown; the past before it is found with the model, and the model is fitted after these pasts again (theory.md (11.12)).
+/// state is unknown; the past before it is found with the model, and the model is fitted after these pasts again (theory.md (11.15)).
 fn after_found_pasts(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
     let is_given = |record: &Record| record.lead_in().is_some();
     let mut begun = match data.records().iter().any(is_given) {

@@ -68,7 +68,8 @@ impl FoldRows {
         self.weights.clear();
         let mean = mean_output(&fold.train);
         for record in fold.held_out.records().iter().filter(|_| is_by_record) {
-            let weight = (self.deviation / size_of(record, mean).max(f64::MIN_POSITIVE)).powi(2);
+            let share = self.deviation / size_of(record, mean).max(f64::MIN_POSITIVE);
+            let weight = share * share;
             self.weights.extend(record.output().iter().filter(|y| !y.is_nan()).map(|_| weight));
         }
     }
