@@ -9,8 +9,8 @@
 //! ```
 //!
 //! A *free* state is found for each record together with the parameters of the model, and for a new record from its [known
-//! beginning](crate::data::record::Record::with_known_beginning): the internal states of a law that has free states, or else
-//! the past, a lead-in of up to three turning points.
+//! beginning](crate::data::record::Record::with_known_beginning): the internal states of a law that has free states,
+//! displacements and velocities of a model with inertia, or else the *past*, a lead-in of up to three turning points.
 //!
 //! A *lead-in* is what the first input did before the first row of a record: its turning points, in its unit.
 //! `l` and `h` are the ends of the trained range of the first input, and `c` is its origin. A model is driven
@@ -113,12 +113,13 @@ const WORTH_A_TURN: f64 = 0.05;
 /// Halvings of the step of the search.
 const HALVINGS: usize = 6;
 
-/// The past of the first input that suits so many first rows of a record: a lead-in of up to three turning points within this
-/// range, in its unit. `misfit` is the sum of the squared errors of some of the rows after a past.
+/// The lead-in that best fits so many first rows of a record, in the unit of the input: up to three turning points within this
+/// range, or more if it continues `otherwise`. `misfit(past, rows)` is the sum of the squared errors of these rows in a run
+/// after a past.
 ///
-/// It is found from the first two thirds of the rows. A past that is worse in the last third than `otherwise`, from which the
-/// record begins without known outputs, is none: then a model that is wrong took its own error for a state. So `otherwise` is
-/// the past that is returned.
+/// It is searched with the first two thirds of the rows. If its error in the last third is larger than that after `otherwise`,
+/// the lead-in of a record without known outputs, the past compensated an error of the model, and `otherwise` is returned. If
+/// not, it is refined with all rows.
 pub fn found_past(
     (low, high): (f64, f64),
     rows: usize,

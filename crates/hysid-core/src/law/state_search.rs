@@ -1,13 +1,13 @@
-//! Search of the state before a record, by the Levenberg-Marquardt method on few unknowns.
+//! Search for the state before a record by the Levenberg-Marquardt method.
 
 use crate::linear_algebra::Symmetric;
 use crate::stop_check::StopCheck;
 
 /// Relative fall of the objective below which the search ends.
-const SMALL_STEP: f64 = 1e-6;
+const LEAST_FALL: f64 = 1e-6;
 
-/// The unknowns `u` after so many steps downhill. `slope` gives half the gradient of the objective and the curvature of a
-/// least-squares problem.
+/// Minimises a least-squares objective by at most so many Levenberg-Marquardt steps from `u`, where it has the value
+/// `objective`, and returns the best `u`. `slope` gives half the gradient and the Gauss-Newton matrix.
 pub fn descended(
     mut u: Vec<f64>,
     mut objective: f64,
@@ -26,7 +26,7 @@ pub fn descended(
         let there: Vec<f64> = u.iter().zip(&step).map(|(u, step)| u - step).collect();
         let found = objective_at(&there);
         if found < objective {
-            let is_small = objective - found < SMALL_STEP * objective;
+            let is_small = objective - found < LEAST_FALL * objective;
             (objective, u, damping) = (found, there, 0.1 * damping);
             if is_small {
                 break;

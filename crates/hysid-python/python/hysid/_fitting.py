@@ -138,16 +138,15 @@ def fit(
         in the virgin state. Default: chosen by cross-validation for auto; otherwise 0.
     initial_state : str, optional
         State of the memory at the beginning of each record: without history, after a visit of the upper or the lower
-        end of the input range, demagnetised, periodic (each record is a period of a steady state), unknown (one of a
-        few histories, chosen for each record before the fit), or free (found for each record together with the
-        parameters, for records that are cut out of a longer past: the internal states of duhem-nn, up to three turning
-        points before the first row with any other model). Default: chosen by cross-validation for auto; otherwise
-        virgin.
+        end of the input range, demagnetised, periodic (each record is a period of a steady state), unknown (one of 11
+        pasts, found for each record before the fit), or free (found for each record during the fit, for records that
+        are cut out of a longer past). With free, duhem-nn finds its internal states, models with inertia find
+        displacements and velocities, and other models find up to three turning points before the first row. Default:
+        chosen by cross-validation for auto; otherwise virgin.
     known : int | str, optional
         Measured beginning of the records on which the model will be used, as in `hysid evaluate --known`. Errors are
-        then those after such a beginning of each record, and `auto` also tries free initial states. With free initial
-        states, a tenth of the rows by default. Parts of records that are held out have no known beginning. Default:
-        off.
+        then those after this beginning of each record, and `auto` also tries initial_state free. Default with free: the
+        first tenth of each record. Blocks that are held out of a single record have no known beginning. Default: off.
     training : {"subgradient", "levenberg-marquardt", "hybrid", "genetic"}, optional
         Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic algorithm,
         or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default: subgradient.

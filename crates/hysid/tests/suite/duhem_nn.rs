@@ -431,7 +431,7 @@ fn free_states_find_what_came_before_the_records() {
             runs_from_its_state(&model, &unseen.records()[0], known);
             let known = unseen.records()[0].clone().with_known_beginning(known);
             let found = model.find_state(&known.excitation()).unwrap().to_string();
-            assert!(found.starts_with("free states ") && found.contains("; residual "), "{found}");
+            assert!(found.starts_with("states ") && found.contains("; residual "), "{found}");
         }
         let model = model.with_known_beginning(KnownBeginning::Rows(known));
         model.evaluate(&unseen).unwrap().nrmse_std_percent.unwrap()

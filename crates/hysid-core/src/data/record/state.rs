@@ -8,8 +8,8 @@ use crate::significant::Significant;
 
 /// State of a model before the first row of a record, as [`Model::find_state`](crate::model::Model::find_state) finds it.
 ///
-/// It has the state of each member of an ensemble: the free states of a law, or a past of the first input. For a model whose
-/// error at the end of a known beginning remains, it has that error too.
+/// It has the state of each member of an ensemble: internal states of a law, displacements and velocities of a model with
+/// inertia, or a past of the first input. For `duhem-nn` it also has the error at the last known row, which decays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordState {
     pub(crate) members: Vec<MemberState>,
@@ -36,7 +36,7 @@ impl RecordState {
 pub(crate) enum MemberState {
     /// Turning points of the first input before the first row, in its unit.
     Past(Vec<f64>),
-    /// Free states of a law.
+    /// Internal states of a law, or displacements and then velocities of modes.
     Free(Vec<f64>),
 }
 
@@ -45,9 +45,9 @@ pub(crate) enum MemberState {
 pub(crate) struct FadingResidual {
     /// Rows of the known beginning that are still to come.
     pub rows: usize,
-    /// Residual at the last row, in the unit of the output.
+    /// Residual at the last row with a known output, in the unit of the output.
     pub residual: f64,
-    /// Share of it that remains from row to row.
+    /// Factor by which it decreases from row to row.
     pub remaining: f64,
 }
 
@@ -74,7 +74,7 @@ impl fmt::Display for RecordState {
                 MemberState::Past(past) => write!(to, "{}", in_words(past, self.range))?,
                 MemberState::Free(states) => {
                     let shown = states.iter().map(|state| format!("{:.3}", Significant(*state)));
-                    write!(to, "free states {}", shown.collect::<Vec<_>>().join(", "))?;
+                    write!(to, "states {}", shown.collect::<Vec<_>>().join(", "))?;
                 }
             }
         }

@@ -1,33 +1,35 @@
 //! Motion at the first sample of a record that begins in mid-motion, found from outputs at its beginning.
 //!
 //! ```text
-//! min_u Σ_k (y_k - ŷ_k(u))²/(σ_f σ)² + |u|²,    u = [Q, P],   σ_f = 0.01       theory.md (15.25)
+//! min_u Σ_k (y_k - ŷ_k(u))²/(σ_f σ)² + |u|²,    u = [Δq, Δp],   σ_f = 0.01     theory.md (15.25)
 //! ```
 //!
-//! `Q` and `P` are displacements and velocities of the modes at the first sample, beside those at rest. The memory of the
-//! elements is that of a record from rest.
+//! `Δq` and `Δp` are the differences of displacements and velocities of the modes at the first sample from those of a record
+//! from rest. The memory of the elements is that of a record from rest.
 
 use super::{Dynamics, DynamicsMotion};
 use crate::law::{Sample, state_search};
 use crate::linear_algebra::Symmetric;
 
-/// `σ_f`: error of the output in scaled units beside which motions of 1 are as likely as rest. Designed.
+/// `σ_f`: standard deviation of the output error in scaled units; that of `u` is 1. Designed.
 const DEVIATION: f64 = 0.01;
 
+/// Most steps of the search.
 const STEPS: usize = 20;
 
 /// Step of a finite difference.
 const DIFFERENCE: f64 = 1e-6;
 
 impl Dynamics {
-    /// Before the first sample, with these displacements and then velocities of the modes at it.
+    /// At rest before the first sample; there, displacements and then velocities of the modes differ by these from rest.
     pub(crate) fn begun_with(&self, beginning: &[f64]) -> DynamicsMotion {
         let mut motion = self.virgin();
         motion.beginning = beginning.to_vec();
         motion
     }
 
-    /// Displacements and then velocities at the first sample, from known outputs, NaN where they are not known.
+    /// Differences of displacements and then velocities from rest at the first sample, from known outputs, NaN where they are
+    /// not known.
     pub(crate) fn found_states(&self, samples: &[Sample], known: &[f64]) -> Vec<f64> {
         let residuals = |u: &[f64]| -> Vec<f64> {
             let mut motion = self.begun_with(u);
