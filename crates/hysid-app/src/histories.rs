@@ -74,13 +74,19 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
     };
     let name = Text::from(record.name()).and(Piece::Aside(rmse));
     let mut parts = vec![Part::Heading(name)];
+    let mut known = record.known().to_vec();
+    known.resize(record.len(), f64::NAN);
+    let mut lines = vec![
+        (Colour::Measured, "measured", MEASURED_WIDTH, record.output()),
+        (Colour::Simulated, "model", MODEL_WIDTH, &set.simulated[index]),
+    ];
+    if !record.known().is_empty() {
+        lines.insert(0, (Colour::Series(1), "known beginning", MEASURED_WIDTH, &known));
+    }
     parts.push(Part::chart(panel.chart(
         &output,
         220.0,
-        &[
-            (Colour::Measured, "measured", MEASURED_WIDTH, record.output()),
-            (Colour::Simulated, "model", MODEL_WIDTH, &set.simulated[index]),
-        ],
+        &lines,
         predicted.map(|predicted| panel.area(&predicted.low, &predicted.high)),
     )));
     let errors = errors(set, index);
