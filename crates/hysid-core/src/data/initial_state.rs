@@ -113,23 +113,25 @@ const WORTH_A_TURN: f64 = 0.05;
 /// Halvings of the step of the search.
 const HALVINGS: usize = 6;
 
-/// The lead-in that best fits so many first rows of a record, in the unit of the input: up to three turning points within this
-/// range, or more if it continues `otherwise`. `misfit(past, rows)` is the sum of the squared errors of these rows in a run
-/// after a past.
+/// The lead-in that best fits the known outputs of the first rows of a record, NaN where they are not known: up to three
+/// turning points within this range of the input, or more if it continues `otherwise`. `misfit(past, rows)` is the sum of the
+/// squared errors of these rows in a run after a past.
 ///
-/// It is searched with the first two thirds of the rows. If its error in the last third is larger than that after `otherwise`,
-/// the lead-in of a record without known outputs, the past compensated an error of the model, and `otherwise` is returned. If
-/// not, it is refined with all rows.
+/// It is searched with the first two thirds of these outputs. If its error in the last third is larger than that after
+/// `otherwise`, the lead-in of a record without known outputs, the past compensated an error of the model, and `otherwise` is
+/// returned. If not, it is refined with all of them.
 pub fn found_past(
     (low, high): (f64, f64),
-    rows: usize,
+    known: &[f64],
     otherwise: &[f64],
     mut misfit: impl FnMut(&[f64], Range<usize>) -> f64,
 ) -> Vec<f64> {
     if !(high - low).is_finite() {
         return otherwise.to_vec();
     }
-    let first = (2 * rows).div_ceil(3);
+    let rows = known.len();
+    let measured: Vec<usize> = (0..rows).filter(|&row| !known[row].is_nan()).collect();
+    let first = measured.get((2 * measured.len()).div_ceil(3)).copied().unwrap_or(rows);
     let tried = lead_ins_tried((low, high)).into_iter().chain([otherwise.to_vec()]);
     let found = longer_past((low, high), tried, |past| misfit(past, 0..first));
     if misfit(&found, first..rows) > misfit(otherwise, first..rows) {

@@ -446,7 +446,7 @@ impl<'m> SingleRunner<'m> {
             let errors = outputs[rows.clone()].iter().zip(&known[rows]).filter(|(_, y)| !y.is_nan());
             errors.map(|(output, y)| (output - y) * (output - y)).sum()
         };
-        MemberState::Past(found_past(range, known.len(), otherwise, misfit))
+        MemberState::Past(found_past(range, known, otherwise, misfit))
     }
 
     fn begin_in(&mut self, state: &MemberState, first_row: &[f64]) {
