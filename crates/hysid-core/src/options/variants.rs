@@ -38,8 +38,7 @@ impl FitSpec {
         variant.extend(shaping.companding.map(|share| format!("input companded {share}")));
         variant.extend(shaping.rate_companding.map(|share| format!("rate companded {share}")));
         variant.extend(shaping.history.then(|| "history".to_string()));
-        let has_found_pasts = self.has_free_states() && !self.model().has_free_states();
-        variant.extend(has_found_pasts.then(|| "found pasts".to_string()));
+        variant.extend(self.has_free_states().then(|| "initial state free".to_string()));
         variant
     }
 

@@ -133,8 +133,8 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     let PreparedData { data: few, folds, warm_up, is_changed, found } = beginning;
     let candidates: Vec<Candidate> = candidates.iter().map(|one| one.warmed_up(warm_up.rows)).collect();
     let is_by_record = (is_free || options.known.is_some()) && trial::sizes_differ(data);
-    let held_out = folds.into_iter().map(|fold| HeldOut::of(fold).by_record(is_by_record));
-    let held_out: Vec<HeldOut> = held_out.collect();
+    let held_out = |fold| if is_by_record { HeldOut::of(fold).by_record() } else { HeldOut::of(fold) };
+    let held_out: Vec<HeldOut> = folds.into_iter().map(held_out).collect();
     let is_first = warm_up.rows == 0 && !is_changed && !work.is_stopped();
     let first_member = is_first.then(|| alone.clone());
     let fitted_to = if has_inertia { data } else { &few };

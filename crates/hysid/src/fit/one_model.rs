@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::data::initial_state::InitialState;
 use crate::data::record::{Dataset, Record};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fit::initial_state::StateRequest;
 use crate::fit::law;
 use crate::fit::law::random_stops::fit_random_stops;
@@ -13,7 +13,7 @@ use crate::fit::progress::{Fitted, Observer, Progress, SearchProgress, SharedObs
 use crate::law::facts::Origin;
 use crate::model::history::{HistoryPoint, Phase, Run};
 use crate::model::input_transform::TransformedData;
-use crate::model::{Model, Predictor, ProvenanceDraft};
+use crate::model::{Model, Predictor, Provenance, ProvenanceDraft};
 use crate::optimise::parallel;
 use crate::options::FitSpec;
 use crate::options::classical::ClassicalOptions;
@@ -50,25 +50,44 @@ fn after_found_pasts(data: &Dataset, request: &FitSpec, observer: &mut Observer<
         .of(data, observer)?
         .into_owned(),
     };
-    let mut best = from_given_states(&begun, request, observer)?;
-    let mut least = best.model.evaluate(&begun)?.rmse;
-    for _ in 0..ROUNDS {
-        if best.model.provenance().termination == Termination::Stopped {
+    let mut fit = |round: usize, data: &Dataset| {
+        let mut observe = |progress: &Progress<'_>| {
+            let done = (round as f64 + progress.done) / (1 + ROUNDS) as f64;
+            observer(&Progress { done, ..progress.clone() })
+        };
+        let fitted = from_given_states(data, request, &mut observe)?;
+        let error = fitted.model.evaluate(data)?.rmse;
+        Ok((fitted, error))
+    };
+    let (mut best, mut least) = fit(0, &begun)?;
+    let is_stopped = |fitted: &Fitted| fitted.model.provenance().termination == Termination::Stopped;
+    for round in 1..=ROUNDS {
+        if is_stopped(&best) {
             break;
         }
         let past = |record: &Record| past_before(record, &best.model);
         let pasts: Vec<Vec<f64>> =
             parallel::each(begun.records(), past).into_iter().collect::<Result<_>>()?;
         let after = begun.clone().with_lead_ins(|place, _| pasts[place].clone())?;
-        let fitted = from_given_states(&after, request, observer)?;
-        let error = fitted.model.evaluate(&after)?.rmse;
-        if error >= least {
-            break;
-        }
-        let is_worth_another = error < (1.0 - WORTH_A_ROUND) * least;
-        (best, begun, least) = (fitted, after, error);
-        if !is_worth_another {
-            break;
+        let next = match fit(round, &after) {
+            // The model so far remains.
+            Err(Error::Stopped) => None,
+            next => Some(next?),
+        };
+        match next {
+            Some((fitted, error)) if error < least => {
+                let is_worth_another = error < (1.0 - WORTH_A_ROUND) * least;
+                (best, begun, least) = (fitted, after, error);
+                if !is_worth_another {
+                    break;
+                }
+            }
+            Some((fitted, _)) if !is_stopped(&fitted) => break,
+            _ => {
+                let stopped =
+                    Provenance { termination: Termination::Stopped, ..best.model.provenance().clone() };
+                best.model = best.model.with_provenance(stopped);
+            }
         }
     }
     Ok(best)

@@ -444,6 +444,25 @@ fn pasts_are_found_together_with_the_model() {
     assert!(free < 0.5 * virgin, "{free} with found pasts, {virgin} without");
 }
 
+/// A stop in a later round ends with the model so far.
+#[test]
+fn a_stop_while_pasts_are_found_keeps_the_model_so_far() {
+    let cut = |k: i32| measured(&format!("cut {k}"), &[0.9, -0.3 * f64::from(k)], path(150, 0.9, 0.11));
+    let train = untimed((0..3).map(cut).collect());
+    let options = ClassicalOptions { starts: Some(2), ..ClassicalOptions::of(ClassicalModel::BoucWen) };
+    let request = FitSpec::Classical(options).with_initial_state(Some(InitialState::Free));
+    let (mut last, mut goes_back) = (0.0, false);
+    let fitted = identify(&train, &request, &mut |progress| {
+        goes_back |= progress.done < last;
+        last = progress.done;
+        // The first of at most four fits is done.
+        if progress.done > 0.25 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let model = fitted.unwrap().model;
+    assert_eq!(model.provenance().termination, Termination::Stopped);
+    assert!(!goes_back && last > 0.25 && model.provenance().train.rmse.is_finite());
+}
+
 /// A model that is wrong takes its own error for a state: what it finds must not be worse than no past.
 #[test]
 fn a_wrong_model_is_not_led_astray_by_a_known_beginning() {

@@ -9,6 +9,7 @@
 
 use super::{EnsembleSelection, Trial, ValidatedEnsemble, errors_held_out};
 use crate::fit::auto::score::Score;
+use crate::fit::auto::trial::are_by_record;
 
 /// Training error of an ensemble, relative to that of the candidate that fits best. Designed.
 const FITS: f64 = 1.3;
@@ -101,14 +102,14 @@ impl EnsembleSelection<'_, '_, '_> {
         let errors = trial.is_complete().then(|| errors_held_out(&trial.predicted, folds, ""))??;
         let least = trial.least_error(folds);
         let score = Score::of(&trial.predicted, folds, |_| true).at_least(least).mean_percent();
-        let held_out = if self.is_by_record() { score } else { errors.nrmse_std_percent? };
+        let held_out = if are_by_record(folds) { score } else { errors.nrmse_std_percent? };
         Some(Fitness { training: 100.0 * least, held_out, score })
     }
 
     fn fitness_of_ensemble(&self, ensemble: &ValidatedEnsemble) -> Option<Fitness> {
         let provenance = ensemble.model.provenance();
         let score = ensemble.combination.score(&self.trials, self.bench.folds).mean_percent();
-        if self.is_by_record() {
+        if are_by_record(self.bench.folds) {
             return Some(Fitness { training: 0.0, held_out: score, score });
         }
         Some(Fitness {
@@ -116,10 +117,5 @@ impl EnsembleSelection<'_, '_, '_> {
             held_out: provenance.validation.as_ref()?.nrmse_std_percent?,
             score,
         })
-    }
-
-    /// True if errors are relative to the size of their record.
-    fn is_by_record(&self) -> bool {
-        self.bench.folds.iter().any(|fold| fold.rows.is_by_record())
     }
 }

@@ -26,9 +26,14 @@ impl HeldOut {
         Self { rows: FoldRows::of(&fold), is_beyond: fold.is_beyond(), fold }
     }
 
-    /// The same, whose errors are relative to the size of their record if this is requested.
-    pub fn by_record(mut self, is_by_record: bool) -> Self {
-        self.rows.weigh_by_record(&self.fold, is_by_record);
+    /// The same, whose errors are relative to the size of their record.
+    pub fn by_record(mut self) -> Self {
+        let mean = mean_output(&self.fold.train);
+        let weights = self.fold.held_out.records().iter().flat_map(|record| {
+            let share = self.rows.deviation / size_of(record, mean).max(f64::MIN_POSITIVE);
+            std::iter::repeat_n(share * share, record.scored())
+        });
+        self.rows.weights = weights.collect();
         self
     }
 }
@@ -63,21 +68,6 @@ impl FoldRows {
         let (_, deviation) = spread(&measured);
         Self { measured, outside, deviation: deviation.max(f64::MIN_POSITIVE), weights: Vec::new() }
     }
-
-    fn weigh_by_record(&mut self, fold: &Fold, is_by_record: bool) {
-        self.weights.clear();
-        let mean = mean_output(&fold.train);
-        for record in fold.held_out.records().iter().filter(|_| is_by_record) {
-            let share = self.deviation / size_of(record, mean).max(f64::MIN_POSITIVE);
-            let weight = share * share;
-            self.weights.extend(record.output().iter().filter(|y| !y.is_nan()).map(|_| weight));
-        }
-    }
-
-    /// True if errors are relative to the size of their record.
-    pub fn is_by_record(&self) -> bool {
-        !self.weights.is_empty()
-    }
 }
 
 /// Ratio of the sizes of the largest and the smallest record from which errors of cut-outs are relative to their record.
@@ -92,6 +82,11 @@ pub(super) fn sizes_differ(data: &Dataset) -> bool {
     let (least, most) =
         sizes.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), size| (least.min(size), most.max(size)));
     most > SIZES_DIFFER * least
+}
+
+/// True if errors on these folds are relative to the size of their record.
+pub(super) fn are_by_record(folds: &[HeldOut]) -> bool {
+    folds.iter().any(|fold| !fold.rows.weights.is_empty())
 }
 
 fn mean_output(data: &Dataset) -> f64 {
@@ -165,7 +160,7 @@ impl Trial {
     /// Error on these folds that it is not believed to be better than: that of its fits to everything, which says nothing of
     /// errors relative to the size of a record.
     pub fn least_error(&self, folds: &[HeldOut]) -> f64 {
-        if folds.iter().any(|fold| fold.rows.is_by_record()) { 0.0 } else { self.training_error() }
+        if are_by_record(folds) { 0.0 } else { self.training_error() }
     }
 
     /// Its score on the folds that are `counted`, with what is known of it beside.
