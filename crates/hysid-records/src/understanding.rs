@@ -4,6 +4,7 @@ use hysid_core::data::rate::RateMethod;
 use hysid_core::data::record::{ProtocolDifference, RepeatedProtocol, SpeedEvidence, protocols};
 use hysid_core::data::summary::Summary;
 use hysid_core::options::FitSpec;
+use hysid_core::options::classical::{ClassicalOptions, FittedError};
 use hysid_core::options::fit_spec::AutoOptions;
 use hysid_core::significant::Significant;
 use hysid_core::words::{Hint, Words};
@@ -46,7 +47,28 @@ pub fn understanding(
     let model = format!("{}{model}", request.model().name());
     let mut lines = of_data(data, summary, face);
     lines.extend([("rate".to_string(), rate), ("model".to_string(), model)]);
+    if let FitSpec::Classical(options) = request {
+        lines.extend(error_of_records(options, data, face).map(|text| ("error".to_string(), text)));
+    }
     lines
+}
+
+/// That the fit weighs each record by its size, which nobody asked for.
+fn error_of_records(options: &ClassicalOptions, data: &Data, face: Face) -> Option<String> {
+    let is_default = options.error.is_none() && options.model.facts().options.contains(&"error");
+    if !is_default || options.fitted_error(&data.set) == FittedError::Row {
+        return None;
+    }
+    let words = match data.set.size_ratio() {
+        ratio if ratio > ClassicalOptions::RATIO_OF_SIZES => format!(
+            "of each record relative to its size, because the outputs of the largest record are {:.2} times those of the \
+             smallest",
+            Significant(ratio)
+        ),
+        _ => "of each record relative to its size".into(),
+    };
+    let row = Hint::Value("error", "row".into());
+    Some(face.told(&Words::from(words).advised(Words::from("to weigh all rows alike: ") + row)))
 }
 
 pub fn of_data(data: &Data, summary: &Summary, face: Face) -> Vec<(String, String)> {

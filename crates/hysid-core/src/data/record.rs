@@ -197,6 +197,12 @@ impl Record {
         self.output.iter().filter(|y| !y.is_nan()).count()
     }
 
+    /// Root mean square of the output about `centre`; NaN without outputs.
+    pub fn output_size(&self, centre: f64) -> f64 {
+        let squares = self.output.iter().filter(|y| !y.is_nan()).map(|y| (y - centre) * (y - centre));
+        (squares.sum::<f64>() / self.scored() as f64).sqrt()
+    }
+
     /// A fingerprint by which the record is recognized.
     pub fn fingerprint(&self) -> Fingerprint {
         let mut fingerprint = Fingerprint::default();
@@ -395,6 +401,21 @@ impl Dataset {
     /// Smallest and largest value of an input over all records, in the user's unit.
     pub fn input_range(&self, input: usize) -> (f64, f64) {
         range(self.records.iter().flat_map(|record| &record.inputs[input]))
+    }
+
+    /// Mean of the outputs of all scored rows; NaN without any.
+    pub fn mean_output(&self) -> f64 {
+        let measured = || self.records.iter().flat_map(Record::output).filter(|y| !y.is_nan());
+        measured().sum::<f64>() / measured().count() as f64
+    }
+
+    /// How many times larger the outputs of the largest record are than those of the smallest, by their root mean squares
+    /// about the mean of all; 1 of one record, infinite if a record has that mean throughout.
+    pub fn size_ratio(&self) -> f64 {
+        let mean = self.mean_output();
+        let sizes: Vec<f64> = self.records.iter().map(|record| record.output_size(mean)).collect();
+        let (least, most) = range(sizes.iter());
+        if most > least { most / least } else { 1.0 }
     }
 
     /// Smallest and largest output over all scored rows; `(inf, -inf)` if all are blank.
@@ -648,6 +669,18 @@ mod tests {
             let error = of(x, y).unwrap_err().to_string();
             assert!(error.contains("(choose other units)") && error.len() < 200, "{error}");
         }
+    }
+
+    #[test]
+    fn the_size_ratio_is_that_of_root_mean_squares_about_the_common_mean() {
+        let whole = |outputs: Vec<Vec<f64>>| {
+            Dataset::new(ColumnNames::plain(1), outputs.into_iter().map(record).collect()).unwrap()
+        };
+        // Mean 2, about which the sizes are 1, 3 and 7.
+        let three = vec![vec![1.0, 3.0], vec![-1.0, f64::NAN, 5.0], vec![-5.0, 9.0]];
+        assert_eq!(whole(three).size_ratio(), 7.0);
+        assert_eq!(whole(vec![vec![1.0, 3.0]]).size_ratio(), 1.0);
+        assert_eq!(whole(vec![vec![4.0, 4.0], vec![3.0, 5.0]]).size_ratio(), f64::INFINITY);
     }
 
     #[test]

@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::initial_state::InitialState;
 use crate::data::known_beginning::KnownSpan;
 use crate::data::rate::RateMethod;
+use crate::data::record::Dataset;
 use crate::for_each_law;
 use crate::law::Law;
 use crate::law::facts::{Advised, Behaviour, ErrorsInside, Facts, Identification, LawKind, Rate};
@@ -166,8 +168,7 @@ pub struct ClassicalOptions {
     /// True for a Duhem neural network without constants.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub odd: bool,
-    /// Error that a Duhem neural network is fitted to; that of each record if states are free, otherwise of the rows, if
-    /// `None`.
+    /// Error that a Duhem neural network is fitted to; see [`fitted_error`](Self::fitted_error) if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<FittedError>,
     /// Known beginning of the records that the model will be used on.
@@ -190,6 +191,19 @@ pub struct ClassicalOptions {
     pub near: Vec<f64>,
     /// Seed of all random numbers.
     pub seed: u64,
+}
+
+impl ClassicalOptions {
+    /// Ratio of the sizes of records above which their errors are compared relative to these sizes. Designed.
+    pub const RATIO_OF_SIZES: f64 = 5.0;
+
+    /// The error that a Duhem neural network is fitted to: as requested; otherwise that of each record if states are free or
+    /// the sizes of the records differ by more than [`RATIO_OF_SIZES`](Self::RATIO_OF_SIZES), and that of the rows if not.
+    pub fn fitted_error(&self, data: &Dataset) -> FittedError {
+        let is_free = self.shaping.initial_state == Some(InitialState::Free);
+        let differ = || data.size_ratio() > Self::RATIO_OF_SIZES;
+        self.error.unwrap_or_else(|| if is_free || differ() { FittedError::Record } else { FittedError::Row })
+    }
 }
 
 macro_rules! counts {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::options::ModelName;
+use crate::options::classical::{ClassicalOptions, FittedError};
 
 /// The default of an option for one model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +26,8 @@ pub enum Preset {
     ByCandidate,
     /// No held-out share: the folds of a cross-validation.
     Folds,
+    /// The error of each record or of the rows, by the sizes of the records.
+    BySizes,
 }
 
 impl fmt::Display for Preset {
@@ -41,6 +44,14 @@ impl fmt::Display for Preset {
             Self::Chosen => f.write_str("chosen by cross-validation"),
             Self::ByCandidate => f.write_str("set by each candidate"),
             Self::Folds => f.write_str("the folds of a cross-validation"),
+            Self::BySizes => write!(
+                f,
+                "{} with free initial states, or if the root mean squares of the records differ by more than {} times; \
+                 otherwise {}",
+                FittedError::Record.name(),
+                ClassicalOptions::RATIO_OF_SIZES,
+                FittedError::Row.name()
+            ),
         }
     }
 }

@@ -432,11 +432,10 @@ options! {
     }
     error: FittedError {
         meaning: "Error that the fit of duhem-nn minimises: `row`, the mean square error of all rows; `record`, the mean \
-                  over the records of the error relative to the record's root mean square output, for records of very \
-                  different amplitudes, and the default with free initial states",
+                  over the records of the error relative to the record's root mean square output",
         group: Classical,
         values: OptionValues::Names(errors),
-        default: |_, _| Preset::Name(FittedError::Row.name()),
+        default: |_, _| Preset::BySizes,
         used_by: of_none,
     }
 }

@@ -227,8 +227,8 @@ def fit(
         further inputs, such as a temperature, stay the same. Default: off.
     error : {"row", "record"}, optional
         Error that the fit of duhem-nn minimises: `row`, the mean square error of all rows; `record`, the mean over the
-        records of the error relative to the record's root mean square output, for records of very different amplitudes,
-        and the default with free initial states. Default: row.
+        records of the error relative to the record's root mean square output. Default: record with free initial states,
+        or if the root mean squares of the records differ by more than 5 times; otherwise row.
     time_limit : float, optional
         Time in seconds after which to stop and keep the best model so far.
     threads : int, optional

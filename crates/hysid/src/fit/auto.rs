@@ -54,6 +54,7 @@ use crate::model::{
     Band, Ensemble, Group, HeldOutRow, Model, Node, NodeKind, Predictor, Provenance, ProvenanceDraft, Weights,
 };
 use crate::options::FitSpec;
+use crate::options::classical::ClassicalOptions;
 use crate::options::fit_spec::AutoOptions;
 use crate::options::table::check;
 use crate::termination::Termination;
@@ -132,7 +133,8 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     let data = &*beginning.of_all(data)?;
     let PreparedData { data: few, folds, warm_up, is_changed, found } = beginning;
     let candidates: Vec<Candidate> = candidates.iter().map(|one| one.warmed_up(warm_up.rows)).collect();
-    let is_by_record = (is_free || options.known.is_some()) && trial::sizes_differ(data);
+    let is_by_record =
+        (is_free || options.known.is_some()) && data.size_ratio() > ClassicalOptions::RATIO_OF_SIZES;
     let held_out = |fold| if is_by_record { HeldOut::of(fold).by_record() } else { HeldOut::of(fold) };
     let held_out: Vec<HeldOut> = folds.into_iter().map(held_out).collect();
     let is_first = warm_up.rows == 0 && !is_changed && !work.is_stopped();

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use crate::data::record::{Dataset, Record};
+use crate::data::record::Dataset;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::prior::LoopEvidence;
 use crate::fit::auto::score::Score;
@@ -28,9 +28,9 @@ impl HeldOut {
 
     /// The same, whose errors are relative to the size of their record.
     pub fn by_record(mut self) -> Self {
-        let mean = mean_output(&self.fold.train);
+        let mean = self.fold.train.mean_output();
         let weights = self.fold.held_out.records().iter().flat_map(|record| {
-            let share = self.rows.deviation / size_of(record, mean).max(f64::MIN_POSITIVE);
+            let share = self.rows.deviation / record.output_size(mean).max(f64::MIN_POSITIVE);
             std::iter::repeat_n(share * share, record.scored())
         });
         self.rows.weights = weights.collect();
@@ -70,34 +70,9 @@ impl FoldRows {
     }
 }
 
-/// Ratio of the sizes of the largest and the smallest record from which errors of cut-outs are relative to their record.
-/// Designed.
-const SIZES_DIFFER: f64 = 5.0;
-
-/// True if the outputs of some records are much larger than those of others.
-pub(super) fn sizes_differ(data: &Dataset) -> bool {
-    let mean = mean_output(data);
-    let sizes =
-        data.records().iter().filter(|record| record.scored() > 0).map(|record| size_of(record, mean));
-    let (least, most) =
-        sizes.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), size| (least.min(size), most.max(size)));
-    most > SIZES_DIFFER * least
-}
-
 /// True if errors on these folds are relative to the size of their record.
 pub(super) fn are_by_record(folds: &[HeldOut]) -> bool {
     folds.iter().any(|fold| !fold.rows.weights.is_empty())
-}
-
-fn mean_output(data: &Dataset) -> f64 {
-    let measured = data.records().iter().flat_map(Record::output).filter(|y| !y.is_nan());
-    spread(&measured.copied().collect::<Vec<f64>>()).0
-}
-
-/// Root mean square of the output about this mean.
-fn size_of(record: &Record, mean: f64) -> f64 {
-    let measured = || record.output().iter().filter(|y| !y.is_nan());
-    (measured().map(|y| (y - mean) * (y - mean)).sum::<f64>() / measured().count().max(1) as f64).sqrt()
 }
 
 #[derive(Debug, Clone)]

@@ -89,6 +89,7 @@ impl Identify for DuhemNn {
     ) -> Result<IdentifiedLaw<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         check_effort(options)?;
+        let options = &ClassicalOptions { error: Some(options.fitted_error(data)), ..options.clone() };
         let frame = DuhemFrame::new(data, options)?;
         let whole = DuhemTask::new(&frame, data, options, stop)?;
         // Nothing is to be chosen from a single start, so that it is trained on all data.
@@ -124,8 +125,11 @@ impl Identify for DuhemNn {
         if options.initial_state == Some(InitialState::Free) {
             return with_free_states(model, request, rate).into_iter().enumerate().collect();
         }
+        // Held-out errors are relative to the records only where a known beginning is asked for.
+        let error = options.known.is_none().then_some(FittedError::Row);
         let of = |(shaping, (states, stops, hidden))| ClassicalOptions {
             rate,
+            error,
             shaping,
             states: Some(states),
             operators: Some(stops),
@@ -409,7 +413,7 @@ impl<'a> DuhemTask<'a> {
     ) -> Result<Self> {
         let law = &frame.law;
         let is_free = is_free(options);
-        let error = options.error.unwrap_or(if is_free { FittedError::Record } else { FittedError::Row });
+        let error = options.fitted_error(data);
         let is_by_record = is_free || error == FittedError::Record;
         let (memory, most) = match is_by_record {
             true => (MemoryKind::EveryRow, MOST_COMPARED_BY_RECORD),
