@@ -3,6 +3,8 @@
 mod material;
 mod native;
 
+use hysid_core::model::Model;
+
 use crate::error::Error;
 use crate::reserved;
 use crate::subject::{ExportFile, ExportSubject};
@@ -18,6 +20,11 @@ pub(super) const BACK_END: BackEnd = BackEnd {
     write,
     usage,
 };
+
+/// Turning points of the cycles that a native material is compared over, as shares of half the trained range.
+const TURNS: [f64; 9] = [0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 1.0, 0.5, 1.0];
+
+const ROWS_OF_BRANCH: usize = 50;
 
 /// Kind of thing that a model is exported as.
 const MATERIAL: &str = "a uniaxialMaterial of OpenSees";
@@ -37,7 +44,8 @@ fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
     files.push(ExportFile::new(format!("{name}Material.cpp"), material::source(subject)));
     if let Ok(native) = native::Native::of(subject.model()) {
         files.push(ExportFile::new(format!("{name}.tcl"), native.tcl()));
-        files.push(ExportFile::new(format!("{name}.py"), native.python()));
+        files.push(ExportFile::new(format!("{name}.py"), native.python(name)));
+        files.push(ExportFile::new(format!("{name}_cycles.csv"), cycles(subject.model())));
     }
     Ok(files.into())
 }
@@ -49,11 +57,12 @@ fn usage(subject: &ExportSubject<'_>) -> String {
     let (x, y) = (in_markdown(&names.inputs[0]), in_markdown(&names.output));
     let native = match native::Native::of(model) {
         Ok(native) => format!(
-            "`{name}.tcl` and `{name}.py` define the material with OpenSees' own `{}`, for any OpenSees. Its law is the \
-             same; it {}.\n\n{}",
-            native.command(),
-            "advances it by one implicit step for each change of strain, so its stress approaches that of this model as \
-             the steps become small",
+            "`{name}.tcl` and `{name}.py` define the material with OpenSees' own `{}`, for any OpenSees. {}.\n\n{}\n\n\
+             `python {name}.py` drives it in OpenSeesPy along `{name}_cycles.csv`, cycles of this model over its trained \
+             range, and prints how much it differs, at these steps and at a fiftieth of them. `python {name}.py TABLE.csv X \
+             Y` does the same for a table that `hysid simulate` wrote.",
+            native.materials().join("`, `"),
+            native.agreement(),
             native.constants()
         ),
         Err(reason) => format!("There is no native command for this model: {reason}."),
@@ -62,4 +71,20 @@ fn usage(subject: &ExportSubject<'_>) -> String {
         include_str!("opensees/usage.md.txt"),
         &[("@x@", &x), ("@y@", &y), ("@native@", &native), ("NAME", name)],
     )
+}
+
+/// Cycles of the model over its trained range, as a table: of growing amplitude, with a smaller loop at the end.
+fn cycles(model: &Model) -> String {
+    let (low, high) = model.trained_ranges().inputs[0];
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let mut from = model.input_transform().origin(0);
+    let mut path = Vec::new();
+    for turn in TURNS {
+        let to = middle + turn * half;
+        path.extend((1..=ROWS_OF_BRANCH).map(|row| from + (to - from) * row as f64 / ROWS_OF_BRANCH as f64));
+        from = to;
+    }
+    let mut stepper = model.stepper();
+    let row = |x: f64| Some(format!("{x:?},{:?}\n", stepper.step(&[x], 0.0, None).ok()?));
+    std::iter::once("x,y\n".to_string()).chain(path.into_iter().map_while(row)).collect()
 }

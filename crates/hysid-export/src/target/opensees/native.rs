@@ -1,34 +1,62 @@
-//! The native commands: `BoucWen` and `BWBN`.
-//!
-//! ```text
-//! native:  stress = α k_o ε + (1 - α) k_o z,   dz = [A - |z|^n (γ + β sgn(z dε))]/η dε
-//! ours:    y - c0 = α k x + (1 - α) k z,       z in yield displacements z_u           theory.md (8.4) to (8.11)
-//! ```
-//!
-//! So `β = b/z_u^n` and `γ = (1 - b)/z_u^n`. The native energy is in the unit of work, ours in `(1 - α) k z_u²`.
+//! Native commands of OpenSees that define a model's law.
 
-use hysid_core::elementary::powf;
+mod bouc_wen;
+mod steel;
+mod stops;
+
 use hysid_core::law::Classical;
-use hysid_core::law::bouc_wen::{BoucWen, Degradation};
 use hysid_core::model::Model;
 
-/// A native command.
+use crate::target::template::filled;
+
+/// The native commands of a model.
 pub(super) struct Native {
-    command: &'static str,
-    /// Names and values of the arguments after the tag.
-    arguments: Vec<(&'static str, f64)>,
-    /// Whole numbers behind them.
-    iterations: Option<u32>,
-    /// Constants added to the input and to the stress.
+    /// The material is the last of them, and has the user's tag; its parts have the next tags.
+    commands: Vec<Command>,
+    /// How the native material differs from the model.
+    agreement: &'static str,
+    /// Constants that are added to the input and to the stress.
     origin: f64,
     offset: f64,
 }
 
+/// A `uniaxialMaterial` command.
+struct Command {
+    material: &'static str,
+    arguments: Vec<Argument>,
+}
+
+/// An argument after the tag.
+enum Argument {
+    Number {
+        name: &'static str,
+        value: f64,
+    },
+    Count {
+        name: &'static str,
+        value: u32,
+    },
+    /// The tag of a part: the first one is 1.
+    Part(usize),
+    Flag(&'static str),
+}
+
+/// Commands of a law, how they differ from it, and the constant that they leave out.
+struct NativeLaw {
+    commands: Vec<Command>,
+    agreement: &'static str,
+    offset: f64,
+}
+
 impl Native {
-    /// The command for a model, or why there is none.
+    /// The commands for a model, or why there are none.
     pub fn of(model: &Model) -> Result<Self, String> {
-        let Some(Classical::BoucWen(law)) = model.law() else {
-            return Err(format!("only bouc-wen models have one, and this is {}", model.name().name()));
+        let law = match model.law() {
+            Some(Classical::BoucWen(law)) => bouc_wen::native(law),
+            Some(Classical::MenegottoPinto(law)) => steel::native(law),
+            Some(Classical::PrandtlIshlinskii(law)) => Ok(stops::of_plays(law)),
+            Some(Classical::Masing(law)) => Ok(stops::of_masing(law)),
+            _ => Err(format!("OpenSees has no material with the law of {}", model.name().name())),
         };
         let transform = model.input_transform();
         if transform.companding.is_some() || transform.history.is_some() {
@@ -37,46 +65,24 @@ impl Native {
         if !model.lead_in().is_empty() {
             return Err("it does not begin at rest".into());
         }
-        if law.damping != 0.0 {
-            return Err("its damping (c) belongs to the rate in the data, and the native law has none".into());
-        }
-        let stiffness = law.stiffness();
-        if stiffness == 0.0 {
-            return Err("its initial stiffness is 0, which the native law divides by".into());
-        }
-        let exponent = powf(law.yield_displacement, law.n);
-        let mut arguments = vec![
-            ("alpha", law.alpha()),
-            ("ko", stiffness),
-            ("n", law.n),
-            ("gamma", (1.0 - law.b) / exponent),
-            ("beta", law.b / exponent),
-            ("Ao", 1.0),
-        ];
-        let energy = law.hysteretic_stiffness * law.yield_displacement * law.yield_displacement;
-        let (command, iterations) = match law.degradation {
-            Some(degradation) if degradation.zeta_s != 0.0 => {
-                arguments.extend(pinching(law, &degradation, energy)?);
-                ("BWBN", Some(100))
-            }
-            degradation => {
-                let deltas = degradation.map_or([0.0; 3], |degradation| {
-                    [degradation.delta_a, degradation.delta_nu, degradation.delta_eta]
-                });
-                let names = ["deltaA", "deltaNu", "deltaEta"];
-                arguments.extend(names.into_iter().zip(deltas.map(|delta| delta / energy)));
-                ("BoucWen", None)
-            }
-        };
-        let is_usable = arguments.iter().all(|(_, value)| value.is_finite());
-        if !is_usable {
+        let NativeLaw { commands, agreement, offset } = law?;
+        let is_finite =
+            |argument: &Argument| !matches!(argument, Argument::Number { value, .. } if !value.is_finite());
+        if !commands.iter().flat_map(|command| &command.arguments).all(is_finite) {
             return Err("its parameters are too large in the units of the native law".into());
         }
-        Ok(Self { command, arguments, iterations, origin: transform.origin(0), offset: law.offset })
+        Ok(Self { commands, agreement, origin: transform.origin(0), offset })
     }
 
-    pub fn command(&self) -> &'static str {
-        self.command
+    /// The materials, the main one last.
+    pub fn materials(&self) -> Vec<&'static str> {
+        let mut names: Vec<&'static str> = self.commands.iter().map(|command| command.material).collect();
+        names.dedup();
+        names
+    }
+
+    pub fn agreement(&self) -> &'static str {
+        self.agreement
     }
 
     /// Explains the constants.
@@ -85,64 +91,83 @@ impl Native {
         format!("Its strain is `{strain}` and its stress is `y - {:?}`.", self.offset)
     }
 
+    /// The tag of a command, counted from that of the material.
+    fn tag_of(&self, place: usize) -> usize {
+        if place + 1 == self.commands.len() { 0 } else { place + 1 }
+    }
+
     pub fn tcl(&self) -> String {
-        let names: String = self.arguments.iter().map(|(name, _)| format!(" {name}")).collect();
-        let values: String = self.arguments.iter().map(|(_, value)| format!(" {value:?}")).collect();
-        let (name, value) = self.last(" tolerance iterations", " ");
-        format!(
-            "# {}\n# uniaxialMaterial {} tag{names}{name}\nif {{![info exists tag]}} {{ set tag 1 }}\nuniaxialMaterial {} $tag{values}{value}\n",
-            self.constants(),
-            self.command,
-            self.command
-        )
-    }
-
-    pub fn python(&self) -> String {
-        let values: String =
-            self.arguments.iter().map(|(name, value)| format!("        {value:?},  # {name}\n")).collect();
-        let (_, value) = self.last("", "        ");
-        let last = if value.is_empty() { String::new() } else { format!("{},\n", value.trim_end()) };
-        format!(
-            "\"\"\"{}\"\"\"\n\nimport openseespy.opensees as ops\n\n\ndef define(tag=1):\n    \"\"\"Define the \
-             material.\"\"\"\n    ops.uniaxialMaterial(\n        \"{}\",\n        tag,\n{values}{last}    )\n",
-            self.constants(),
-            self.command
-        )
-    }
-
-    /// Tolerance and iterations, where the command takes them.
-    fn last(&self, name: &str, before: &str) -> (String, String) {
-        match self.iterations {
-            None => (String::new(), String::new()),
-            Some(iterations) if before.len() > 1 => {
-                (name.into(), format!("{before}1e-10,\n{before}{iterations}"))
+        let tag = |part: usize| if part == 0 { "$tag".into() } else { format!("[expr {{$tag + {part}}}]") };
+        let mut text = format!("# {}\nif {{![info exists tag]}} {{ set tag 1 }}\n", self.constants());
+        for (place, Command { material, arguments }) in self.commands.iter().enumerate() {
+            let names: Vec<&str> = arguments.iter().filter_map(Argument::name).collect();
+            if !names.is_empty() {
+                text += &format!("# uniaxialMaterial {material} tag {}\n", names.join(" "));
             }
-            Some(iterations) => (name.into(), format!("{before}1e-10{before}{iterations}")),
+            let values =
+                arguments.iter().map(|argument| format!(" {}", argument.text(tag))).collect::<String>();
+            text += &format!("uniaxialMaterial {material} {}{values}\n", tag(self.tag_of(place)));
         }
+        text
+    }
+
+    pub fn python(&self, name: &str) -> String {
+        let tag = |part: usize| if part == 0 { "tag".into() } else { format!("tag + {part}") };
+        let mut commands = String::new();
+        for (place, Command { material, arguments }) in self.commands.iter().enumerate() {
+            let tag_of = tag(self.tag_of(place));
+            commands += &format!("    ops.uniaxialMaterial(\n        \"{material}\",\n        {tag_of},\n");
+            for argument in arguments {
+                let name = argument.name().map_or(String::new(), |name| format!("  # {name}"));
+                let value = match argument {
+                    Argument::Flag(flag) => format!("\"{flag}\""),
+                    other => other.text(tag),
+                };
+                commands += &format!("        {value},{name}\n");
+            }
+            commands += "    )\n";
+        }
+        let parts = match self.commands.len() - 1 {
+            0 => String::new(),
+            parts => format!("; its parts have the tags from `tag + 1` to `tag + {parts}`"),
+        };
+        filled(
+            include_str!("native.py.txt"),
+            &[
+                ("@constants@", &self.constants()),
+                ("@origin@", &format!("{:?}", self.origin)),
+                ("@offset@", &format!("{:?}", self.offset)),
+                ("@parts@", &parts),
+                ("@commands@", &commands),
+                ("NAME", name),
+            ],
+        )
     }
 }
 
-/// Pinching, which the native law has without degradation of strength and stiffness.
-fn pinching(
-    law: &BoucWen,
-    degradation: &Degradation,
-    energy: f64,
-) -> Result<Vec<(&'static str, f64)>, String> {
-    let Degradation { delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda } = *degradation;
-    if [delta_a, delta_nu, delta_eta] != [0.0; 3] {
-        return Err(
-            "it has both pinching and degradation; of the native laws, BoucWen has no pinching and BWBN no \
-                    degradation of strength and stiffness"
-                .into(),
-        );
+impl Command {
+    fn new(material: &'static str, numbers: impl IntoIterator<Item = (&'static str, f64)>) -> Self {
+        let number = |(name, value)| Argument::Number { name, value };
+        Self { material, arguments: numbers.into_iter().map(number).collect() }
     }
-    let z_u = law.yield_displacement;
-    Ok(vec![
-        ("q", q),
-        ("zetas", zeta_s),
-        ("p", p / energy),
-        ("Shi", psi_0 * z_u),
-        ("deltaShi", delta_psi * z_u / energy),
-        ("lambda", lambda),
-    ])
+}
+
+impl Argument {
+    fn name(&self) -> Option<&'static str> {
+        match self {
+            Self::Number { name, .. } | Self::Count { name, .. } => {
+                Some(name).filter(|name| !name.is_empty()).copied()
+            }
+            Self::Part(_) | Self::Flag(_) => None,
+        }
+    }
+
+    fn text(&self, tag: impl Fn(usize) -> String) -> String {
+        match self {
+            Self::Number { value, .. } => format!("{value:?}"),
+            Self::Count { value, .. } => value.to_string(),
+            Self::Part(part) => tag(*part),
+            Self::Flag(flag) => (*flag).into(),
+        }
+    }
 }
