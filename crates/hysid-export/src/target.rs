@@ -1,5 +1,6 @@
 //! The targets, one a file: each writes programs in its language.
 
+mod abaqus;
 pub(crate) mod c;
 mod fmu;
 mod matlab;
@@ -15,6 +16,8 @@ use crate::subject::{ExportFile, ExportSubject};
 /// Where an exported model is to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
+    /// A user material of Abaqus.
+    Abaqus,
     /// C99.
     C,
     /// A Functional Mock-up Unit.
@@ -31,7 +34,8 @@ pub enum Target {
 
 impl Target {
     /// All targets.
-    pub const ALL: [Self; 6] = [Self::C, Self::Fmu, Self::Matlab, Self::OpenSees, Self::Onnx, Self::Python];
+    pub const ALL: [Self; 7] =
+        [Self::C, Self::Fmu, Self::Matlab, Self::OpenSees, Self::Abaqus, Self::Onnx, Self::Python];
 
     /// The target of a name.
     pub fn named(name: &str) -> Option<Self> {
@@ -46,6 +50,7 @@ impl Target {
     /// Names the target, in a few words.
     pub fn what(self) -> &'static str {
         match self {
+            Self::Abaqus => "user material of Abaqus, in C",
             Self::C => "C99 source code with a test",
             Self::Fmu => "Functional Mock-up Unit, for Simulink, Dymola and others",
             Self::Matlab => "MATLAB without toolboxes, and GNU Octave",
@@ -57,6 +62,7 @@ impl Target {
 
     pub(crate) fn back_end(self) -> &'static BackEnd {
         match self {
+            Self::Abaqus => &abaqus::BACK_END,
             Self::C => &c::BACK_END,
             Self::Fmu => &fmu::BACK_END,
             Self::Matlab => &matlab::BACK_END,

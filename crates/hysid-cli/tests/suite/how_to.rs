@@ -167,6 +167,7 @@ pages! {
     diagnose: "how-to/diagnose.md",
     drift: "how-to/drift.md",
     export_as_fmu: "how-to/export-as-fmu.md",
+    export_to_abaqus: "how-to/export-to-abaqus.md",
     export_to_c: "how-to/export-to-c.md",
     export_to_matlab: "how-to/export-to-matlab.md",
     export_to_onnx: "how-to/export-to-onnx.md",

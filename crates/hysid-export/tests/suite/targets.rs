@@ -1,5 +1,6 @@
 //! Every target: its files are translated and run by the tools of the target, and give the outputs of the library.
 
+mod abaqus;
 mod c;
 mod case;
 mod closed_loop;

@@ -119,7 +119,7 @@ class StoredModel:
 
         Parameters
         ----------
-        to : {"c", "fmu", "matlab", "onnx", "opensees", "python"}
+        to : {"abaqus", "c", "fmu", "matlab", "onnx", "opensees", "python"}
             Where the model is to run.
         folder : path
             The folder of the export. One that is there already is replaced only if Hysid wrote all that is in it.

@@ -220,6 +220,7 @@ impl EnsembleSelection<'_, '_, '_> {
         let FoldBench { work, .. } = self.bench;
         let fit = |model| Ok(Fitted::of(model, work.done()));
         self.drops_what_does_not_fit();
+        self.prefers_starts_with_free_states();
         if let Some(place) = self.place_of_law()
             && let Some(fitted) = self.of_law(place)?
         {

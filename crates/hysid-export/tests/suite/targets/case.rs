@@ -105,3 +105,8 @@ pub fn write(model: &Model, to: Target, options: &Options, folder: &Path) {
         fs::write(path, file.content).unwrap();
     }
 }
+
+/// True for laws with a resonance of their own.
+pub fn has_inertia(name: &str) -> bool {
+    name.starts_with("hysteretic-") || name.contains("resonance=true")
+}

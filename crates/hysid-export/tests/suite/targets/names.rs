@@ -24,7 +24,7 @@ fn run(target: Target, name: &str, folder: &Path) {
     };
     let (c, c_test) = (format!("{name}.c"), format!("{name}_test.c"));
     match target {
-        Target::C | Target::OpenSees => {
+        Target::Abaqus | Target::C | Target::OpenSees => {
             let Some(compiler) = gcc() else { return };
             compiled(&compiler, &["-std=c99", "-ffp-contract=off", &c, &c_test, "-lm", "-o", "the_test"]);
         }
@@ -71,6 +71,7 @@ fn words_of_the_language_are_refused() {
         (Target::C, &["stddef", "StdDef", "string", "con"]),
         (Target::Fmu, &["fmi3", "stdlib", "aux"]),
         (Target::OpenSees, &["Vector", "Uniaxial", "Steel01", "stddef"]),
+        (Target::Abaqus, &["stddef"]),
         (Target::Onnx, &["nul"]),
     ] {
         for &name in words {

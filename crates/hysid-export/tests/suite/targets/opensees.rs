@@ -13,7 +13,7 @@ use hysid_core::law::{Classical, Law as _};
 use hysid_core::model::Predictor;
 use hysid_export::{Error, Options, Target, export};
 
-use super::case::{MODELS, NAME, StepCase, written};
+use super::case::{MODELS, NAME, StepCase, has_inertia, written};
 use super::tools::{python, succeeds, tool};
 use crate::models::data;
 
@@ -30,11 +30,6 @@ const INTERFACE: [(&str, &str); 7] = [
 
 /// Runs the test vectors on the class, and prints the number of differences.
 const DRIVER: &str = include_str!("opensees/driver.cpp.txt");
-
-/// True for laws with a resonance of their own.
-fn has_inertia(name: &str) -> bool {
-    name.starts_with("hysteretic-") || name.contains("resonance=true")
-}
 
 #[test]
 fn the_class_passes_the_test_vectors() {

@@ -8,6 +8,7 @@
 //! needs more than the others show. Candidates that do not fit the data are then left out before all else.
 
 use super::{EnsembleSelection, Trial, ValidatedEnsemble, errors_held_out};
+use crate::fit::auto::combination::Combination;
 use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::are_by_record;
 
@@ -87,6 +88,24 @@ impl EnsembleSelection<'_, '_, '_> {
         let most = FITS * lowest(|one| one.training);
         if most.is_finite() && lowest(|one| one.score) >= TELLS_NOTHING {
             self.keep(all.iter().map(|one| one.is_some_and(|one| one.training <= most)).collect());
+        }
+    }
+
+    /// Keeps the starts of a candidate with free states alone where they predict held-out rows no worse than together with all
+    /// others.
+    pub(super) fn prefers_starts_with_free_states(&mut self) {
+        let folds = self.bench.folds;
+        let error = |trials: &[Trial]| -> Option<f64> {
+            let all = Combination::of(trials, folds, self.evidence, |_| true)?;
+            Some(all.first(self.options.members)?.score(trials, folds).sum())
+        };
+        let is_alone =
+            |trial: &Trial| trial.candidate.has_free_states() && trial.starts.len() > self.options.starts;
+        let alone: Vec<Trial> = self.trials.iter().filter(|trial| is_alone(trial)).cloned().collect();
+        if self.options.only.is_none()
+            && error(&alone).is_some_and(|alone| Some(alone) <= error(&self.trials))
+        {
+            self.keep(self.trials.iter().map(is_alone).collect());
         }
     }
 

@@ -294,13 +294,26 @@ impl Stages<'_, '_, '_> {
         let Some(combination) = Combination::of(&self.trials, folds, self.evidence, |_| true) else { return };
         let is_random = |place: &usize| self.trials[*place].candidate.is_random();
         let places = combination.shares().into_iter().map(|(place, _)| place);
-        let places: Vec<usize> = places.filter(is_random).collect();
-        let further = self.options.starts.saturating_sub(1);
-        work.expect(self.fits_of_further_starts(places.len()));
+        let (places, starts) = match self.best_has_free_states() {
+            Some(best) => (vec![best], self.options.members),
+            None => (places.filter(is_random).collect::<Vec<usize>>(), self.options.starts),
+        };
+        let further = starts.saturating_sub(1);
+        work.expect(places.len() * further * (folds.len() + 1));
         for start in 1..=further {
             self.bench.try_start(&mut self.trials, &places, start);
             self.tell(&places, Standing::Complete);
         }
+    }
+
+    /// The candidate with the lowest error, if it has states of its own and the user did not choose it. Such models differ more
+    /// from start to start than candidates differ from each other.
+    fn best_has_free_states(&self) -> Option<usize> {
+        let score =
+            |&place: &usize| Score::of(&self.trials[place].predicted, self.bench.folds, |_| true).sum();
+        let complete = (0..self.trials.len()).filter(|&place| self.trials[place].is_complete());
+        let best = complete.min_by(|a, b| score(a).total_cmp(&score(b)))?;
+        (self.options.only.is_none() && self.trials[best].candidate.has_free_states()).then_some(best)
     }
 
     /// Drops the candidates with the rate unless they are clearly better than those without, for data in which a
