@@ -246,6 +246,13 @@ impl EnsembleSelection<'_, '_, '_> {
         {
             return Ok(fitted);
         }
+        // A law alone is a law, not an ensemble.
+        if let [leaf] = combination.leaves()
+            && !self.trials[leaf.place].candidate.is_random()
+            && let Some(fitted) = self.of_law(leaf.place)?
+        {
+            return Ok(fitted);
+        }
         let band = self.band(&rows);
         let held_out = self.held_out(&predicted)?;
         Ok(fit(model.with_band_over(band, self.data)?)?.with_held_out(held_out))
