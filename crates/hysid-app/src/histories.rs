@@ -131,7 +131,7 @@ impl Panel<'_> {
         self.area(&from(&predicted.high), &from(&predicted.low))
     }
 
-    /// Lines over time, in front of a band if there is one.
+    /// Lines over time. A band lies on those of the data and behind the last one.
     pub fn chart(
         &self,
         label: &str,
@@ -148,12 +148,13 @@ impl Panel<'_> {
         if band.is_some() {
             legend.push((Colour::Band, format!("{} % band", number(100.0 * self.band, 3))));
         }
-        let lines: Vec<Curve> = lines.iter().map(curve).collect();
+        let mut lines: Vec<Curve> = lines.iter().map(curve).collect();
         let y = Axis::linear(label, reach(&lines, band.as_ref()).into_iter());
-        let curves = band.into_iter().chain(lines).collect();
+        let behind_model = lines.len().saturating_sub(1);
+        lines.splice(behind_model..behind_model, band);
         let description = format!("{label} over {}, record {}", self.time_label, self.record);
         let x = Axis::linear(self.time_label.as_str(), self.time.iter().copied());
-        Chart::on_axes(description, x, y, curves).with_height(height).with_legend(legend)
+        Chart::on_axes(description, x, y, lines).with_height(height).with_legend(legend)
     }
 }
 

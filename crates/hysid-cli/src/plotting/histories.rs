@@ -23,7 +23,7 @@ const MOST_INPUTS: usize = 4;
 
 /// Heights of charts over their width: of the output, of input and error over time, and of the error over the input.
 const OUTPUT: f64 = 0.5;
-const BELOW: f64 = 0.34;
+const BELOW: f64 = 0.42;
 const OVER_INPUT: f64 = 0.6;
 
 /// Output and input of each record over time.
@@ -48,12 +48,15 @@ pub fn histories(subject: &PlotData, width: f64) -> Vec<Chart> {
         let is_alone = lines.len() == 1 && band.is_none();
         let chart = panel.chart(&output, OUTPUT * width, &lines, band);
         let chart = if is_alone { Chart { legend: Vec::new(), ..chart } } else { chart };
-        charts.push(titled(chart, subject, record));
+        let mut of_record = vec![titled(chart, subject, record)];
         for (name, input) in names.inputs.iter().zip(record.inputs()).take(MOST_INPUTS) {
             let line = (Colour::Input, "input", 1.1, &**input);
             let chart = panel.chart(&unit::label(name), BELOW * width, &[line], None);
-            charts.push(Chart { legend: Vec::new(), ..chart });
+            of_record.push(Chart { legend: Vec::new(), ..chart });
         }
+        let lowest = of_record.len() - 1;
+        of_record[..lowest].iter_mut().for_each(|chart| chart.shares_axis = true);
+        charts.extend(of_record);
     }
     charts.into_iter().map(|chart| wide(chart, width)).collect()
 }

@@ -11,8 +11,9 @@ pub struct Appearance {
     pub lines: f64,
     /// True for a drawing in the colours of a light page, without a style sheet.
     pub fixed_colours: bool,
-    /// Room for the texts of the vertical axis, in letters, at least.
+    /// Room for the texts of the vertical axis, in letters, and for the lines of its label, at least.
     pub(super) tick_letters: usize,
+    pub(super) label_lines: usize,
 }
 
 /// Pixels in a millimetre, as in a style sheet: 96 in an inch.
@@ -25,14 +26,21 @@ const TEXT: f64 = 13.0;
 
 impl Appearance {
     pub fn of_page() -> Self {
-        Self { text: TEXT, family: "system-ui".into(), lines: 1.0, fixed_colours: false, tick_letters: 0 }
+        Self {
+            text: TEXT,
+            family: "system-ui".into(),
+            lines: 1.0,
+            fixed_colours: false,
+            tick_letters: 0,
+            label_lines: 1,
+        }
     }
 
     /// As in a printed paper, with text of this size in points.
     pub fn of_print(family: impl Into<String>, points: f64) -> Self {
         let text = points * PIXELS_PER_POINT;
         let lines = (text / TEXT).min(1.0);
-        Self { text, family: family.into(), lines, fixed_colours: true, tick_letters: 0 }
+        Self { text, family: family.into(), lines, fixed_colours: true, tick_letters: 0, label_lines: 1 }
     }
 
     /// Room between the rows of a sheet, in pixels: a legend belongs to the chart below it.

@@ -27,6 +27,12 @@ const HEADER: f64 = 2.0;
 /// Height of the horizontal axis with its label, in sizes of the text.
 const AXIS: f64 = 3.23;
 
+/// The same of an axis without texts.
+const BARE_AXIS: f64 = 0.8;
+
+/// Distance of the lines of a label, in sizes of the text.
+const LABEL_LINE: f64 = 1.3;
+
 /// Room that the legend leaves free on both sides together, in pixels.
 const LEGEND_EDGE: f64 = 40.0;
 
@@ -66,16 +72,58 @@ fn header_height(chart: &Chart, appearance: &Appearance, legend_lines: usize) ->
     }
 }
 
+/// Height of the horizontal axis, in pixels: of the axis alone if the chart below has its ticks and label.
+fn footer_height(chart: &Chart, appearance: &Appearance) -> f64 {
+    appearance.em(if chart.shares_axis { BARE_AXIS } else { AXIS })
+}
+
 /// The vertical axis with its ticks, below a header of this height.
 fn vertical_axis(chart: &Chart, appearance: &Appearance, header: f64) -> Axis {
-    let height = chart.size.1 - header - appearance.em(AXIS);
+    let height = chart.size.1 - header - footer_height(chart, appearance);
     chart.y.clone().with_ticks((height / appearance.em(2.77)) as usize)
 }
 
-/// Letters of the longest text of the vertical axis.
-pub(super) fn tick_letters(chart: &Chart, appearance: &Appearance) -> usize {
+/// Letters of the longest text of the vertical axis, and lines of its label.
+pub(super) fn room_of_axis(chart: &Chart, appearance: &Appearance) -> (usize, usize) {
     let header = header_height(chart, appearance, legend_lines(chart, appearance).len());
-    vertical_axis(chart, appearance, header).longest_text()
+    let height = chart.size.1 - header - footer_height(chart, appearance);
+    let lines = wrapped_label(&chart.y.label, letters_in(height, appearance)).len();
+    (vertical_axis(chart, appearance, header).longest_text(), lines)
+}
+
+/// Letters that fit into this width, in pixels.
+fn letters_in(width: f64, appearance: &Appearance) -> usize {
+    (width / appearance.letter()).max(4.0) as usize
+}
+
+/// Most lines of a label.
+const MOST_LINES: usize = 3;
+
+/// A label in lines of at most `most` letters, broken between words; what does not fit is cut off.
+fn wrapped_label(label: &str, most: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in label.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + word.chars().count() < most => *line += &format!(" {word}"),
+            _ => lines.push(word.to_string()),
+        }
+    }
+    let too_many = lines.split_off(lines.len().min(MOST_LINES));
+    if let Some(last) = lines.last_mut() {
+        too_many.iter().for_each(|more| *last += &format!(" {more}"));
+    }
+    lines.iter().map(|line| shortened(line, most)).collect()
+}
+
+/// The text, cut off where it is longer than `most` letters; its unit stays.
+fn shortened(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_string();
+    }
+    let unit = text.rfind(" (").map_or("", |place| &text[place..]);
+    let unit = if unit.chars().count() + 2 < most { unit } else { "" };
+    let kept = text.chars().take(most - 1 - unit.chars().count());
+    format!("{}…{unit}", kept.collect::<String>())
 }
 
 struct ChartLayout<'a> {
@@ -89,13 +137,16 @@ impl ChartLayout<'_> {
         let legend = legend_lines(chart, appearance);
         let header = header_height(chart, appearance, legend.len());
         let (top, body) = root.split_vertically(fine(header));
-        let bottom = appearance.em(AXIS);
+        let bottom = footer_height(chart, appearance);
         let x = chart.x.clone().with_ticks((chart.size.0 / appearance.em(7.0)) as usize);
         let y = vertical_axis(chart, appearance, header);
         // Charts below each other share their horizontal axis, so their labels get the same room.
         let least = if chart.size.0 > 800.0 { 6 } else { 0 };
         let letters = y.longest_text().max(least).max(appearance.tick_letters);
-        let left = appearance.em(2.6) + appearance.letter() * letters as f64;
+        let label = wrapped_label(&y.label, letters_in(chart.size.1 - header - bottom, appearance));
+        let lines = label.len().max(appearance.label_lines);
+        let of_label = appearance.em(LABEL_LINE) * (lines - 1) as f64;
+        let left = appearance.em(2.6) + of_label + appearance.letter() * letters as f64;
         self.draw_header(&top, EDGE + left, &legend)?;
         let mut context = ChartBuilder::on(&body)
             .margin_left(fine(EDGE))
@@ -111,13 +162,28 @@ impl ChartLayout<'_> {
             .set_all_tick_mark_size(fine(4.0))
             .label_style(self.text_style())
             .axis_desc_style(self.text_style())
-            .x_label_formatter(&|tick| x.text(*tick))
+            .x_label_formatter(&|tick| if chart.shares_axis { String::new() } else { x.text(*tick) })
             .y_label_formatter(&|tick| y.text(*tick))
-            .x_desc(self.shortened(&x.label, chart.size.0 - left))
-            .y_desc(self.shortened(&y.label, chart.size.1 - header - bottom))
+            .x_desc(if chart.shares_axis {
+                String::new()
+            } else {
+                shortened(&x.label, letters_in(chart.size.0 - left, appearance))
+            })
             .draw()?;
+        self.draw_label(&body, &label, chart.size.1 - header - bottom)?;
         let (across, down) = context.plotting_area().get_pixel_range();
         Ok([across.start, down.start, across.end - across.start, down.end - down.start])
+    }
+
+    /// The label of the vertical axis, upwards along its middle.
+    fn draw_label(&self, body: &Area, lines: &[String], height: f64) -> Drawn {
+        let style =
+            self.text_style().pos(Pos::new(HPos::Center, VPos::Top)).transform(FontTransform::Rotate270);
+        for (number, line) in lines.iter().enumerate() {
+            let left = EDGE + self.appearance.em(LABEL_LINE * number as f64);
+            body.draw(&Text::new(line.clone(), (fine(left), fine(0.5 * height)), style.clone()))?;
+        }
+        Ok(())
     }
 
     /// Title and legend; the legend goes on below where it is too long for a line.
@@ -126,7 +192,9 @@ impl ChartLayout<'_> {
         let middle = |line: usize| fine(appearance.em(1.0 + LEGEND_LINE * line as f64));
         let style = || self.text_style().pos(Pos::new(HPos::Left, VPos::Center));
         let widest = legend.iter().map(|line| width_of(line, appearance)).fold(0.0, f64::max);
-        let title = self.shortened(&chart.title, chart.size.0 - left - widest - RIGHT);
+        let beside = legend.first().map_or(0.0, |line| width_of(line, appearance));
+        let room = letters_in(chart.size.0 - left - beside - RIGHT, appearance);
+        let title = shortened(&chart.title, room);
         area.draw(&Text::new(title, (fine(left), middle(0)), style()))?;
         // Without a title the legend comes first, where a narrow screen that scrolls shows it.
         let room = chart.size.0 - RIGHT - widest;
@@ -153,15 +221,6 @@ impl ChartLayout<'_> {
         let font = (self.appearance.family.as_str(), 1.24 * FINE * self.appearance.text).into_font();
         TextStyle::from(font).color(&INK)
     }
-
-    /// The text, cut off where it would not fit into the width.
-    fn shortened(&self, text: &str, width: f64) -> String {
-        let room = (width / self.appearance.letter()).max(4.0) as usize;
-        if text.chars().count() <= room {
-            return text.to_string();
-        }
-        text.chars().take(room - 1).chain(std::iter::once('…')).collect()
-    }
 }
 
 /// Length of the line of an entry of the legend, in sizes of the text.
@@ -173,7 +232,11 @@ const BEFORE_NAME: f64 = 1.77;
 /// From an entry's name to the next entry, in sizes of the text.
 const AFTER_NAME: f64 = 1.08;
 
-/// Entries of the legend whose colour is drawn, in as many lines as they need.
+/// Room to the left of a title, in sizes of the text.
+const BEFORE_TITLE: f64 = 9.0;
+
+/// Entries of the legend whose colour is drawn, in as many lines as they need. The first line is empty where the title needs
+/// it.
 pub(super) fn legend_lines<'c>(chart: &'c Chart, appearance: &Appearance) -> Vec<Vec<&'c (Colour, String)>> {
     let is_used =
         |colour| chart.curves.iter().any(|curve| curve.colour == colour && !curve.points.is_empty());
@@ -184,6 +247,12 @@ pub(super) fn legend_lines<'c>(chart: &'c Chart, appearance: &Appearance) -> Vec
             Some(line) if width_of(line, appearance) <= room => line.push(entry),
             _ => lines.push(vec![entry]),
         }
+    }
+    let title = appearance.em(BEFORE_TITLE) + appearance.letter() * chart.title.chars().count() as f64;
+    if !chart.title.is_empty()
+        && lines.first().is_some_and(|line| title + width_of(line, appearance) > chart.size.0)
+    {
+        lines.insert(0, Vec::new());
     }
     lines
 }

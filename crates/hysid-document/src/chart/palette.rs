@@ -31,7 +31,7 @@ const SIMULATED: Tone = tone((0x00, 0x60, 0xD0), "#0a5fd1", "#62a8ff");
 const INPUT: Tone = tone((0x20, 0x80, 0x40), "#1a7f4b", "#4cc38a");
 const ERROR: Tone = tone((0xC0, 0x40, 0x20), "#c2410c", "#ff8a5c");
 const FAINT: Tone = tone((0xB0, 0xB0, 0xB0), "#b6bdc6", "#5b6470");
-const BAND: Tone = tone((0xA0, 0xC8, 0xF0), "#0a5fd12e", "#62a8ff3d");
+const BAND: Tone = tone((0xA0, 0xC8, 0xF0), "#0a5fd14d", "#62a8ff59");
 
 /// The series differ in hue and in lightness.
 const ONE_OF_SERIES: [Tone; SERIES] = [

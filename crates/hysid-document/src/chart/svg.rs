@@ -3,7 +3,7 @@
 use super::Chart;
 use super::appearance::{Appearance, PIXELS_PER_MILLIMETRE};
 use super::curves::{attributes, curves};
-use super::frame::{FINE, frame, tick_letters};
+use super::frame::{FINE, frame, room_of_axis};
 use super::palette::{fixed, style};
 use crate::escape::escape;
 
@@ -41,9 +41,10 @@ pub fn sheet(
     // On paper a drawing has no margin around it: the label of the lowest axis needs a little.
     let begin = if appearance.fixed_colours { -appearance.em(0.3) } else { 0.0 };
     let (mut drawn, mut top) = (String::new(), begin);
-    let appearance =
-        &Appearance { tick_letters: shared_letters(charts, columns, appearance), ..appearance.clone() };
-    for row in charts.chunks(columns) {
+    let (tick_letters, label_lines) = shared_room(charts, columns, appearance);
+    let appearance = &Appearance { tick_letters, label_lines, ..appearance.clone() };
+    let rows = charts.chunks(columns).len();
+    for (number, row) in charts.chunks(columns).enumerate() {
         for (place, chart) in row.iter().enumerate() {
             // A drawing has no size of its own: the element around it determines place and size.
             let (x, (width, height)) = (widest * place as f64, chart.size);
@@ -51,9 +52,12 @@ pub fn sheet(
             drawn +=
                 &format!("<svg x=\"{x}\" y=\"{top}\" width=\"{width}\" height=\"{height}\">\n{one}</svg>\n");
         }
-        top += row.iter().map(|chart| chart.size.1).fold(0.0, f64::max) + gap;
+        top += row.iter().map(|chart| chart.size.1).fold(0.0, f64::max);
+        // A chart that shares the axis of the next one belongs to it.
+        let is_shared = row.iter().all(|chart| chart.shares_axis);
+        top += if number + 1 == rows || is_shared { 0.0 } else { gap };
     }
-    let (width, height) = (widest * columns as f64, top - gap - begin);
+    let (width, height) = (widest * columns as f64, top - begin);
     let background = match appearance.fixed_colours {
         true => format!("<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>"),
         false => format!("<style>{}{STANDALONE}</style>", style()),
@@ -74,10 +78,14 @@ pub fn sheet(
     )
 }
 
-/// Room for the texts of the vertical axes of charts in one column, which makes these begin at the same place.
-fn shared_letters(charts: &[Chart], columns: usize, appearance: &Appearance) -> usize {
-    let letters = charts.iter().map(|chart| tick_letters(chart, appearance)).max();
-    if columns == 1 { letters.unwrap_or(0) } else { 0 }
+/// Letters and lines of the texts of the vertical axes of charts in one column, which makes these begin at the same place.
+fn shared_room(charts: &[Chart], columns: usize, appearance: &Appearance) -> (usize, usize) {
+    let own = (appearance.tick_letters, appearance.label_lines);
+    if columns > 1 {
+        return own;
+    }
+    let rooms = charts.iter().map(|chart| room_of_axis(chart, appearance));
+    rooms.fold(own, |(letters, lines), (more, further)| (letters.max(more), lines.max(further)))
 }
 
 /// The `svg` element; `outer` are further attributes of it and `beginning` its first content, both markup.

@@ -14,6 +14,7 @@ fn chart(points: Vec<Point>) -> Chart {
         y: Axis::linear("y", points.iter().map(|p| p.1)),
         curves: vec![Curve::new(points, Colour::Simulated, 1.5)],
         legend: vec![(Colour::Simulated, "model".into())],
+        shares_axis: false,
     }
 }
 
@@ -96,6 +97,47 @@ fn a_long_legend_goes_on_below_and_unused_colours_are_left_out() {
     let lines: Vec<usize> = legend_lines(&chart, &Appearance::of_page()).iter().map(Vec::len).collect();
     assert_eq!(lines, [2, 2]);
     assert_balanced(&chart.svg());
+}
+
+/// Texts of a drawing.
+fn texts(drawing: &str) -> Vec<&str> {
+    let text = |part: &'_ str| -> usize { part.find("</text>").unwrap() };
+    drawing.split("<text").skip(1).map(|part| part[part.find('>').unwrap() + 1..text(part)].trim()).collect()
+}
+
+#[test]
+fn a_long_label_has_several_lines_and_its_unit_stays() {
+    let curve = || chart(vec![(0.0, 0.0), (1.0, 1.0)]).curves;
+    let of = |label: &str, height: f64| {
+        let y = Axis::linear(label, [0.0, 1.0].into_iter());
+        Chart::on_axes("", Axis::linear("x", [0.0, 1.0].into_iter()), y, curve()).with_height(height).svg()
+    };
+    let wide = of("Lateral Displacement Top (mm)", 160.0);
+    assert!(texts(&wide).windows(3).any(|lines| lines == ["Lateral", "Displacement", "Top (mm)"]), "{wide}");
+    let one = of("Verschiebungsaufnehmer (mm)", 160.0);
+    assert!(texts(&one).windows(2).any(|lines| lines == ["Verschiebungsa…", "(mm)"]), "{:?}", texts(&one));
+}
+
+#[test]
+fn a_title_has_a_line_of_its_own_where_the_legend_leaves_no_room() {
+    let long =
+        Chart { title: "a record with a long name of its own".into(), ..chart(vec![(0.0, 0.0), (1.0, 1.0)]) };
+    let lines = |width: f64| -> Vec<usize> {
+        let chart = long.clone().sized(width, 360.0);
+        legend_lines(&chart, &Appearance::of_page()).iter().map(Vec::len).collect()
+    };
+    assert_eq!((lines(800.0), lines(420.0)), (vec![1], vec![0, 1]));
+    assert!(texts(&long.sized(420.0, 360.0).svg()).contains(&"a record with a long name of its own"));
+}
+
+#[test]
+fn charts_above_each_other_share_one_axis_and_its_label() {
+    let mut upper = chart(vec![(0.0, 0.0), (10.0, 1.0)]);
+    upper.shares_axis = true;
+    let lower = Chart { shares_axis: false, ..upper.clone() };
+    let drawing = sheet(&[upper, lower], 1, &Appearance::of_page(), "", "Hysid 1");
+    let count = |text: &str| texts(&drawing).iter().filter(|found| **found == text).count();
+    assert_eq!((count("x &lt;mm&gt;"), count("10"), count("1.0")), (1, 1, 2), "{:?}", texts(&drawing));
 }
 
 #[test]
