@@ -1,7 +1,6 @@
 //! The page of a comparison: table, error against size, loops of every model.
 
 use hysid::data::record::Dataset;
-use hysid_core::elementary::ln;
 use hysid_document::chart::thin::thin;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Result, Table, unit};
 
@@ -46,7 +45,9 @@ impl CompareOutcome {
         );
         parts.push(Part::section("Errors", [Part::Table(rows_table(rows)), Part::note(words)]));
         if !fitted.is_empty() {
-            parts.push(Part::section("Error against size", [Part::chart(size_chart(&fitted, data))]));
+            let words = "A dot for each model. Named are the six with the lowest errors, and those that no other model beats in both.";
+            let chart = Part::chart(size_chart(&fitted, data));
+            parts.push(Part::section("Error against size", [Part::note(words), chart]));
             let tracks = Tracks::of(data, shown);
             let loops = fitted.iter().map(|(name, fitted)| loops(name, fitted, data, shown, tracks.clone()));
             let loops = loops.collect::<Result<_>>()?;
@@ -96,24 +97,35 @@ fn size_chart(fitted: &[(&str, &ComparedFit)], data: &str) -> Chart {
     // Room for the text to the right of the last point.
     let x = Axis::logarithmic("parameters", points.iter().flat_map(|point| [point.0, 4.0 * point.0]));
     let y = Axis::logarithmic(format!("error on {data} (% of std)"), points.iter().map(|point| point.1));
-    let labels = labels(fitted.iter().map(|(name, _)| *name).zip(points.iter().copied()));
+    let all = fitted.iter().map(|(name, _)| *name).zip(points.iter().copied()).enumerate();
+    let named = all.filter(|(place, (_, point))| *place < NAMED || is_on_front(*point, &points));
+    let labels = labels(named.map(|(_, named)| named), &x, &y);
     let curves = points.iter().map(|&point| Curve::new(vec![point], Colour::Simulated, 3.0)).collect();
     let description = format!("Error on {data} against number of parameters, a dot for each model");
-    Chart { labels, ..Chart::on_axes(description, x, y, curves) }.with_height(400.0)
+    Chart { labels, ..Chart::on_axes(description, x, y, curves) }.with_height(SIZE_CHART.1)
 }
 
+/// True if no other model has both a lower error and at most as many parameters, or the same error and fewer.
+fn is_on_front((n, error): (f64, f64), all: &[(f64, f64)]) -> bool {
+    !all.iter().any(|&(fewer, lower)| fewer <= n && lower <= error && (fewer, lower) != (n, error))
+}
+
+/// Models of the lowest errors that are named in any case.
+const NAMED: usize = 6;
+
+/// Width of the page's charts and height of this one, in pixels.
+const SIZE_CHART: (f64, f64) = (860.0, 400.0);
+
 /// The names beside their points; where two would overlap, the later stands higher.
-fn labels<'a>(named: impl Iterator<Item = (&'a str, (f64, f64))>) -> Vec<Label> {
-    // About so many pixels for a factor of e on the chart.
-    const PIXELS: (f64, f64) = (120.0, 70.0);
+fn labels<'a>(named: impl Iterator<Item = (&'a str, (f64, f64))>, x: &Axis, y: &Axis) -> Vec<Label> {
     const TEXT: (f64, f64) = (7.2, 14.0);
     let mut placed: Vec<Label> = Vec::new();
     for (name, point) in named {
         let mut rise = 0.0;
         let overlaps = |rise: f64| {
             placed.iter().any(|other| {
-                let dx = PIXELS.0 * ln(point.0 / other.point.0);
-                let dy = PIXELS.1 * ln(point.1 / other.point.1) + rise - other.rise;
+                let dx = SIZE_CHART.0 * (x.place(point.0) - x.place(other.point.0));
+                let dy = SIZE_CHART.1 * (y.place(point.1) - y.place(other.point.1)) + rise - other.rise;
                 let width = if dx < 0.0 { name.len() } else { other.text.len() } as f64 * TEXT.0;
                 dx.abs() < width && dy.abs() < TEXT.1
             })

@@ -104,7 +104,7 @@ impl Axis {
     }
 
     /// Place of a value along the axis: 0 at its beginning, 1 at its end, and not much beyond either.
-    pub(super) fn place(&self, value: f64) -> f64 {
+    pub fn place(&self, value: f64) -> f64 {
         let value = if self.logarithmic { log10(value.max(f64::MIN_POSITIVE)) } else { value };
         ((value - self.low) / (self.high - self.low)).clamp(-MOST_BEYOND, 1.0 + MOST_BEYOND)
     }
