@@ -15,7 +15,9 @@ use std::path::{Path, PathBuf};
 
 use hysid::Model;
 use hysid::data::record::Dataset;
-use hysid::diagnosis::cycles::{Correction, CycleOptions, CycleTable, FIGURES, Figure, corrected};
+use hysid::diagnosis::cycles::{
+    Correction, CycleOptions, CycleTable, FIGURES, Figure, LEVEL_FIGURES, corrected,
+};
 use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
 use hysid_document::visible::clipped;
@@ -25,7 +27,7 @@ use crate::quantities::Quantities;
 
 pub use page::page;
 #[cfg(feature = "tables")]
-pub use tables::{BEGINNING, BEGINNING_OF_CURVES, csv, curves_csv};
+pub use tables::{BEGINNING, SideTable, csv, side_tables};
 pub use text::text;
 
 pub struct Cycles<'a> {
@@ -101,10 +103,13 @@ impl<'a> Cycles<'a> {
     }
 
     pub fn json(&self, files: &Files) -> Result<String> {
-        let named = |figure: &Figure| {
-            let named = self.quantities.as_figure(figure.name, figure.quantity);
-            (figure.name, hysid::data::unit::of_column(&named))
-        };
+        let cycles = self.figures().map(|figure| (figure.name, figure.quantity));
+        let records = self.table.figures.iter().map(|figure| (figure.kind.name, figure.kind.quantity));
+        let levels = LEVEL_FIGURES.iter().filter(|_| !self.table.levels.is_empty());
+        let all = cycles.chain(levels.map(|figure| (figure.name, figure.quantity))).chain(records);
+        let named = all.map(|(name, quantity)| {
+            (name, hysid::data::unit::of_column(&self.quantities.as_figure(name, quantity)))
+        });
         Ok(hysid_document::json(&object! {
             input: &self.quantities.input,
             output: &self.quantities.output,
@@ -112,9 +117,10 @@ impl<'a> Cycles<'a> {
             of_model: self.of_model,
             table: files.table.as_deref(),
             page: files.page.as_deref(),
-            curves: files.curves.as_deref(),
-            /// Unit of each figure of the field, where the units of the columns are known.
-            units: self.figures().map(named).collect::<BTreeMap<_, _>>(),
+            /// Further tables by the name of their contents.
+            tables: &files.further,
+            /// Unit of each figure, where the units of the columns are known.
+            units: named.collect::<BTreeMap<_, _>>(),
             #[serde(flatten)]
             cycles: &self.table,
             reversal_curves: self.curves.as_ref(),
@@ -142,8 +148,8 @@ impl<'a> Cycles<'a> {
 pub struct Files {
     pub table: Option<PathBuf>,
     pub page: Option<PathBuf>,
-    /// The table of reversal curves.
-    pub curves: Option<PathBuf>,
+    /// Further tables by the name of their contents.
+    pub further: BTreeMap<&'static str, PathBuf>,
 }
 
 /// Drive of a model, label and text.

@@ -26,6 +26,12 @@ pub fn figure_names() -> Vec<&'static str> {
     hysid::diagnosis::cycles::FIGURES.iter().map(|figure| figure.name).collect()
 }
 
+/// Names of the figures of an amplitude level, in the order of the columns.
+#[pyfunction]
+pub fn level_figure_names() -> Vec<&'static str> {
+    hysid::diagnosis::cycles::LEVEL_FIGURES.iter().map(|figure| figure.name).collect()
+}
+
 /// The cycles and first-order reversal curves of data, as JSON.
 #[pyfunction]
 #[pyo3(signature = (data, smallest_reversal, smoothing, division, field, smoothing_factor))]

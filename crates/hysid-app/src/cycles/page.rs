@@ -1,8 +1,9 @@
 //! The page: pictures, the whole table, first-order reversal curves, and how the data were read.
 
+use hysid::diagnosis::cycles::{LEVEL_FIGURES, RecordFigure};
 use hysid_document::{Colour, Page, Part, Text, number, unit};
 
-use super::table::{has_backbone, notes, present, shown};
+use super::table::{has_backbone, levels, notes, present, record_figures, shown};
 use super::text::{begin, both_ends};
 use super::{Cycles, curves, over_amplitude, pictures};
 
@@ -30,6 +31,8 @@ pub fn page(cycles: &Cycles) -> Page {
     if !cycles.table.cycles.is_empty() {
         parts.push(table_section(cycles));
     }
+    parts.extend(record_section(cycles));
+    parts.extend(levels_section(cycles));
     parts.extend(backbone_section(cycles));
     parts.extend(losses_section(cycles));
     parts.extend(curves_section(cycles));
@@ -51,6 +54,24 @@ fn table_section(cycles: &Cycles) -> Part {
         parts.push(Part::Folded("Notes".into(), vec![Part::warnings(&notes)]));
     }
     Part::section("Cycles", parts)
+}
+
+/// The figures of records, each with its symbol and source.
+fn record_section(cycles: &Cycles) -> Option<Part> {
+    let label = |figure: &RecordFigure, name: &str| format!("{}, {}", figure.kind.symbol, unit::label(name));
+    let table = record_figures(cycles, label)?;
+    let mut sources: Vec<&str> = cycles.table.figures.iter().map(|figure| figure.kind.source).collect();
+    sources.dedup();
+    let sources = format!("Definitions: docs/cycles.md, after {}.", sources.join("; "));
+    Some(Part::section("Figures of the record", [Part::Table(table), Part::note(sources)]))
+}
+
+fn levels_section(cycles: &Cycles) -> Option<Part> {
+    let names: Vec<&str> = LEVEL_FIGURES.iter().map(|figure| figure.name).collect();
+    let words = "A level has successive cycles whose amplitudes differ by less than 5 %. Losses are from its first cycle \
+                 to its last.";
+    levels(cycles, &names, unit::label)
+        .map(|table| Part::section("Levels of amplitude", [Part::Table(table), Part::note(words)]))
 }
 
 fn backbone_section(cycles: &Cycles) -> Option<Part> {

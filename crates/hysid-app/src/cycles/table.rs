@@ -1,6 +1,6 @@
 //! Rows of the table of cycles for text and page.
 
-use hysid::diagnosis::cycles::{CycleRow, Field, Figure, FigureQuantity};
+use hysid::diagnosis::cycles::{CycleRow, Field, Figure, FigureQuantity, LEVEL_FIGURES, RecordFigure};
 use hysid_document::{Cell, Table};
 
 use super::Cycles;
@@ -67,7 +67,85 @@ pub fn notes(cycles: &Cycles) -> Vec<String> {
         count if count == cycles.table.cycles.len() => format!("all cycles: {note}"),
         _ => format!("cycles {}: {note}", hysid_document::visible::listed(&rows)),
     };
-    all.into_iter().map(said).chain(cycles.table.notes.iter().cloned()).collect()
+    all.into_iter().map(said).chain(cycles.table.notes.iter().cloned()).chain(record_notes(cycles)).collect()
+}
+
+/// The levels of structures with those of the named figures that any level has; `None` for a single level.
+pub fn levels(cycles: &Cycles, names: &[&str], label: impl Fn(&str) -> String) -> Option<Table> {
+    let rows = &cycles.table.levels;
+    let has = |figure: &&Figure<_>| {
+        names.contains(&figure.name) && rows.iter().any(|row| (figure.of)(row).is_some())
+    };
+    let figures: Vec<_> = LEVEL_FIGURES.iter().filter(has).collect();
+    let heading = |figure: &&Figure<_>| label(&cycles.quantities.as_figure(figure.label, figure.quantity));
+    let is_several = cycles.data.records().len() > 1;
+    let mut table =
+        Table::new(["level".to_string(), "cycles".into()].into_iter().chain(figures.iter().map(heading)));
+    for row in rows {
+        let name = if is_several { format!("{}/{}", row.record, row.level) } else { row.level.to_string() };
+        let values = figures.iter().map(|figure| Cell::number((figure.of)(row), 4));
+        table.push([Cell::Text(name), row.cycles.into()].into_iter().chain(values));
+    }
+    (rows.len() > 1).then_some(table)
+}
+
+/// The figures of records that have a value: a row for each figure, a column for each part of a record. `label` makes a
+/// heading of a figure and its name with unit.
+pub fn record_figures(cycles: &Cycles, label: impl Fn(&RecordFigure, &str) -> String) -> Option<Table> {
+    let known: Vec<&RecordFigure> =
+        cycles.table.figures.iter().filter(|figure| figure.value.is_some()).collect();
+    let is_several = known.iter().any(|figure| figure.record != known[0].record);
+    let mut parts: Vec<&str> = Vec::new();
+    let mut rows: Vec<(&str, &str, String)> = Vec::new();
+    for figure in &known {
+        if !parts.contains(&figure.of.as_str()) {
+            parts.push(&figure.of);
+        }
+        if !rows.iter().any(|(record, name, _)| (*record, *name) == (&figure.record, figure.kind.name)) {
+            let named = cycles.quantities.as_figure(figure.kind.label, figure.kind.quantity);
+            let label = label(figure, &named);
+            let heading = if is_several { format!("{}: {label}", figure.record) } else { label };
+            rows.push((&figure.record, figure.kind.name, heading));
+        }
+    }
+    let heading = |part: &&str| if part.is_empty() { "value".to_string() } else { part.to_string() };
+    let mut table = Table::new(std::iter::once("figure".to_string()).chain(parts.iter().map(heading)));
+    for (record, name, heading) in &rows {
+        let cell = |part: &&str| {
+            let is_it = |figure: &&&RecordFigure| {
+                (figure.record.as_str(), figure.kind.name, figure.of.as_str()) == (*record, *name, *part)
+            };
+            let Some(figure) = known.iter().find(is_it) else { return "".into() };
+            let value = Cell::number(figure.value, 4);
+            match figure.deviation {
+                Some(deviation) => {
+                    Cell::Text(format!("{} ± {}", value.shown(), hysid_document::number(deviation, 2)))
+                }
+                None => value,
+            }
+        };
+        table.push(std::iter::once(Cell::Text(heading.clone())).chain(parts.iter().map(cell)));
+    }
+    (!rows.is_empty()).then_some(table)
+}
+
+/// Notes of the figures of records, each with the parts that it concerns.
+fn record_notes(cycles: &Cycles) -> Vec<String> {
+    let mut all: Vec<(String, Vec<&str>)> = Vec::new();
+    for figure in &cycles.table.figures {
+        let Some(note) = &figure.note else { continue };
+        let note = format!("{}: {note}", figure.kind.label);
+        match all.iter_mut().find(|(known, _)| *known == note) {
+            Some((_, parts)) if parts.contains(&figure.of.as_str()) => {}
+            Some((_, parts)) => parts.push(&figure.of),
+            None => all.push((note, vec![&figure.of])),
+        }
+    }
+    let with_parts = |(note, parts): (String, Vec<&str>)| match parts[..] {
+        [""] => note,
+        _ => format!("{note} ({})", parts.join(", ")),
+    };
+    all.into_iter().map(with_parts).collect()
 }
 
 /// Figures of the field that any cycle has, in the order of the list.

@@ -46,8 +46,10 @@ pub fn text(cycles: &Cycles) -> String {
     if !cycles.table.cycles.is_empty() {
         blocks.push(rendered(&[Part::Table(main_table(cycles))]));
     }
+    blocks.extend(levels(cycles));
     blocks.extend(losses(cycles));
     blocks.extend(backbone(cycles));
+    blocks.extend(record_figures(cycles));
     blocks.extend(curves(cycles));
     let notes: String = notes(cycles).iter().map(|note| indented(&format!("- {note}"), 2)).collect();
     if !notes.is_empty() {
@@ -87,6 +89,38 @@ fn main_table(cycles: &Cycles) -> Table {
     let mut table = shown(cycles, &figures, places, text_label);
     for cell in table.rows.iter_mut().flatten() {
         *cell = Cell::Text(cell.ascii());
+    }
+    table
+}
+
+fn levels(cycles: &Cycles) -> Option<String> {
+    let names = [
+        "amplitude",
+        "output_first",
+        "strength_loss_percent",
+        "energy_first",
+        "energy_mean",
+        "damping_percent",
+    ];
+    let table = super::table::levels(cycles, &names, text_label)?;
+    Some(format!("levels of amplitude\n{}", rendered(&[Part::Table(shortened(table))])))
+}
+
+fn record_figures(cycles: &Cycles) -> Option<String> {
+    let table = super::table::record_figures(cycles, |_, name| text_label(name))?;
+    Some(format!("figures of the record\n{}", rendered(&[Part::Table(shortened(table))])))
+}
+
+/// Both ends of a long table, in ASCII.
+fn shortened(mut table: Table) -> Table {
+    let rows = table.rows.len();
+    let shown: Vec<usize> = both_ends(rows, AT_EACH_END).collect();
+    table.rows = shown.iter().map(|&row| std::mem::take(&mut table.rows[row])).collect();
+    for cell in table.rows.iter_mut().flatten() {
+        *cell = Cell::Text(cell.ascii());
+    }
+    if shown.len() < rows {
+        table.rows.insert(AT_EACH_END, vec!["…".into(), format!("{} more", rows - shown.len()).into()]);
     }
     table
 }

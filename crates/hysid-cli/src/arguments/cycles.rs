@@ -25,8 +25,8 @@ pub struct Cycles {
     pub files: Vec<PathBuf>,
     /// Table to write [default: name of the file with `.cycles.csv`; `-` is stdout]
     ///
-    /// The default is in the current folder and named after the first file. The page has the same name with `.html`; the
-    /// table of first-order reversal curves, if there are any, has it with `.forc.csv`.
+    /// The default is in the current folder and named after the first file. The page has the same name with `.html`;
+    /// further tables, if the data have them, have it with `.figures.csv`, `.levels.csv` and `.forc.csv`.
     #[arg(short, long, value_name = "TABLE.csv")]
     pub out: Option<PathBuf>,
     #[command(flatten)]

@@ -1,9 +1,10 @@
-//! The figures of a cycle: name, unit, fields and definition, declared once.
+//! The figures of a cycle and of an amplitude level: name, unit, fields and definition, declared once.
 
 use Field::{Actuator, General, Magnet, Structure};
-use FigureQuantity::{Creep, Energy, Frequency, Input, Output, Percent, Power, Stiffness, Time};
+use FigureQuantity::{Creep, Energy, Frequency, Input, Output, Percent, Power, Ratio, Stiffness, Time};
 
 use super::field::Field;
+use super::levels::LevelRow;
 use super::row::CycleRow;
 
 /// Quantity whose unit a figure has.
@@ -27,11 +28,13 @@ pub enum FigureQuantity {
     Frequency,
     /// In percent.
     Percent,
+    /// A number without unit.
+    Ratio,
 }
 
-/// A figure of a cycle.
+/// A figure of a row: of a cycle, or of an amplitude level.
 #[derive(Debug, Clone, Copy)]
-pub struct Figure {
+pub struct Figure<R = CycleRow> {
     /// Its name in tables, in JSON and in Python.
     pub name: &'static str,
     /// Name of the figure, in a few words.
@@ -40,11 +43,11 @@ pub struct Figure {
     pub quantity: FigureQuantity,
     /// The fields in whose tables it is; [`Field::General`] has all.
     pub fields: &'static [Field],
-    /// Its value for a cycle.
-    pub of: fn(&CycleRow) -> Option<f64>,
+    /// Its value in a row.
+    pub of: fn(&R) -> Option<f64>,
 }
 
-impl Figure {
+impl<R> Figure<R> {
     /// True if the tables of the field have it.
     pub fn is_of(&self, field: Field) -> bool {
         field == General || self.fields.contains(&field)
@@ -54,9 +57,9 @@ impl Figure {
 const ALL: &[Field] = &Field::ALL;
 
 macro_rules! figures {
-    ($($name:ident, $label:literal, $quantity:expr, $fields:expr;)*) => {
+    ($all:ident of $row:ty: $($name:ident, $label:literal, $quantity:expr, $fields:expr;)*) => {
         /// All figures, in the order of the columns of a table.
-        pub const FIGURES: &[Figure] = &[$(Figure {
+        pub const $all: &[Figure<$row>] = &[$(Figure {
             name: stringify!($name),
             label: $label,
             quantity: $quantity,
@@ -67,6 +70,7 @@ macro_rules! figures {
 }
 
 figures! {
+    FIGURES of CycleRow:
     start_time, "start", Time, ALL;
     period, "period", Time, ALL;
     frequency, "frequency", Frequency, ALL;
@@ -98,4 +102,21 @@ figures! {
     creep, "creep", Output, &[Actuator];
     creep_percent, "creep", Percent, &[Actuator];
     creep_per_decade, "creep per decade", Creep, &[Actuator];
+}
+
+figures! {
+    LEVEL_FIGURES of LevelRow:
+    amplitude, "amplitude", Input, &[Structure];
+    output_first, "output, first", Output, &[Structure];
+    strength_loss_percent, "strength loss", Percent, &[Structure];
+    strength_percent, "of peak", Percent, &[Structure];
+    stiffness_first, "stiffness, first", Stiffness, &[Structure];
+    stiffness_loss_percent, "stiffness loss", Percent, &[Structure];
+    stiffness_percent, "of first stiffness", Percent, &[Structure];
+    energy_first, "energy, first", Energy, &[Structure];
+    energy_mean, "energy, mean", Energy, &[Structure];
+    damping_percent, "mean damping", Percent, &[Structure];
+    cumulative_energy, "cumulative energy", Energy, &[Structure];
+    ductility, "ductility", Ratio, &[Structure];
+    cumulative_ductility, "cumulative ductility", Ratio, &[Structure];
 }

@@ -78,6 +78,7 @@ impl Quantities {
             FigureQuantity::Time => named(name, self.time.clone()),
             FigureQuantity::Frequency => named(name, self.time.as_deref().map(frequency)),
             FigureQuantity::Percent => named(name, Some("%".into())),
+            FigureQuantity::Ratio => name.into(),
         }
     }
 

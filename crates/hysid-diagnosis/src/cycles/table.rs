@@ -13,11 +13,14 @@ use super::backbone::{BackbonePoint, Direction, backbone};
 use super::correction::gap;
 use super::creep::{CycleHold, holds};
 use super::division::{Division, LAST_STEP, Span, SpanPart, choose, divide, level, output_closes};
+use super::elastic_plastic;
 use super::field::Field;
 use super::joint::joint;
+use super::levels::{self, LevelRow};
 use super::losses::{LossAtFrequency, losses};
 use super::path::{Closure, CyclePath, area, at, range, weights, width};
 use super::reading::{Widest, output_at_end, secant, widest};
+use super::record_figure::RecordFigure;
 use super::row::CycleRow;
 use super::strand::Strand;
 use crate::branch::{Branch, BranchSet, JITTERS, ReversalRule};
@@ -139,6 +142,10 @@ pub struct CycleTable {
     pub cycles: Vec<CycleRow>,
     /// The backbone of each record.
     pub backbone: Vec<BackbonePoint>,
+    /// Amplitude levels of structures.
+    pub levels: Vec<LevelRow>,
+    /// Figures of whole records.
+    pub figures: Vec<RecordFigure>,
     /// Losses by amplitude and frequency, for data with time.
     pub losses: Vec<LossAtFrequency>,
     /// Notes on the whole table: why figures are missing in every row.
@@ -156,15 +163,23 @@ impl CycleTable {
         let field = options.field.unwrap_or_else(|| Field::of(data.names()));
         let division = options.division.unwrap_or_else(|| choose(&survey, field));
         let (mut cycles, mut points) = (Vec::new(), Vec::new());
+        let (mut levels, mut figures) = (Vec::new(), Vec::new());
         for (number, record) in data.records().iter().enumerate() {
             let begins = record.inputs()[0].first().copied().unwrap_or_default();
             let level = level(&survey, number, division).unwrap_or(begins);
             let backbone = if field.has_structures() { backbone(&survey, number, level) } else { Vec::new() };
-            cycles.extend(rows_of(&survey, number, (field, division), &backbone));
+            let rows = rows_of(&survey, number, (field, division), &backbone);
+            if field == Field::Structure {
+                let own = elastic_plastic::figures(record.name(), &backbone, level);
+                levels.extend(levels::levels(&rows, elastic_plastic::mean_yield_input(&own)));
+                figures.extend(own);
+            }
+            cycles.extend(rows);
             points.extend(backbone);
         }
         let notes = notes(&survey, &cycles, (field, division));
-        Ok(Self { field, division, losses: losses(&cycles), cycles, backbone: points, notes })
+        let losses = losses(&cycles);
+        Ok(Self { field, division, losses, cycles, backbone: points, levels, figures, notes })
     }
 
     /// The rows of complete cycles.

@@ -10,6 +10,8 @@ use hysid_core::random::{mix, uniform};
 
 use super::*;
 
+mod records;
+
 /// A path through turning points in equal steps.
 fn path(turning: &[f64], step: f64) -> Vec<f64> {
     let mut x = vec![turning[0]];

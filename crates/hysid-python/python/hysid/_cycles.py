@@ -24,6 +24,8 @@ LAST = ("backbone_peak", "backbone_valley", "notes")
 
 BACKBONE = ("record", "row", "direction", "input", "output")
 LOSSES = ("amplitude", "frequency", "energy", "power", "cycles")
+LEVELS = ("record", "level", "cycles")
+FIGURES = ("record", "of", "name", "symbol", "value", "deviation", "source", "note")
 NODES = ("reversal_input", "input", "output", "everett", "density", "density_deviation")
 
 
@@ -45,6 +47,12 @@ class Cycles(Mapping[str, np.ndarray]):
         The columns.
     backbone : dict of arrays
         The turning points of the first cycle of each amplitude: record, row, direction, input, output.
+    levels : dict of arrays
+        The amplitude levels of structures: record, level, number of cycles, and the figures of docs/cycles.md, such as
+        strength_loss_percent.
+    figures : dict of arrays
+        Figures of whole records, such as ductility: record, the part that each is of, name, symbol, value, deviation,
+        source, and a note.
     losses : dict of arrays
         Means by amplitude and frequency: amplitude, frequency, energy, power, and the number of cycles.
     reversal_curves : dict of arrays or None
@@ -60,6 +68,8 @@ class Cycles(Mapping[str, np.ndarray]):
     division: str
     rows: dict[str, np.ndarray]
     backbone: dict[str, np.ndarray]
+    levels: dict[str, np.ndarray]
+    figures: dict[str, np.ndarray]
     losses: dict[str, np.ndarray]
     reversal_curves: dict[str, np.ndarray] | None
     smoothing_factor: int | None
@@ -78,6 +88,8 @@ class Cycles(Mapping[str, np.ndarray]):
             division=table["division"],
             rows=_arrays(cycles, (*FIRST, *_hysid.figure_names(), *LAST)),
             backbone=_arrays(table["backbone"], BACKBONE),
+            levels=_arrays(table["levels"], (*LEVELS, *_hysid.level_figure_names())),
+            figures=_arrays(table["figures"], FIGURES),
             losses=_arrays(table["losses"], LOSSES),
             reversal_curves=_arrays(curves["nodes"], NODES) if curves else None,
             smoothing_factor=curves["smoothing_factor"] if curves else None,
@@ -114,9 +126,9 @@ class Cycles(Mapping[str, np.ndarray]):
 
 def _arrays(rows: list[dict[str, Any]], names: tuple[str, ...]) -> dict[str, np.ndarray]:
     """Columns of rows; None is NaN."""
-    whole_numbers = {"cycle", "first_row", "last_row", "row", "cycles"}
+    whole_numbers = {"cycle", "first_row", "last_row", "row", "cycles", "level"}
     truths = {"complete", "backbone_peak", "backbone_valley"}
-    texts = {"record", "direction", "notes"}
+    texts = {"record", "direction", "notes", "of", "name", "symbol", "source", "note"}
 
     def column(name: str) -> np.ndarray:
         values = [row[name] for row in rows]
