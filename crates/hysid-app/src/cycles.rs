@@ -19,7 +19,7 @@ use hysid::diagnosis::cycles::{
     Correction, CycleOptions, CycleTable, FIGURES, Figure, LEVEL_FIGURES, corrected,
 };
 use hysid::diagnosis::model::ModelCycles;
-use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
+use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves, without_calibration_points};
 use hysid_document::visible::clipped;
 use hysid_document::{Problem, Result, count, object};
 
@@ -57,10 +57,15 @@ impl<'a> Cycles<'a> {
         smoothing_factor: Option<usize>,
         (file, understood): (&str, Vec<(String, String)>),
     ) -> hysid::Result<Self> {
-        let (set, removed) = match corrections {
-            [] => (Cow::Borrowed(data), Vec::new()),
-            _ => corrected(data, corrections).map(|(set, notes)| (Cow::Owned(set), notes))?,
-        };
+        let (mut set, mut removed) = (Cow::Borrowed(data), Vec::new());
+        if let Some((curves, note)) = without_calibration_points(data) {
+            (set, removed) = (Cow::Owned(curves), vec![note]);
+        }
+        if !corrections.is_empty() {
+            let (other, notes) = corrected(&set, corrections)?;
+            set = Cow::Owned(other);
+            removed.extend(notes);
+        }
         let mut table = CycleTable::of(&set, options)?;
         table.notes.splice(..0, removed);
         let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor };

@@ -5,20 +5,26 @@
 //! docs/cycles.md.
 
 mod backbone;
+mod branches;
 mod correction;
 mod creep;
 mod division;
 mod elastic_plastic;
 mod field;
 mod figure;
+mod harmonic;
 mod joint;
+mod least_squares;
 mod levels;
+mod loss_separation;
 mod losses;
+mod notes;
 mod path;
 mod quantities;
 mod reading;
 mod record_figure;
 mod row;
+mod saturation;
 mod strand;
 mod table;
 #[cfg(test)]

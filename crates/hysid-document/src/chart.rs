@@ -94,6 +94,8 @@ pub struct Chart {
     /// Text beside points.
     pub labels: Vec<Label>,
     pub legend: Vec<(Colour, String)>,
+    /// True if a unit is as long along one axis as along the other.
+    pub has_equal_axes: bool,
 }
 
 /// Width and height of a chart over the width of the page, in pixels.
@@ -135,7 +137,8 @@ impl Chart {
     /// As [`Chart::new`], with these axes.
     pub fn on_axes(description: impl Into<String>, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
         let (description, title) = (description.into(), String::new());
-        Self { description, title, size: WIDE, x, y, curves, labels: Vec::new(), legend: Vec::new() }
+        let (labels, legend) = (Vec::new(), Vec::new());
+        Self { description, title, size: WIDE, x, y, curves, labels, legend, has_equal_axes: false }
     }
 
     /// The chart in this size, in pixels.

@@ -4,7 +4,7 @@ use hysid::diagnosis::cycles::{LEVEL_FIGURES, RecordFigure};
 use hysid_document::{Colour, Page, Part, Text, number, unit};
 
 use super::table::{has_backbone, levels, notes, present, record_figures, shown};
-use super::text::{begin, both_ends};
+use super::text::begin;
 use super::{Cycles, curves, over_amplitude, pictures};
 
 /// Rows of a long table at each end.
@@ -44,8 +44,7 @@ fn table_section(cycles: &Cycles) -> Part {
     let names: Vec<&str> =
         cycles.figures().map(|figure| figure.name).filter(|name| !PLACES.contains(name)).collect();
     let figures = present(cycles, &names);
-    let rows = cycles.table.cycles.len();
-    let mut parts = vec![Part::Table(shown(cycles, &figures, both_ends(rows, AT_EACH_END), unit::label))];
+    let mut parts = vec![Part::Table(shown(cycles, &figures, AT_EACH_END, unit::label))];
     if cycles.table.cycles.iter().any(|row| !row.complete) {
         parts.push(Part::note("* incomplete: the record begins or ends within the cycle."));
     }
@@ -135,8 +134,8 @@ fn curves_section(cycles: &Cycles) -> Option<Part> {
         parts.push(Part::heading(format!("FORC diagram: {}", unit::label(&q.as_density("density")))));
         parts.push(Part::chart(pictures::forc_diagram(cycles, found)));
         parts.push(Part::note(format!(
-            "Half width: half the distance of input and reversal input, the half width of a relay; middle: their mean. \
-             Colours are classes of the density, with their limits in the legend; the density is the mixed derivative of \
+            "H_c: half the distance of input and reversal input, the coercivity of a relay; H_u: their mean, the \
+             interaction field. Both axes have the same scale. Colours are classes of the density, with their limits in the legend; the density is the mixed derivative of \
              parabolas over {} curves and as many steps of the input. Its largest magnitude is {}.",
             2 * found.smoothing_factor + 1,
             number(found.largest_density(), 3),

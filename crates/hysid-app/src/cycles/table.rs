@@ -4,6 +4,7 @@ use hysid::diagnosis::cycles::{CycleRow, Field, Figure, FigureQuantity, LEVEL_FI
 use hysid_document::{Cell, Table};
 
 use super::Cycles;
+use super::text::both_ends;
 
 /// True if the tables of the field mark the points of the backbone.
 pub fn has_backbone(field: Field) -> bool {
@@ -19,18 +20,23 @@ pub fn row_name(cycles: &Cycles, row: &CycleRow) -> String {
     }
 }
 
-/// A table of some figures of some rows. `label` makes a heading of the name of a quantity with its unit; of the numbers,
+/// A table of some figures of the rows that have any of them: `at_each_end` rows of a long table. `label` makes a heading of the name of a quantity with its unit; of the numbers,
 /// four digits are shown.
 pub fn shown(
     cycles: &Cycles,
     figures: &[&Figure],
-    places: impl Iterator<Item = usize>,
+    at_each_end: usize,
     label: impl Fn(&str) -> String,
 ) -> Table {
+    let (has_voltage, has_polarisation) =
+        (cycles.quantities.is_of_voltage(), cycles.quantities.is_polarisation());
     let heading = |figure: &&Figure| {
-        let own = match figure.name {
+        let own = match (figure.name, cycles.table.field) {
             // What is lost in a cycle is the loss of a magnet.
-            "energy" if cycles.table.field == Field::Magnet => "loss per cycle",
+            ("energy", Field::Magnet) => "loss per cycle",
+            ("coercive_input", Field::Magnet) if has_voltage => "coercive voltage",
+            ("remanent_output", Field::Magnet) if has_polarisation => "remanent polarisation",
+            ("width_percent", Field::Actuator) => "hysteresis",
             _ => figure.label,
         };
         let per = if figure.quantity == FigureQuantity::Creep { " per decade" } else { "" };
@@ -38,12 +44,14 @@ pub fn shown(
         label(&named) + per
     };
     let mut table = Table::new(std::iter::once("cycle".to_string()).chain(figures.iter().map(heading)));
+    let has_any = |row: &&CycleRow| figures.iter().any(|figure| (figure.of)(row).is_some());
+    let rows: Vec<&CycleRow> = cycles.table.cycles.iter().filter(has_any).collect();
     let mut next = 0;
-    for place in places {
+    for place in both_ends(rows.len(), at_each_end) {
         if place > next {
             table.push(["…".into(), Cell::Text(format!("{} more", place - next))]);
         }
-        let row = &cycles.table.cycles[place];
+        let row = rows[place];
         let values = figures.iter().map(|figure| Cell::number((figure.of)(row), 4));
         table.push(std::iter::once(Cell::Text(row_name(cycles, row))).chain(values));
         next = place + 1;

@@ -1,7 +1,7 @@
 //! Cycles, levels, figures of records and reversal curves as CSV.
 
 use hysid::diagnosis::cycles::{CycleRow, Figure, LEVEL_FIGURES, LevelRow, RecordFigure};
-use hysid::diagnosis::reversal_curves::{ReversalCurves, ReversalNode};
+use hysid::diagnosis::reversal_curves::{MarginalValue, ReversalCurves, ReversalNode};
 use hysid_records::{IN_MEMORY, header_line};
 use hysid_tables::shortest;
 
@@ -68,6 +68,8 @@ pub fn side_tables(cycles: &Cycles) -> Vec<SideTable> {
     if let Some(curves) = &cycles.curves {
         let (what, extension, beginning) = ("FORC", "forc.csv", &b"reversal_input"[..]);
         tables.push(SideTable { what, extension, beginning, content: curves_csv(cycles, curves) });
+        let (what, extension, beginning) = ("margins", "forc-margins.csv", &b"distribution,field"[..]);
+        tables.push(SideTable { what, extension, beginning, content: marginals_csv(cycles, curves) });
     }
     tables
 }
@@ -89,8 +91,9 @@ fn levels_csv(cycles: &Cycles) -> Vec<u8> {
 
 /// The figures of records as CSV.
 fn figures_csv(cycles: &Cycles) -> Vec<u8> {
-    let names = ["record", "of", "figure", "symbol", "value", "deviation", "unit", "source", "note"]
-        .map(String::from);
+    let names =
+        ["record", "of", "figure", "symbol", "value", "deviation", "low", "high", "unit", "source", "note"]
+            .map(String::from);
     let row = |figure: &RecordFigure| {
         let named = cycles.quantities.as_figure(figure.kind.name, figure.kind.quantity);
         vec![
@@ -100,6 +103,8 @@ fn figures_csv(cycles: &Cycles) -> Vec<u8> {
             figure.kind.symbol.into(),
             optional(figure.value),
             optional(figure.deviation),
+            optional(figure.interval.map(|interval| interval.0)),
+            optional(figure.interval.map(|interval| interval.1)),
             hysid::data::unit::of_column(&named).unwrap_or_default(),
             figure.kind.source.into(),
             figure.note.clone().unwrap_or_default(),
@@ -118,12 +123,28 @@ fn curves_csv(cycles: &Cycles, curves: &ReversalCurves) -> Vec<u8> {
         q.as_output("everett"),
         q.as_density("density"),
         q.as_density("density_deviation"),
+        q.as_input("coercivity"),
+        q.as_input("interaction"),
     ];
     let row = |node: &ReversalNode| {
         let given = [node.reversal_input, node.input, node.output, node.everett].map(shortest);
-        given.into_iter().chain([node.density, node.density_deviation].map(optional)).collect()
+        let densities = [node.density, node.density_deviation].map(optional);
+        let (coercivity, interaction) = curves.fields(node);
+        given.into_iter().chain(densities).chain([coercivity, interaction].map(shortest)).collect()
     };
     written(&names, curves.nodes.iter().map(row))
+}
+
+/// The marginal distributions of the density as CSV.
+fn marginals_csv(cycles: &Cycles, curves: &ReversalCurves) -> Vec<u8> {
+    let q = &cycles.quantities;
+    let names = ["distribution".to_string(), q.as_input("field"), q.as_stiffness("density")];
+    let row = |name: &str, value: MarginalValue| {
+        vec![name.to_string(), shortest(value.field), shortest(value.density)]
+    };
+    let [coercivity, interaction] = curves.marginals();
+    let rows = coercivity.into_iter().map(|value| row("coercivity", value));
+    written(&names, rows.chain(interaction.into_iter().map(|value| row("interaction", value))))
 }
 
 fn optional(value: Option<f64>) -> String {

@@ -12,6 +12,9 @@ use crate::quantities::text_label;
 /// Rows shown at each end of a long table.
 const AT_EACH_END: usize = 8;
 
+/// Most figures of a cycle in the text.
+const MOST_FIGURES: usize = 6;
+
 /// Largest number of cycles in the text on the losses.
 const MOST_LOSSES: usize = 12;
 
@@ -22,13 +25,32 @@ fn main_figures(field: Field) -> &'static [&'static str] {
             "energy",
             "damping_percent",
             "secant_stiffness",
+            "storage_modulus",
+            "loss_modulus",
+            "loss_angle",
             "residual_after_peak",
             "residual_after_valley",
         ],
-        Field::Magnet => &["amplitude", "frequency", "coercive_input", "remanent_output", "energy", "power"],
+        Field::Magnet => &[
+            "amplitude",
+            "frequency",
+            "coercive_input",
+            "remanent_output",
+            "squareness",
+            "energy",
+            "power_per_mass",
+            "power",
+        ],
         Field::Actuator => {
-            &["amplitude", "mean_input", "width", "width_percent", "creep", "creep_per_decade"]
+            &["amplitude", "width", "width_percent", "nonlinearity_percent", "creep", "creep_per_decade"]
         }
+        Field::Thermal => {
+            &["heating_start", "heating_finish", "cooling_start", "cooling_finish", "thermal_width", "width"]
+        }
+        Field::Battery => {
+            &["input_min", "input_max", "mean_gap", "width", "energy", "energy_efficiency_percent"]
+        }
+        Field::Hydrology => &["input_min", "input_max", "output_min", "output_max", "hysteresis_index"],
         Field::General => {
             &["amplitude", "mean_input", "energy", "width", "coercive_input", "remanent_output"]
         }
@@ -43,8 +65,9 @@ pub fn text(cycles: &Cycles) -> String {
         cycles.table.field,
         begin(cycles)
     ))];
-    if !cycles.table.cycles.is_empty() {
-        blocks.push(rendered(&[Part::Table(main_table(cycles))]));
+    let table = main_table(cycles);
+    if !table.rows.is_empty() {
+        blocks.push(rendered(&[Part::Table(table)]));
     }
     blocks.extend(levels(cycles));
     blocks.extend(losses(cycles));
@@ -81,12 +104,9 @@ pub fn both_ends(rows: usize, at_each_end: usize) -> impl Iterator<Item = usize>
 
 fn main_table(cycles: &Cycles) -> Table {
     let mut figures = present(cycles, main_figures(cycles.table.field));
-    if cycles.data.records().len() > 1 {
-        // Names of records need the room of a figure or two.
-        figures.truncate(4);
-    }
-    let places = both_ends(cycles.table.cycles.len(), AT_EACH_END);
-    let mut table = shown(cycles, &figures, places, text_label);
+    // Names of records need the room of a figure or two.
+    figures.truncate(if cycles.data.records().len() > 1 { 4 } else { MOST_FIGURES });
+    let mut table = shown(cycles, &figures, AT_EACH_END, text_label);
     for cell in table.rows.iter_mut().flatten() {
         *cell = Cell::Text(cell.ascii());
     }

@@ -53,6 +53,9 @@ pub struct Cycles {
     /// The offset is the middle of the output's values at both ends of the input.
     #[arg(long, help_heading = "Method")]
     pub center: bool,
+    /// Mass density in kg/m3, for losses per kilogram of magnets
+    #[arg(long, value_name = "NUMBER", value_parser = positive, help_heading = "Method")]
+    pub density: Option<f64>,
     /// Ignore reversals of the input below this share of its range [default: the noise of the input decides]
     #[arg(long, value_name = "FRACTION", value_parser = fraction, help_heading = "Method", hide_short_help = true)]
     pub smallest_reversal: Option<f64>,
@@ -78,6 +81,7 @@ impl Cycles {
             smoothing: self.smoothing,
             division: self.divide,
             field: self.field,
+            density: self.density,
         }
     }
 
@@ -90,6 +94,11 @@ impl Cycles {
 /// A choice by its name.
 pub(super) fn named<T: FromStr<Err = hysid::Error>>(name: &str) -> Result<T, String> {
     name.parse().map_err(|error: hysid::Error| error.to_string())
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "a number above 0 is needed".into())
 }
 
 fn smoothing_factor(text: &str) -> Result<usize, String> {

@@ -3,6 +3,10 @@
 use serde::Serialize;
 
 use super::figure::FigureQuantity;
+use crate::distribution::t_quantile;
+
+/// Confidence of intervals.
+const CONFIDENCE: f64 = 0.95;
 
 /// Definition of a figure of a record.
 #[derive(Debug, PartialEq, Serialize)]
@@ -35,6 +39,8 @@ pub struct RecordFigure {
     pub value: Option<f64>,
     /// Standard deviation of the value, where it is estimated.
     pub deviation: Option<f64>,
+    /// Ends of its 95 % interval, where it is estimated.
+    pub interval: Option<(f64, f64)>,
     /// Why it is missing or to be read with care.
     pub note: Option<String>,
 }
@@ -47,12 +53,27 @@ impl RecordFigure {
         value: impl Into<Option<f64>>,
     ) -> Self {
         let value = value.into().filter(|value| value.is_finite());
-        Self { record: record.into(), of: of.into(), kind, value, deviation: None, note: None }
+        Self {
+            record: record.into(),
+            of: of.into(),
+            kind,
+            value,
+            deviation: None,
+            interval: None,
+            note: None,
+        }
     }
 
     pub(super) fn with_deviation(self, deviation: f64) -> Self {
         let deviation = Some(deviation).filter(|deviation| deviation.is_finite());
         Self { deviation, ..self }
+    }
+
+    /// With the 95 % interval of Student's t.
+    pub(super) fn with_interval(self, deviation: f64, degrees: f64) -> Self {
+        let reach = t_quantile(1.0 - CONFIDENCE, degrees) * deviation;
+        let interval = self.value.filter(|_| reach.is_finite()).map(|value| (value - reach, value + reach));
+        Self { interval, ..self.with_deviation(deviation) }
     }
 
     pub(super) fn with_note(self, note: impl Into<String>) -> Self {
