@@ -3,7 +3,7 @@
 use hysid::diagnosis::cycles::{LEVEL_FIGURES, RecordFigure};
 use hysid_document::{Colour, Page, Part, Text, number, unit};
 
-use super::table::{has_backbone, levels, notes, present, record_figures, shown};
+use super::table::{has_backbone, levels, losses, notes, present, record_figures, shown};
 use super::text::begin;
 use super::{Cycles, curves, over_amplitude, pictures};
 
@@ -95,31 +95,9 @@ fn backbone_section(cycles: &Cycles) -> Option<Part> {
 }
 
 fn losses_section(cycles: &Cycles) -> Option<Part> {
-    use hysid::diagnosis::cycles::FigureQuantity;
-    let losses = over_amplitude::at_several_frequencies(cycles);
-    if losses.is_empty() {
-        return None;
-    }
-    let q = &cycles.quantities;
-    let headings = [
-        q.as_input("amplitude"),
-        q.as_figure("frequency", FigureQuantity::Frequency),
-        q.as_energy("loss per cycle"),
-        q.as_power("loss per time"),
-    ];
-    let headings = headings.iter().map(|name| unit::label(name)).chain(["cycles".to_string()]);
-    let mut table = hysid_document::Table::new(headings);
-    for loss in losses.into_iter().flatten() {
-        let cell = |value| hysid_document::Cell::number(value, 4);
-        table.push([
-            cell(loss.amplitude),
-            cell(loss.frequency),
-            cell(loss.energy),
-            cell(loss.power),
-            loss.cycles.into(),
-        ]);
-    }
-    let words = "Means of cycles whose amplitudes and frequencies differ by less than 5 %.";
+    let (table, _) = losses(cycles, usize::MAX, unit::label)?;
+    let words = "Means of cycles whose amplitudes and frequencies differ by less than 5 %. The parts of the loss per cycle \
+                 are those of the separation in \"Figures of the record\".";
     Some(Part::section("Losses by frequency", [Part::Table(table), Part::note(words)]))
 }
 

@@ -1,9 +1,12 @@
 //! Rows of the table of cycles for text and page.
 
-use hysid::diagnosis::cycles::{CycleRow, Field, Figure, FigureQuantity, LEVEL_FIGURES, RecordFigure};
+use hysid::diagnosis::cycles::{
+    CycleRow, Field, Figure, FigureQuantity, LEVEL_FIGURES, LossAtFrequency, RecordFigure,
+};
 use hysid_document::{Cell, Table};
 
 use super::Cycles;
+use super::over_amplitude::at_several_frequencies;
 use super::text::both_ends;
 
 /// True if the tables of the field mark the points of the backbone.
@@ -19,6 +22,19 @@ pub fn row_name(cycles: &Cycles, row: &CycleRow) -> String {
         _ => format!("{}/{}{star}", row.record, row.cycle),
     }
 }
+
+/// Figures that say where a cycle is. A row that has no others is not shown.
+const PLACES: [&str; 9] = [
+    "start_time",
+    "period",
+    "frequency",
+    "input_min",
+    "input_max",
+    "amplitude",
+    "mean_input",
+    "output_min",
+    "output_max",
+];
 
 /// A table of some figures of the rows that have any of them: `at_each_end` rows of a long table. `label` makes a heading of the name of a quantity with its unit; of the numbers,
 /// four digits are shown.
@@ -44,7 +60,12 @@ pub fn shown(
         label(&named) + per
     };
     let mut table = Table::new(std::iter::once("cycle".to_string()).chain(figures.iter().map(heading)));
-    let has_any = |row: &&CycleRow| figures.iter().any(|figure| (figure.of)(row).is_some());
+    let is_read = |figure: &&Figure| !PLACES.contains(&figure.name);
+    let needed: Vec<&Figure> = match figures.iter().any(|figure| is_read(figure)) {
+        true => figures.iter().copied().filter(is_read).collect(),
+        false => figures.to_vec(),
+    };
+    let has_any = |row: &&CycleRow| needed.iter().any(|figure| (figure.of)(row).is_some());
     let rows: Vec<&CycleRow> = cycles.table.cycles.iter().filter(has_any).collect();
     let mut next = 0;
     for place in both_ends(rows.len(), at_each_end) {
@@ -95,6 +116,33 @@ pub fn levels(cycles: &Cycles, names: &[&str], label: impl Fn(&str) -> String) -
         table.push([Cell::Text(name), row.cycles.into()].into_iter().chain(values));
     }
     (rows.len() > 1).then_some(table)
+}
+
+/// The first `most` losses of amplitudes with several frequencies, with their parts if they are separated, and the number
+/// of the others; `None` if there are none.
+pub fn losses(cycles: &Cycles, most: usize, label: impl Fn(&str) -> String) -> Option<(Table, usize)> {
+    use FigureQuantity::{Energy, Frequency, Input, Power};
+    let losses: Vec<&LossAtFrequency> = at_several_frequencies(cycles).into_iter().flatten().collect();
+    let columns: [(&str, FigureQuantity, fn(&LossAtFrequency) -> Option<f64>); 7] = [
+        ("amplitude", Input, |loss| Some(loss.amplitude)),
+        ("frequency", Frequency, |loss| Some(loss.frequency)),
+        ("loss per cycle", Energy, |loss| Some(loss.energy)),
+        ("hysteresis", Energy, |loss| loss.hysteresis),
+        ("eddy", Energy, |loss| loss.eddy),
+        ("excess", Energy, |loss| loss.excess),
+        ("loss per time", Power, |loss| Some(loss.power)),
+    ];
+    let used: Vec<_> =
+        columns.iter().filter(|(.., of)| losses.iter().any(|loss| of(loss).is_some())).collect();
+    let heading = |(name, quantity, _): &&(&str, FigureQuantity, _)| {
+        label(&cycles.quantities.as_figure(name, *quantity))
+    };
+    let mut table = Table::new(used.iter().map(heading).chain(["cycles".to_string()]));
+    for loss in losses.iter().take(most) {
+        let values = used.iter().map(|(.., of)| Cell::number(of(loss), 4));
+        table.push(values.chain([loss.cycles.into()]));
+    }
+    (!losses.is_empty()).then(|| (table, losses.len().saturating_sub(most)))
 }
 
 /// The figures of records that have a value: a row for each figure, a column for each part of a record. `label` makes a

@@ -36,10 +36,11 @@ fn main_figures(field: Field) -> &'static [&'static str] {
             "frequency",
             "coercive_input",
             "remanent_output",
-            "squareness",
-            "energy",
             "power_per_mass",
+            "energy_per_mass",
+            "energy",
             "power",
+            "squareness",
         ],
         Field::Actuator => {
             &["amplitude", "width", "width_percent", "nonlinearity_percent", "creep", "creep_per_decade"]
@@ -147,34 +148,9 @@ fn shortened(mut table: Table) -> Table {
 
 /// Losses at several frequencies.
 fn losses(cycles: &Cycles) -> Option<String> {
-    let losses: Vec<_> =
-        super::over_amplitude::at_several_frequencies(cycles).into_iter().flatten().collect();
-    if losses.is_empty() {
-        return None;
-    }
-    let q = &cycles.quantities;
-    let figure = |name: &str, quantity| text_label(&q.as_figure(name, quantity));
-    use hysid::diagnosis::cycles::FigureQuantity::{Energy, Frequency, Input, Power};
-    let mut table = Table::new([
-        figure("amplitude", Input),
-        figure("frequency", Frequency),
-        figure("loss per cycle", Energy),
-        figure("loss per time", Power),
-        "cycles".into(),
-    ]);
-    for loss in losses.iter().take(MOST_LOSSES) {
-        let number = |value: f64| Cell::Text(format!("{:.4}", Significant(value)));
-        table.push([
-            number(loss.amplitude),
-            number(loss.frequency),
-            number(loss.energy),
-            number(loss.power),
-            loss.cycles.into(),
-        ]);
-    }
-    let more = losses.len().saturating_sub(MOST_LOSSES);
+    let (table, more) = super::table::losses(cycles, MOST_LOSSES, text_label)?;
     let more = if more > 0 { format!("and {more} more\n") } else { String::new() };
-    Some(format!("losses by amplitude and frequency\n{}{more}", rendered(&[Part::Table(table)])))
+    Some(format!("losses by amplitude and frequency\n{}{more}", rendered(&[Part::Table(shortened(table))])))
 }
 
 fn backbone(cycles: &Cycles) -> Option<String> {

@@ -33,7 +33,7 @@ pub struct Cycles {
     pub overwriting: Overwriting,
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Figures of: structure, magnet, actuator or general (all) [default: by names and units]
+    /// Figures of: structure, magnet, actuator, thermal, battery, hydrology or general [default: by names and units]
     #[arg(long, value_name = "FIELD", value_parser = named::<Field>, help_heading = "Method")]
     pub field: Option<Field>,
     /// Where cycles begin: zero, mean, reversals or start [default: as suits the data]

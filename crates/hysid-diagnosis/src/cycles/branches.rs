@@ -12,6 +12,9 @@ const STEPS: u32 = 400;
 /// Halvings of the search of the best straight line.
 const SEARCH: usize = 100;
 
+/// Percent that are rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Share of the input at each end over which the base lines of a transition are fitted.
 const BASE: f64 = 0.1;
 
@@ -45,7 +48,8 @@ pub(super) fn nonlinearity_percent(falling: &Strand, rising: &Strand, ends: (f64
         let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
         if off(a) <= off(b) { high = b } else { low = a }
     }
-    Some(100.0 * off(0.5 * (low + high)) / height).filter(|percent| percent.is_finite())
+    let percent = 100.0 * off(0.5 * (low + high)) / height;
+    percent.is_finite().then_some(if percent < ROUNDING { 0.0 } else { percent })
 }
 
 /// Reads the temperatures at which the transitions on both ways start and finish, and the width between their middles.

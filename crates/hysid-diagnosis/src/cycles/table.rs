@@ -370,7 +370,7 @@ impl CycleReader<'_> {
         if let Some((falling, rising)) = &strands {
             self.read_levels(row, falling, rising);
             match self.field {
-                Field::Actuator => {
+                Field::Actuator | Field::General => {
                     row.nonlinearity_percent = branches::nonlinearity_percent(falling, rising, (low, high));
                 }
                 Field::Thermal => branches::read_transitions(row, falling, rising, (low, high)),

@@ -50,7 +50,8 @@ class Cycles(Mapping[str, np.ndarray]):
     Attributes
     ----------
     field : str
-        The field of engineering: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"``.
+        The field of engineering: ``"structure"``, ``"magnet"``, ``"actuator"``, ``"thermal"``, ``"battery"``,
+        ``"hydrology"`` or ``"general"``.
     division : str
         Where cycles begin: ``"zero"``, ``"mean"``, ``"reversals"`` or ``"start"``.
     rows : dict of arrays
@@ -195,8 +196,8 @@ def cycles(
     division : str, optional
         Where cycles begin: ``"zero"``, ``"mean"``, ``"reversals"`` or ``"start"``; as suits the data by default.
     field : str, optional
-        What is read: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"`` (all); by default as names and units
-        of pandas objects indicate.
+        What is read: ``"structure"``, ``"magnet"``, ``"actuator"``, ``"thermal"``, ``"battery"``, ``"hydrology"`` or
+        ``"general"``; by default as names and units of pandas objects indicate.
     smallest_reversal : float, optional
         Reversals of the input below this share of its range are ignored; by default the noise of the input decides.
     smoothing : bool

@@ -2,12 +2,12 @@
 
 use super::*;
 
-fn figure<'t>(table: &'t CycleTable, of: &str, name: &str) -> &'t RecordFigure {
+pub(super) fn figure<'t>(table: &'t CycleTable, of: &str, name: &str) -> &'t RecordFigure {
     let is_it = |figure: &&RecordFigure| figure.of == of && figure.kind.name == name;
     table.figures.iter().find(is_it).unwrap_or_else(|| panic!("{of} {name}: {:?}", table.figures))
 }
 
-fn value(table: &CycleTable, of: &str, name: &str) -> f64 {
+pub(super) fn value(table: &CycleTable, of: &str, name: &str) -> f64 {
     figure(table, of, name).value.unwrap_or_else(|| panic!("{of} {name}"))
 }
 
@@ -67,7 +67,7 @@ fn a_side_without_a_backbone_says_why_it_has_no_yield_point() {
         (yielding.value, yielding.note.as_deref()),
         (None, Some("fewer than two points of the backbone"))
     );
-    assert!(table_of(&stop(&[0.0, 3.0, -3.0, 3.0, -3.0, 0.0]), Field::Magnet).figures.is_empty());
+    assert!(table_of(&stop(&[0.0, 3.0, -3.0, 3.0, -3.0, 0.0]), Field::Actuator).figures.is_empty());
 }
 
 #[test]
