@@ -15,9 +15,11 @@ use std::path::{Path, PathBuf};
 
 use hysid::Model;
 use hysid::data::record::Dataset;
-use hysid::diagnosis::cycles::{Correction, CycleOptions, CycleTable, FIGURES, Figure, corrected};
+use hysid::diagnosis::cycles::{
+    Correction, CycleOptions, CycleTable, FIGURES, Figure, LEVEL_FIGURES, corrected,
+};
 use hysid::diagnosis::model::ModelCycles;
-use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
+use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves, without_calibration_points};
 use hysid_document::visible::clipped;
 use hysid_document::{Problem, Result, count, object};
 
@@ -25,7 +27,7 @@ use crate::quantities::Quantities;
 
 pub use page::page;
 #[cfg(feature = "tables")]
-pub use tables::{BEGINNING, BEGINNING_OF_CURVES, csv, curves_csv};
+pub use tables::{BEGINNING, SideTable, csv, side_tables};
 pub use text::text;
 
 pub struct Cycles<'a> {
@@ -55,10 +57,15 @@ impl<'a> Cycles<'a> {
         smoothing_factor: Option<usize>,
         (file, understood): (&str, Vec<(String, String)>),
     ) -> hysid::Result<Self> {
-        let (set, removed) = match corrections {
-            [] => (Cow::Borrowed(data), Vec::new()),
-            _ => corrected(data, corrections).map(|(set, notes)| (Cow::Owned(set), notes))?,
-        };
+        let (mut set, mut removed) = (Cow::Borrowed(data), Vec::new());
+        if let Some((curves, note)) = without_calibration_points(data) {
+            (set, removed) = (Cow::Owned(curves), vec![note]);
+        }
+        if !corrections.is_empty() {
+            let (other, notes) = corrected(&set, corrections)?;
+            set = Cow::Owned(other);
+            removed.extend(notes);
+        }
         let mut table = CycleTable::of(&set, options)?;
         table.notes.splice(..0, removed);
         let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor };
@@ -101,10 +108,13 @@ impl<'a> Cycles<'a> {
     }
 
     pub fn json(&self, files: &Files) -> Result<String> {
-        let named = |figure: &Figure| {
-            let named = self.quantities.as_figure(figure.name, figure.quantity);
-            (figure.name, hysid::data::unit::of_column(&named))
-        };
+        let cycles = self.figures().map(|figure| (figure.name, figure.quantity));
+        let records = self.table.figures.iter().map(|figure| (figure.kind.name, figure.kind.quantity));
+        let levels = LEVEL_FIGURES.iter().filter(|_| !self.table.levels.is_empty());
+        let all = cycles.chain(levels.map(|figure| (figure.name, figure.quantity))).chain(records);
+        let named = all.map(|(name, quantity)| {
+            (name, hysid::data::unit::of_column(&self.quantities.as_figure(name, quantity)))
+        });
         Ok(hysid_document::json(&object! {
             input: &self.quantities.input,
             output: &self.quantities.output,
@@ -112,9 +122,10 @@ impl<'a> Cycles<'a> {
             of_model: self.of_model,
             table: files.table.as_deref(),
             page: files.page.as_deref(),
-            curves: files.curves.as_deref(),
-            /// Unit of each figure of the field, where the units of the columns are known.
-            units: self.figures().map(named).collect::<BTreeMap<_, _>>(),
+            /// Further tables by the name of their contents.
+            tables: &files.further,
+            /// Unit of each figure, where the units of the columns are known.
+            units: named.collect::<BTreeMap<_, _>>(),
             #[serde(flatten)]
             cycles: &self.table,
             reversal_curves: self.curves.as_ref(),
@@ -142,8 +153,8 @@ impl<'a> Cycles<'a> {
 pub struct Files {
     pub table: Option<PathBuf>,
     pub page: Option<PathBuf>,
-    /// The table of reversal curves.
-    pub curves: Option<PathBuf>,
+    /// Further tables by the name of their contents.
+    pub further: BTreeMap<&'static str, PathBuf>,
 }
 
 /// Drive of a model, label and text.

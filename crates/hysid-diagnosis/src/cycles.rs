@@ -5,17 +5,26 @@
 //! docs/cycles.md.
 
 mod backbone;
+mod branches;
 mod correction;
 mod creep;
 mod division;
+mod elastic_plastic;
 mod field;
 mod figure;
+mod harmonic;
 mod joint;
+mod least_squares;
+mod levels;
+mod loss_separation;
 mod losses;
+mod notes;
 mod path;
 mod quantities;
 mod reading;
+mod record_figure;
 mod row;
+mod saturation;
 mod strand;
 mod table;
 #[cfg(test)]
@@ -27,9 +36,11 @@ pub use self::backbone::{BackbonePoint, Direction};
 pub use self::correction::{Correction, corrected};
 pub use self::division::Division;
 pub use self::field::Field;
-pub use self::figure::{FIGURES, Figure, FigureQuantity};
+pub use self::figure::{FIGURES, Figure, FigureQuantity, LEVEL_FIGURES};
+pub use self::levels::LevelRow;
 pub use self::losses::LossAtFrequency;
 pub use self::quantities::Quantities;
+pub use self::record_figure::{RecordFigure, RecordFigureKind};
 pub use self::row::CycleRow;
 pub use self::table::{CycleOptions, CycleTable};
 

@@ -14,6 +14,7 @@
 //! The parabola is fitted by least squares to the rows of the `2 SF + 1` curves and the inputs within `SF` steps around a
 //! node, `SF` the smoothing factor and a step the median distance of neighbouring reversal inputs.
 
+mod calibration;
 mod density;
 mod recognition;
 #[cfg(test)]
@@ -23,6 +24,7 @@ use hysid_core::data::record::Dataset;
 use hysid_core::error::Result;
 use serde::Serialize;
 
+pub use self::calibration::without_calibration_points;
 use self::density::{Smoothing, chosen};
 use self::recognition::{CurveSet, recognised};
 use super::branch::BranchSet;
@@ -39,7 +41,7 @@ const MOST_LINES: usize = 120;
 pub struct ReversalCurveOptions {
     /// How branches are found.
     pub branches: DiagnosisOptions,
-    /// The smoothing factor `SF`, within [`SMOOTHING_FACTORS`]; `None` for the smallest from 2 to 6 with which the noise of
+    /// The smoothing factor `SF`, within [`SMOOTHING_FACTORS`]; `None` for the smallest from 1 to 6 with which the noise of
     /// the output deviates the density by 5 % of its largest value or less.
     pub smoothing_factor: Option<usize>,
 }
@@ -75,6 +77,15 @@ pub struct ReversalNode {
     pub density: Option<f64>,
     /// Standard deviation of the density from the noise of the output.
     pub density_deviation: Option<f64>,
+}
+
+/// A value of a marginal distribution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MarginalValue {
+    /// Coercivity or interaction field.
+    pub field: f64,
+    /// Integral of the density over the other field, for the measure `dr dx`.
+    pub density: f64,
 }
 
 /// First-order reversal curves, and what follows from them.
@@ -149,6 +160,34 @@ impl ReversalCurves {
             nodes,
             notes,
         }
+    }
+
+    /// Coercivity `H_c`, half the distance of input and reversal input, and interaction field `H_u`, their mean, of a node.
+    pub fn fields(&self, node: &ReversalNode) -> (f64, f64) {
+        let sign = if self.rising { 0.5 } else { -0.5 };
+        (sign * (node.input - node.reversal_input), 0.5 * (node.input + node.reversal_input))
+    }
+
+    /// Marginal distributions of the density over the coercivity and over the interaction field: its sum over the nodes of
+    /// each class of half a step, as integral over the other field. Both have the sum of the density over the plane.
+    pub fn marginals(&self) -> [Vec<MarginalValue>; 2] {
+        let width = 0.5 * self.step;
+        let mut sums = [std::collections::BTreeMap::new(), std::collections::BTreeMap::new()];
+        for node in &self.nodes {
+            let Some(density) = node.density else { continue };
+            let (coercivity, interaction) = self.fields(node);
+            // A node has the area step² in the plane of both inputs, which is that of dH_c dH_u times 2.
+            for (sum, field) in sums.iter_mut().zip([coercivity, interaction]) {
+                *sum.entry((field / width).round() as i64).or_insert(0.0) +=
+                    density * self.step * self.step / width;
+            }
+        }
+        let values = |sums: std::collections::BTreeMap<i64, f64>| {
+            sums.into_iter()
+                .map(|(place, value)| MarginalValue { field: place as f64 * width, density: value })
+                .collect()
+        };
+        sums.map(values)
     }
 
     /// The largest magnitude of the density.

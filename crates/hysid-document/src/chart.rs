@@ -96,6 +96,8 @@ pub struct Chart {
     pub legend: Vec<(Colour, String)>,
     /// True for a chart whose horizontal axis is that of the chart below it, which has its ticks and label.
     pub shares_axis: bool,
+    /// True if a unit is as long along one axis as along the other.
+    pub has_equal_axes: bool,
 }
 
 /// Width and height of a chart over the width of the page, in pixels.
@@ -138,7 +140,8 @@ impl Chart {
     pub fn on_axes(description: impl Into<String>, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
         let (description, title) = (description.into(), String::new());
         let (labels, legend) = (Vec::new(), Vec::new());
-        Self { description, title, size: WIDE, x, y, curves, labels, legend, shares_axis: false }
+        let (shares_axis, has_equal_axes) = (false, false);
+        Self { description, title, size: WIDE, x, y, curves, labels, legend, shares_axis, has_equal_axes }
     }
 
     /// The chart in this size, in pixels.

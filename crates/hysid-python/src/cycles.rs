@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use hysid::diagnosis::cycles::{CycleOptions, CycleTable};
 use hysid::diagnosis::model::ModelCycles;
-use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
+use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves, without_calibration_points};
 use hysid::model::Model;
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -26,9 +26,16 @@ pub fn figure_names() -> Vec<&'static str> {
     hysid::diagnosis::cycles::FIGURES.iter().map(|figure| figure.name).collect()
 }
 
+/// Names of the figures of an amplitude level, in the order of the columns.
+#[pyfunction]
+pub fn level_figure_names() -> Vec<&'static str> {
+    hysid::diagnosis::cycles::LEVEL_FIGURES.iter().map(|figure| figure.name).collect()
+}
+
 /// The cycles and first-order reversal curves of data, as JSON.
 #[pyfunction]
-#[pyo3(signature = (data, smallest_reversal, smoothing, division, field, smoothing_factor))]
+#[allow(clippy::too_many_arguments, reason = "they are those of the function in Python")]
+#[pyo3(signature = (data, smallest_reversal, smoothing, division, field, smoothing_factor, density))]
 pub fn cycles(
     py: Python<'_>,
     data: &Dataset,
@@ -37,11 +44,18 @@ pub fn cycles(
     division: Option<&str>,
     field: Option<&str>,
     smoothing_factor: Option<usize>,
+    density: Option<f64>,
 ) -> PyResult<String> {
-    let options = CycleOptions { smallest_reversal, smoothing, ..options(division, field)? };
+    let options = CycleOptions { smallest_reversal, smoothing, density, ..options(division, field)? };
     let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor };
     let set = Arc::clone(&data.set);
-    let find = move || Ok((CycleTable::of(&set, &options)?, ReversalCurves::of(&set, &of_curves)?));
+    let find = move || {
+        let cleaned = without_calibration_points(&set);
+        let set = cleaned.as_ref().map_or(&*set, |(set, _)| set);
+        let mut table = CycleTable::of(set, &options)?;
+        table.notes.splice(..0, cleaned.iter().map(|(_, note)| note.clone()));
+        Ok((table, ReversalCurves::of(set, &of_curves)?))
+    };
     let (table, curves) = interruptible(py, find)?;
     told(&table, curves.as_ref())
 }

@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _hysid {
     #[pymodule_export]
-    use crate::cycles::{cycles, figure_names};
+    use crate::cycles::{cycles, figure_names, level_figure_names};
     #[pymodule_export]
     use crate::data::{Dataset, diagnose, unit_factor};
     #[pymodule_export]

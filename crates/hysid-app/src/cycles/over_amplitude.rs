@@ -35,6 +35,9 @@ pub fn figures(sets: &[Shown]) -> Vec<Chart> {
         Field::Structure => &["energy", "damping_percent", "secant_stiffness", "residual_after_peak"],
         Field::Magnet => &["energy", "coercive_input", "remanent_output"],
         Field::Actuator => &["width_percent", "width", "creep"],
+        Field::Thermal => &["thermal_width", "heating_start", "cooling_start"],
+        Field::Battery => &["mean_gap", "energy_efficiency_percent"],
+        Field::Hydrology => &["hysteresis_index"],
         Field::General => &["energy", "width", "coercive_input", "secant_stiffness"],
     };
     let amplitude = ("amplitude", first.cycles.quantities.as_input("amplitude"));

@@ -1,9 +1,10 @@
 //! The page: pictures, the whole table, first-order reversal curves, and how the data were read.
 
+use hysid::diagnosis::cycles::{LEVEL_FIGURES, RecordFigure};
 use hysid_document::{Colour, Page, Part, Text, number, unit};
 
-use super::table::{has_backbone, notes, present, shown};
-use super::text::{begin, both_ends};
+use super::table::{has_backbone, levels, losses, notes, present, record_figures, shown};
+use super::text::begin;
 use super::{Cycles, curves, over_amplitude, pictures};
 
 /// Rows of a long table at each end.
@@ -30,6 +31,8 @@ pub fn page(cycles: &Cycles) -> Page {
     if !cycles.table.cycles.is_empty() {
         parts.push(table_section(cycles));
     }
+    parts.extend(record_section(cycles));
+    parts.extend(levels_section(cycles));
     parts.extend(backbone_section(cycles));
     parts.extend(losses_section(cycles));
     parts.extend(curves_section(cycles));
@@ -41,8 +44,7 @@ fn table_section(cycles: &Cycles) -> Part {
     let names: Vec<&str> =
         cycles.figures().map(|figure| figure.name).filter(|name| !PLACES.contains(name)).collect();
     let figures = present(cycles, &names);
-    let rows = cycles.table.cycles.len();
-    let mut parts = vec![Part::Table(shown(cycles, &figures, both_ends(rows, AT_EACH_END), unit::label))];
+    let mut parts = vec![Part::Table(shown(cycles, &figures, AT_EACH_END, unit::label))];
     if cycles.table.cycles.iter().any(|row| !row.complete) {
         parts.push(Part::note("* incomplete: the record begins or ends within the cycle."));
     }
@@ -51,6 +53,24 @@ fn table_section(cycles: &Cycles) -> Part {
         parts.push(Part::Folded("Notes".into(), vec![Part::warnings(&notes)]));
     }
     Part::section("Cycles", parts)
+}
+
+/// The figures of records, each with its symbol and source.
+fn record_section(cycles: &Cycles) -> Option<Part> {
+    let label = |figure: &RecordFigure, name: &str| format!("{}, {}", figure.kind.symbol, unit::label(name));
+    let table = record_figures(cycles, label)?;
+    let mut sources: Vec<&str> = cycles.table.figures.iter().map(|figure| figure.kind.source).collect();
+    sources.dedup();
+    let sources = format!("Definitions: docs/cycles.md, after {}.", sources.join("; "));
+    Some(Part::section("Figures of the record", [Part::Table(table), Part::note(sources)]))
+}
+
+fn levels_section(cycles: &Cycles) -> Option<Part> {
+    let names: Vec<&str> = LEVEL_FIGURES.iter().map(|figure| figure.name).collect();
+    let words = "A level has successive cycles whose amplitudes differ by less than 5 %. Losses are from its first cycle \
+                 to its last.";
+    levels(cycles, &names, unit::label)
+        .map(|table| Part::section("Levels of amplitude", [Part::Table(table), Part::note(words)]))
 }
 
 fn backbone_section(cycles: &Cycles) -> Option<Part> {
@@ -75,31 +95,9 @@ fn backbone_section(cycles: &Cycles) -> Option<Part> {
 }
 
 fn losses_section(cycles: &Cycles) -> Option<Part> {
-    use hysid::diagnosis::cycles::FigureQuantity;
-    let losses = over_amplitude::at_several_frequencies(cycles);
-    if losses.is_empty() {
-        return None;
-    }
-    let q = &cycles.quantities;
-    let headings = [
-        q.as_input("amplitude"),
-        q.as_figure("frequency", FigureQuantity::Frequency),
-        q.as_energy("loss per cycle"),
-        q.as_power("loss per time"),
-    ];
-    let headings = headings.iter().map(|name| unit::label(name)).chain(["cycles".to_string()]);
-    let mut table = hysid_document::Table::new(headings);
-    for loss in losses.into_iter().flatten() {
-        let cell = |value| hysid_document::Cell::number(value, 4);
-        table.push([
-            cell(loss.amplitude),
-            cell(loss.frequency),
-            cell(loss.energy),
-            cell(loss.power),
-            loss.cycles.into(),
-        ]);
-    }
-    let words = "Means of cycles whose amplitudes and frequencies differ by less than 5 %.";
+    let (table, _) = losses(cycles, usize::MAX, unit::label)?;
+    let words = "Means of cycles whose amplitudes and frequencies differ by less than 5 %. The parts of the loss per cycle \
+                 are those of the separation in \"Figures of the record\".";
     Some(Part::section("Losses by frequency", [Part::Table(table), Part::note(words)]))
 }
 
@@ -114,8 +112,8 @@ fn curves_section(cycles: &Cycles) -> Option<Part> {
         parts.push(Part::heading(format!("FORC diagram: {}", unit::label(&q.as_density("density")))));
         parts.push(Part::chart(pictures::forc_diagram(cycles, found)));
         parts.push(Part::note(format!(
-            "Half width: half the distance of input and reversal input, the half width of a relay; middle: their mean. \
-             Colours are classes of the density, with their limits in the legend; the density is the mixed derivative of \
+            "H_c: half the distance of input and reversal input, the coercivity of a relay; H_u: their mean, the \
+             interaction field. Both axes have the same scale. Colours are classes of the density, with their limits in the legend; the density is the mixed derivative of \
              parabolas over {} curves and as many steps of the input. Its largest magnitude is {}.",
             2 * found.smoothing_factor + 1,
             number(found.largest_density(), 3),

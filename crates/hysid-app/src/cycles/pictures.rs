@@ -59,10 +59,11 @@ pub fn reversal_curves(cycles: &Cycles, curves: &ReversalCurves) -> Chart {
     Chart::new(description, &x, &y, lines).sized(760.0, 400.0)
 }
 
-/// The density in the coordinates of a FORC diagram: half the distance and the middle of reversal input and input.
+/// The density in the coordinates of a FORC diagram: coercivity `H_c`, half the distance of reversal input and input, and
+/// interaction field `H_u`, their mean.
 pub fn forc_diagram(cycles: &Cycles, curves: &ReversalCurves) -> Chart {
     let q = &cycles.quantities;
-    let (x, y) = (unit::label(&q.as_input("half width")), unit::label(&q.as_input("middle")));
+    let (x, y) = (unit::label(&q.as_input("H_c")), unit::label(&q.as_input("H_u")));
     let value = unit::label(&q.as_density("density"));
     let description = format!(
         "FORC diagram: {value} over {x} and {y}; largest magnitude {}",
@@ -71,7 +72,7 @@ pub fn forc_diagram(cycles: &Cycles, curves: &ReversalCurves) -> Chart {
     let sign = if curves.rising { 1.0 } else { -1.0 };
     let cells = cells(curves, |node| node.density.unwrap_or(f64::NAN));
     heat_map(description, &x, &y, &cells, |input, reversal| {
-        (0.5 * sign * (input - reversal), 0.5 * (input + reversal))
+        ((0.5 * sign * (input - reversal)).max(0.0), 0.5 * (input + reversal))
     })
 }
 
@@ -86,18 +87,17 @@ pub fn everett(cycles: &Cycles, curves: &ReversalCurves) -> Chart {
     heat_map(description, &x, &y, &cells(curves, |node| node.everett), |input, reversal| (input, reversal))
 }
 
-/// A cell around each node, half a step to each side and half way to the neighbouring curves.
+/// A cell around each node, half a step to each side and half way to the neighbouring curves, and never beyond the
+/// fields that were measured.
 fn cells(curves: &ReversalCurves, value: impl Fn(&ReversalNode) -> f64) -> Vec<HeatCell> {
     let half = 0.5 * curves.step;
     let mut reversals: Vec<f64> = curves.nodes.iter().map(|node| node.reversal_input).collect();
     reversals.dedup();
     let edges = |reversal: f64| {
         let place = reversals.iter().position(|known| *known == reversal).unwrap_or(0);
-        let beside =
-            |other: Option<&f64>, away: f64| other.map_or(reversal + away, |other| 0.5 * (reversal + other));
-        let sign = if curves.rising { 1.0 } else { -1.0 };
-        let before = beside(place.checked_sub(1).and_then(|before| reversals.get(before)), sign * half);
-        let after = beside(reversals.get(place + 1), -sign * half);
+        let beside = |other: Option<&f64>| other.map_or(reversal, |other| 0.5 * (reversal + other));
+        let before = beside(place.checked_sub(1).and_then(|before| reversals.get(before)));
+        let after = beside(reversals.get(place + 1));
         (before.min(after), before.max(after))
     };
     let mut rows: Vec<(f64, (f64, f64))> = Vec::new();
@@ -107,7 +107,10 @@ fn cells(curves: &ReversalCurves, value: impl Fn(&ReversalNode) -> f64) -> Vec<H
             rows.push((node.reversal_input, edges(node.reversal_input)));
         }
         let v = rows[rows.len() - 1].1;
-        all.push(HeatCell { u: (node.input - half, node.input + half), v, value: value(node) });
+        let (one, other) = (node.reversal_input, curves.end);
+        let within = |x: f64| x.clamp(one.min(other), one.max(other));
+        let u = (within(node.input - half), within(node.input + half));
+        all.push(HeatCell { u, v, value: value(node) });
     }
     // Rising along each row, so that neighbours are joined.
     all.sort_by(|a, b| a.v.0.total_cmp(&b.v.0).then(a.u.0.total_cmp(&b.u.0)));

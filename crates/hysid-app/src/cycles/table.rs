@@ -1,9 +1,13 @@
 //! Rows of the table of cycles for text and page.
 
-use hysid::diagnosis::cycles::{CycleRow, Field, Figure, FigureQuantity};
+use hysid::diagnosis::cycles::{
+    CycleRow, Field, Figure, FigureQuantity, LEVEL_FIGURES, LossAtFrequency, RecordFigure,
+};
 use hysid_document::{Cell, Table};
 
 use super::Cycles;
+use super::over_amplitude::at_several_frequencies;
+use super::text::both_ends;
 
 /// True if the tables of the field mark the points of the backbone.
 pub fn has_backbone(field: Field) -> bool {
@@ -19,18 +23,36 @@ pub fn row_name(cycles: &Cycles, row: &CycleRow) -> String {
     }
 }
 
-/// A table of some figures of some rows. `label` makes a heading of the name of a quantity with its unit; of the numbers,
+/// Figures that say where a cycle is. A row that has no others is not shown.
+const PLACES: [&str; 9] = [
+    "start_time",
+    "period",
+    "frequency",
+    "input_min",
+    "input_max",
+    "amplitude",
+    "mean_input",
+    "output_min",
+    "output_max",
+];
+
+/// A table of some figures of the rows that have any of them: `at_each_end` rows of a long table. `label` makes a heading of the name of a quantity with its unit; of the numbers,
 /// four digits are shown.
 pub fn shown(
     cycles: &Cycles,
     figures: &[&Figure],
-    places: impl Iterator<Item = usize>,
+    at_each_end: usize,
     label: impl Fn(&str) -> String,
 ) -> Table {
+    let (has_voltage, has_polarisation) =
+        (cycles.quantities.is_of_voltage(), cycles.quantities.is_polarisation());
     let heading = |figure: &&Figure| {
-        let own = match figure.name {
+        let own = match (figure.name, cycles.table.field) {
             // What is lost in a cycle is the loss of a magnet.
-            "energy" if cycles.table.field == Field::Magnet => "loss per cycle",
+            ("energy", Field::Magnet) => "loss per cycle",
+            ("coercive_input", Field::Magnet) if has_voltage => "coercive voltage",
+            ("remanent_output", Field::Magnet) if has_polarisation => "remanent polarisation",
+            ("width_percent", Field::Actuator) => "hysteresis",
             _ => figure.label,
         };
         let per = if figure.quantity == FigureQuantity::Creep { " per decade" } else { "" };
@@ -38,12 +60,19 @@ pub fn shown(
         label(&named) + per
     };
     let mut table = Table::new(std::iter::once("cycle".to_string()).chain(figures.iter().map(heading)));
+    let is_read = |figure: &&Figure| !PLACES.contains(&figure.name);
+    let needed: Vec<&Figure> = match figures.iter().any(|figure| is_read(figure)) {
+        true => figures.iter().copied().filter(is_read).collect(),
+        false => figures.to_vec(),
+    };
+    let has_any = |row: &&CycleRow| needed.iter().any(|figure| (figure.of)(row).is_some());
+    let rows: Vec<&CycleRow> = cycles.table.cycles.iter().filter(has_any).collect();
     let mut next = 0;
-    for place in places {
+    for place in both_ends(rows.len(), at_each_end) {
         if place > next {
             table.push(["…".into(), Cell::Text(format!("{} more", place - next))]);
         }
-        let row = &cycles.table.cycles[place];
+        let row = rows[place];
         let values = figures.iter().map(|figure| Cell::number((figure.of)(row), 4));
         table.push(std::iter::once(Cell::Text(row_name(cycles, row))).chain(values));
         next = place + 1;
@@ -67,7 +96,112 @@ pub fn notes(cycles: &Cycles) -> Vec<String> {
         count if count == cycles.table.cycles.len() => format!("all cycles: {note}"),
         _ => format!("cycles {}: {note}", hysid_document::visible::listed(&rows)),
     };
-    all.into_iter().map(said).chain(cycles.table.notes.iter().cloned()).collect()
+    all.into_iter().map(said).chain(cycles.table.notes.iter().cloned()).chain(record_notes(cycles)).collect()
+}
+
+/// The levels of structures with those of the named figures that any level has; `None` for a single level.
+pub fn levels(cycles: &Cycles, names: &[&str], label: impl Fn(&str) -> String) -> Option<Table> {
+    let rows = &cycles.table.levels;
+    let has = |figure: &&Figure<_>| {
+        names.contains(&figure.name) && rows.iter().any(|row| (figure.of)(row).is_some())
+    };
+    let figures: Vec<_> = LEVEL_FIGURES.iter().filter(has).collect();
+    let heading = |figure: &&Figure<_>| label(&cycles.quantities.as_figure(figure.label, figure.quantity));
+    let is_several = cycles.data.records().len() > 1;
+    let mut table =
+        Table::new(["level".to_string(), "cycles".into()].into_iter().chain(figures.iter().map(heading)));
+    for row in rows {
+        let name = if is_several { format!("{}/{}", row.record, row.level) } else { row.level.to_string() };
+        let values = figures.iter().map(|figure| Cell::number((figure.of)(row), 4));
+        table.push([Cell::Text(name), row.cycles.into()].into_iter().chain(values));
+    }
+    (rows.len() > 1).then_some(table)
+}
+
+/// The first `most` losses of amplitudes with several frequencies, with their parts if they are separated, and the number
+/// of the others; `None` if there are none.
+pub fn losses(cycles: &Cycles, most: usize, label: impl Fn(&str) -> String) -> Option<(Table, usize)> {
+    use FigureQuantity::{Energy, Frequency, Input, Power};
+    let losses: Vec<&LossAtFrequency> = at_several_frequencies(cycles).into_iter().flatten().collect();
+    let columns: [(&str, FigureQuantity, fn(&LossAtFrequency) -> Option<f64>); 7] = [
+        ("amplitude", Input, |loss| Some(loss.amplitude)),
+        ("frequency", Frequency, |loss| Some(loss.frequency)),
+        ("loss per cycle", Energy, |loss| Some(loss.energy)),
+        ("hysteresis", Energy, |loss| loss.hysteresis),
+        ("eddy", Energy, |loss| loss.eddy),
+        ("excess", Energy, |loss| loss.excess),
+        ("loss per time", Power, |loss| Some(loss.power)),
+    ];
+    let used: Vec<_> =
+        columns.iter().filter(|(.., of)| losses.iter().any(|loss| of(loss).is_some())).collect();
+    let heading = |(name, quantity, _): &&(&str, FigureQuantity, _)| {
+        label(&cycles.quantities.as_figure(name, *quantity))
+    };
+    let mut table = Table::new(used.iter().map(heading).chain(["cycles".to_string()]));
+    for loss in losses.iter().take(most) {
+        let values = used.iter().map(|(.., of)| Cell::number(of(loss), 4));
+        table.push(values.chain([loss.cycles.into()]));
+    }
+    (!losses.is_empty()).then(|| (table, losses.len().saturating_sub(most)))
+}
+
+/// The figures of records that have a value: a row for each figure, a column for each part of a record. `label` makes a
+/// heading of a figure and its name with unit.
+pub fn record_figures(cycles: &Cycles, label: impl Fn(&RecordFigure, &str) -> String) -> Option<Table> {
+    let known: Vec<&RecordFigure> =
+        cycles.table.figures.iter().filter(|figure| figure.value.is_some()).collect();
+    let is_several = known.iter().any(|figure| figure.record != known[0].record);
+    let mut parts: Vec<&str> = Vec::new();
+    let mut rows: Vec<(&str, &str, String)> = Vec::new();
+    for figure in &known {
+        if !parts.contains(&figure.of.as_str()) {
+            parts.push(&figure.of);
+        }
+        if !rows.iter().any(|(record, name, _)| (*record, *name) == (&figure.record, figure.kind.name)) {
+            let named = cycles.quantities.as_figure(figure.kind.label, figure.kind.quantity);
+            let label = label(figure, &named);
+            let heading = if is_several { format!("{}: {label}", figure.record) } else { label };
+            rows.push((&figure.record, figure.kind.name, heading));
+        }
+    }
+    let heading = |part: &&str| if part.is_empty() { "value".to_string() } else { part.to_string() };
+    let mut table = Table::new(std::iter::once("figure".to_string()).chain(parts.iter().map(heading)));
+    for (record, name, heading) in &rows {
+        let cell = |part: &&str| {
+            let is_it = |figure: &&&RecordFigure| {
+                (figure.record.as_str(), figure.kind.name, figure.of.as_str()) == (*record, *name, *part)
+            };
+            let Some(figure) = known.iter().find(is_it) else { return "".into() };
+            let value = Cell::number(figure.value, 4);
+            match figure.deviation {
+                Some(deviation) => {
+                    Cell::Text(format!("{} ± {}", value.shown(), hysid_document::number(deviation, 2)))
+                }
+                None => value,
+            }
+        };
+        table.push(std::iter::once(Cell::Text(heading.clone())).chain(parts.iter().map(cell)));
+    }
+    (!rows.is_empty()).then_some(table)
+}
+
+/// Notes of the figures of records, each with the parts that it concerns.
+fn record_notes(cycles: &Cycles) -> Vec<String> {
+    let mut all: Vec<(String, Vec<&str>)> = Vec::new();
+    for figure in &cycles.table.figures {
+        let Some(note) = &figure.note else { continue };
+        let note = format!("{}: {note}", figure.kind.label);
+        match all.iter_mut().find(|(known, _)| *known == note) {
+            Some((_, parts)) if parts.contains(&figure.of.as_str()) => {}
+            Some((_, parts)) => parts.push(&figure.of),
+            None => all.push((note, vec![&figure.of])),
+        }
+    }
+    let with_parts = |(note, parts): (String, Vec<&str>)| match parts[..] {
+        [""] => note,
+        _ => format!("{note} ({})", parts.join(", ")),
+    };
+    all.into_iter().map(with_parts).collect()
 }
 
 /// Figures of the field that any cycle has, in the order of the list.

@@ -12,6 +12,9 @@ use crate::quantities::text_label;
 /// Rows shown at each end of a long table.
 const AT_EACH_END: usize = 8;
 
+/// Most figures of a cycle in the text.
+const MOST_FIGURES: usize = 6;
+
 /// Largest number of cycles in the text on the losses.
 const MOST_LOSSES: usize = 12;
 
@@ -22,13 +25,33 @@ fn main_figures(field: Field) -> &'static [&'static str] {
             "energy",
             "damping_percent",
             "secant_stiffness",
+            "storage_modulus",
+            "loss_modulus",
+            "loss_angle",
             "residual_after_peak",
             "residual_after_valley",
         ],
-        Field::Magnet => &["amplitude", "frequency", "coercive_input", "remanent_output", "energy", "power"],
+        Field::Magnet => &[
+            "amplitude",
+            "frequency",
+            "coercive_input",
+            "remanent_output",
+            "power_per_mass",
+            "energy_per_mass",
+            "energy",
+            "power",
+            "squareness",
+        ],
         Field::Actuator => {
-            &["amplitude", "mean_input", "width", "width_percent", "creep", "creep_per_decade"]
+            &["amplitude", "width", "width_percent", "nonlinearity_percent", "creep", "creep_per_decade"]
         }
+        Field::Thermal => {
+            &["heating_start", "heating_finish", "cooling_start", "cooling_finish", "thermal_width", "width"]
+        }
+        Field::Battery => {
+            &["input_min", "input_max", "mean_gap", "width", "energy", "energy_efficiency_percent"]
+        }
+        Field::Hydrology => &["input_min", "input_max", "output_min", "output_max", "hysteresis_index"],
         Field::General => {
             &["amplitude", "mean_input", "energy", "width", "coercive_input", "remanent_output"]
         }
@@ -43,11 +66,14 @@ pub fn text(cycles: &Cycles) -> String {
         cycles.table.field,
         begin(cycles)
     ))];
-    if !cycles.table.cycles.is_empty() {
-        blocks.push(rendered(&[Part::Table(main_table(cycles))]));
+    let table = main_table(cycles);
+    if !table.rows.is_empty() {
+        blocks.push(rendered(&[Part::Table(table)]));
     }
+    blocks.extend(levels(cycles));
     blocks.extend(losses(cycles));
     blocks.extend(backbone(cycles));
+    blocks.extend(record_figures(cycles));
     blocks.extend(curves(cycles));
     let notes: String = notes(cycles).iter().map(|note| indented(&format!("- {note}"), 2)).collect();
     if !notes.is_empty() {
@@ -79,48 +105,52 @@ pub fn both_ends(rows: usize, at_each_end: usize) -> impl Iterator<Item = usize>
 
 fn main_table(cycles: &Cycles) -> Table {
     let mut figures = present(cycles, main_figures(cycles.table.field));
-    if cycles.data.records().len() > 1 {
-        // Names of records need the room of a figure or two.
-        figures.truncate(4);
-    }
-    let places = both_ends(cycles.table.cycles.len(), AT_EACH_END);
-    let mut table = shown(cycles, &figures, places, text_label);
+    // Names of records need the room of a figure or two.
+    figures.truncate(if cycles.data.records().len() > 1 { 4 } else { MOST_FIGURES });
+    let mut table = shown(cycles, &figures, AT_EACH_END, text_label);
     for cell in table.rows.iter_mut().flatten() {
         *cell = Cell::Text(cell.ascii());
     }
     table
 }
 
+fn levels(cycles: &Cycles) -> Option<String> {
+    let names = [
+        "amplitude",
+        "output_first",
+        "strength_loss_percent",
+        "energy_first",
+        "energy_mean",
+        "damping_percent",
+    ];
+    let table = super::table::levels(cycles, &names, text_label)?;
+    Some(format!("levels of amplitude\n{}", rendered(&[Part::Table(shortened(table))])))
+}
+
+fn record_figures(cycles: &Cycles) -> Option<String> {
+    let table = super::table::record_figures(cycles, |_, name| text_label(name))?;
+    Some(format!("figures of the record\n{}", rendered(&[Part::Table(shortened(table))])))
+}
+
+/// Both ends of a long table, in ASCII.
+fn shortened(mut table: Table) -> Table {
+    let rows = table.rows.len();
+    let shown: Vec<usize> = both_ends(rows, AT_EACH_END).collect();
+    table.rows = shown.iter().map(|&row| std::mem::take(&mut table.rows[row])).collect();
+    for cell in table.rows.iter_mut().flatten() {
+        *cell = Cell::Text(cell.ascii());
+    }
+    if shown.len() < rows {
+        table.rows.insert(AT_EACH_END, vec!["…".into(), format!("{} more", rows - shown.len()).into()]);
+    }
+    table
+}
+
 /// Losses at several frequencies.
 fn losses(cycles: &Cycles) -> Option<String> {
-    let losses: Vec<_> =
-        super::over_amplitude::at_several_frequencies(cycles).into_iter().flatten().collect();
-    if losses.is_empty() {
-        return None;
-    }
-    let q = &cycles.quantities;
-    let figure = |name: &str, quantity| text_label(&q.as_figure(name, quantity));
-    use hysid::diagnosis::cycles::FigureQuantity::{Energy, Frequency, Input, Power};
-    let mut table = Table::new([
-        figure("amplitude", Input),
-        figure("frequency", Frequency),
-        figure("loss per cycle", Energy),
-        figure("loss per time", Power),
-        "cycles".into(),
-    ]);
-    for loss in losses.iter().take(MOST_LOSSES) {
-        let number = |value: f64| Cell::Text(format!("{:.4}", Significant(value)));
-        table.push([
-            number(loss.amplitude),
-            number(loss.frequency),
-            number(loss.energy),
-            number(loss.power),
-            loss.cycles.into(),
-        ]);
-    }
-    let more = losses.len().saturating_sub(MOST_LOSSES);
+    let (table, more) = super::table::losses(cycles, MOST_LOSSES, text_label)?;
     let more = if more > 0 { format!("and {more} more\n") } else { String::new() };
-    Some(format!("losses by amplitude and frequency\n{}{more}", rendered(&[Part::Table(table)])))
+    Some(format!("losses by amplitude and frequency\n{}{more}", rendered(&[Part::Table(shortened(table))])))
 }
 
 fn backbone(cycles: &Cycles) -> Option<String> {

@@ -25,15 +25,15 @@ pub struct Cycles {
     pub files: Vec<PathBuf>,
     /// Table to write [default: name of the file with `.cycles.csv`; `-` is stdout]
     ///
-    /// The default is in the current folder and named after the first file. The page has the same name with `.html`; the
-    /// table of first-order reversal curves, if there are any, has it with `.forc.csv`.
+    /// The default is in the current folder and named after the first file. The page has the same name with `.html`;
+    /// further tables, if the data have them, have it with `.figures.csv`, `.levels.csv` and `.forc.csv`.
     #[arg(short, long, value_name = "TABLE.csv")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub overwriting: Overwriting,
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Figures of: structure, magnet, actuator or general (all) [default: by names and units]
+    /// Figures of: structure, magnet, actuator, thermal, battery, hydrology or general [default: by names and units]
     #[arg(long, value_name = "FIELD", value_parser = named::<Field>, help_heading = "Method")]
     pub field: Option<Field>,
     /// Where cycles begin: zero, mean, reversals or start [default: as suits the data]
@@ -53,6 +53,9 @@ pub struct Cycles {
     /// The offset is the middle of the output's values at both ends of the input.
     #[arg(long, help_heading = "Method")]
     pub center: bool,
+    /// Mass density in kg/m3, for losses per kilogram of magnets
+    #[arg(long, value_name = "NUMBER", value_parser = positive, help_heading = "Method")]
+    pub density: Option<f64>,
     /// Ignore reversals of the input below this share of its range [default: the noise of the input decides]
     #[arg(long, value_name = "FRACTION", value_parser = fraction, help_heading = "Method", hide_short_help = true)]
     pub smallest_reversal: Option<f64>,
@@ -78,6 +81,7 @@ impl Cycles {
             smoothing: self.smoothing,
             division: self.divide,
             field: self.field,
+            density: self.density,
         }
     }
 
@@ -90,6 +94,11 @@ impl Cycles {
 /// A choice by its name.
 pub(super) fn named<T: FromStr<Err = hysid::Error>>(name: &str) -> Result<T, String> {
     name.parse().map_err(|error: hysid::Error| error.to_string())
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "a number above 0 is needed".into())
 }
 
 fn smoothing_factor(text: &str) -> Result<usize, String> {

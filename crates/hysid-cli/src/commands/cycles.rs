@@ -1,6 +1,6 @@
 //! `hysid cycles`: tables of what engineers read from hysteresis loops.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::Result;
 use hysid::data::summary::Summary;
@@ -16,7 +16,7 @@ use crate::commands::{Given, model_from_bytes};
 use crate::data::data_of;
 use crate::files::{self, check_outputs};
 use crate::messages::{note_labelled, raw_results, results, warning, warning_words};
-use hysid_app::cycles::{self, BEGINNING, BEGINNING_OF_CURVES, Cycles, Files};
+use hysid_app::cycles::{self, BEGINNING, Cycles, Files, SideTable};
 
 pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
     let outputs = CycleFiles::of(arguments)?;
@@ -55,7 +55,6 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
 struct CycleFiles {
     table: Option<Destination>,
     page: Option<Destination>,
-    curves: Option<Destination>,
 }
 
 impl CycleFiles {
@@ -65,16 +64,12 @@ impl CycleFiles {
         let to_stdout = path == Path::new("-");
         files::check_stdout(to_stdout, arguments.json)?;
         if to_stdout {
-            return Ok(Self { table: None, page: None, curves: None });
+            return Ok(Self { table: None, page: None });
         }
         let force = arguments.overwriting.force;
-        let begun = |path: PathBuf, beginning: &[u8]| {
-            Destination::new(path, Kind::Beginning(beginning.to_vec()), force)
-        };
         Ok(Self {
             page: files::page(arguments.no_report, path.with_extension("html"), force),
-            curves: Some(begun(path.with_extension("forc.csv"), BEGINNING_OF_CURVES)),
-            table: Some(begun(path, BEGINNING)),
+            table: Some(Destination::new(path, Kind::Beginning(BEGINNING.to_vec()), force)),
         })
     }
 }
@@ -86,13 +81,17 @@ fn tell(arguments: &arguments::Cycles, outputs: &CycleFiles, cycles: &Cycles) ->
         raw_results(&String::from_utf8(table)?)?;
         return Ok(Outcome::Done);
     };
-    let curves = cycles.curves.as_ref().zip(outputs.curves.as_ref());
-    if let Some((_, destination)) = curves {
-        check_outputs([destination], &arguments.files)?;
-    }
+    let beside = |table: SideTable| {
+        let path = destination.path().with_extension(table.extension);
+        let kind = Kind::Beginning(table.beginning.to_vec());
+        (Destination::new(path, kind, arguments.overwriting.force), table)
+    };
+    let further: Vec<(Destination, SideTable)> =
+        cycles::side_tables(cycles).into_iter().map(beside).collect();
+    check_outputs(further.iter().map(|(destination, _)| destination), &arguments.files)?;
     files::write(destination, &table)?;
-    if let Some((curves, destination)) = curves {
-        files::write(destination, &cycles::curves_csv(cycles, curves))?;
+    for (destination, table) in &further {
+        files::write(destination, &table.content)?;
     }
     if let Some(page) = &outputs.page {
         files::write_page(page, cycles::page(cycles), &arguments.files)?;
@@ -101,15 +100,16 @@ fn tell(arguments: &arguments::Cycles, outputs: &CycleFiles, cycles: &Cycles) ->
     let written = Files {
         table: Some(path(destination)),
         page: outputs.page.as_ref().map(path),
-        curves: curves.map(|(_, destination)| path(destination)),
+        further: further.iter().map(|(destination, table)| (table.what, path(destination))).collect(),
     };
     if arguments.json {
         raw_results(&cycles.json(&written)?)?
     } else {
         results(&cycles::text(cycles))?
     }
-    let written = [("table", &written.table), ("FORC", &written.curves), ("page", &written.page)];
-    files::say_written(written.map(|(what, path)| (what, path.as_deref())));
+    files::say_written([("table", written.table.as_deref())]);
+    files::say_written(written.further.iter().map(|(what, path)| (*what, Some(path.as_path()))));
+    files::say_written([("page", written.page.as_deref())]);
     Ok(Outcome::Done)
 }
 

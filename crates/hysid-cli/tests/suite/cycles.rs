@@ -45,7 +45,16 @@ fn a_member_has_the_figures_of_its_law_in_csv_text_and_json() {
     let turning = [0.0, 2.0, -2.0, 2.0, -2.0, 4.0, -4.0, 4.0, -4.0, 0.0];
     bench.put("member.csv", table("disp_mm,force_kN", &turning, 0.05, &mut member()));
     let ran = bench.succeeds("cycles member.csv");
-    assert_eq!(bench.files("."), ["member.csv", "member.cycles.csv", "member.cycles.html"]);
+    assert_eq!(
+        bench.files("."),
+        [
+            "member.csv",
+            "member.cycles.csv",
+            "member.cycles.figures.csv",
+            "member.cycles.html",
+            "member.cycles.levels.csv"
+        ]
+    );
     let rows = rows(&bench.text("member.cycles.csv"));
     assert_eq!(rows.len(), 4);
     // 4 F (d - F/k), and half a stored energy less in the first cycle.
@@ -128,7 +137,7 @@ fn reversal_curves_in_data_give_the_density_of_the_plane_as_table_and_picture() 
     }
     bench.put("forc.csv", text);
     let ran = bench.succeeds("cycles forc.csv -o out.csv");
-    assert_eq!(bench.files("."), ["forc.csv", "out.csv", "out.forc.csv", "out.html"]);
+    assert_eq!(bench.files("."), ["forc.csv", "out.csv", "out.forc-margins.csv", "out.forc.csv", "out.html"]);
     assert!(ran.stdout.contains("19 rising first-order reversal curves"), "{}", ran.stdout);
     let nodes = rows(&bench.text("out.forc.csv"));
     let known: Vec<f64> = nodes
@@ -189,7 +198,7 @@ fn the_table_goes_to_stdout_where_asked_and_files_of_others_are_kept() {
         2 cycles member.csv -o mine.csv => --force
         2 cycles member.csv -o member.csv => would be overwritten
         2 cycles member.csv -o - --json => name a file
-        2 cycles member.csv --field wood => structure, magnet, actuator, general
+        2 cycles member.csv --field wood => structure, magnet, actuator, thermal
         2 cycles member.csv --divide noon => zero, mean, reversals
         2 cycles member.csv --smoothing-factor 11 => choose 1 to 10
         2 cycles member.csv --smallest-reversal 2 => between 0 and 1

@@ -77,7 +77,7 @@ const ALIKE: f64 = 0.1;
 /// actuators from turning point to turning point, so that a cycle has both branches of its loop; other data from zero to
 /// zero, or from mean to mean, if most half cycles pass it.
 pub(super) fn choose(survey: &BranchSet, field: Field) -> Division {
-    let from_tips = matches!(field, Field::Magnet | Field::Actuator);
+    let from_tips = field.goes_from_tips();
     let order = match from_tips {
         true => [Division::Reversals, Division::Zero, Division::Mean, Division::Start],
         false => [Division::Zero, Division::Mean, Division::Reversals, Division::Start],

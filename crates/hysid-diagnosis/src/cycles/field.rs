@@ -16,13 +16,20 @@ pub enum Field {
     Magnet,
     /// Displacement or strain over voltage, current or field.
     Actuator,
+    /// Anything over temperature: shape-memory alloys.
+    Thermal,
+    /// Voltage over charge or state of charge.
+    Battery,
+    /// Concentration or turbidity over the discharge of a river.
+    Hydrology,
     /// Not known: all figures are read.
     General,
 }
 
 named!(
     Field, "field":
-    Structure = "structure", Magnet = "magnet", Actuator = "actuator", General = "general"
+    Structure = "structure", Magnet = "magnet", Actuator = "actuator", Thermal = "thermal", Battery = "battery",
+    Hydrology = "hydrology", General = "general"
 );
 
 impl Field {
@@ -31,6 +38,23 @@ impl Field {
         if names.inputs.first().is_some_and(|name| is_applied_field(name)) && is_magnetic_state(&names.output)
         {
             return Self::Magnet;
+        }
+        if let Some(input) = names.inputs.first() {
+            let output = &names.output;
+            if has_unit(input, TEMPERATURE_UNITS) || has_word(unit::split(input).0, TEMPERATURE_WORDS) {
+                return Self::Thermal;
+            }
+            let is_charge = has_unit(input, CHARGE_UNITS) || has_word(unit::split(input).0, CHARGE_WORDS);
+            if is_charge
+                && (has_unit(output, VOLTAGE_UNITS) || has_word(unit::split(output).0, VOLTAGE_WORDS))
+            {
+                return Self::Battery;
+            }
+            let is_stream = has_unit(input, STREAM_UNITS) || has_word(unit::split(input).0, STREAM_WORDS);
+            if is_stream && (has_unit(output, SOLUTE_UNITS) || has_word(unit::split(output).0, SOLUTE_WORDS))
+            {
+                return Self::Hydrology;
+            }
         }
         let input = names.inputs.first().and_then(|name| UsualRole::of(name));
         match (input, UsualRole::of(&names.output)) {
@@ -56,9 +80,24 @@ impl Field {
         matches!(self, Self::Magnet | Self::General)
     }
 
-    /// True if the figures of actuators are read.
-    pub(super) fn has_actuators(self) -> bool {
+    /// True if the holds of actuators are read.
+    pub(super) fn has_holds(self) -> bool {
         matches!(self, Self::Actuator | Self::General)
+    }
+
+    /// True if the width of loops is read.
+    pub(super) fn has_widths(self) -> bool {
+        !matches!(self, Self::Structure | Self::Magnet | Self::Hydrology)
+    }
+
+    /// True if loops usually go from one end of the input to the other.
+    pub(super) fn goes_from_tips(self) -> bool {
+        matches!(self, Self::Magnet | Self::Actuator | Self::Thermal | Self::Battery)
+    }
+
+    /// True if the area of loops is read.
+    pub(super) fn has_areas(self) -> bool {
+        !matches!(self, Self::Actuator | Self::Thermal | Self::Hydrology)
     }
 
     /// Factor that turns `∮ y dx` into the energy lost. The work on a magnet is `∮ H dB = -∮ B dH`.
@@ -80,6 +119,26 @@ const STATE_UNITS: &str = "emu memu emu/g emu/cm3 emu/cc Am2 Am^2 mAm2 Am2/kg Am
 /// Words of moments, magnetisations and polarisations.
 const STATE_WORDS: &str = "moment magnetization magnetisation magnetisierung magnetic polarization \
                            polarisation kerr moke induction flux charge m j b p";
+
+/// Units and words of temperatures.
+const TEMPERATURE_UNITS: &str = "K °C degC ℃ °F Celsius";
+const TEMPERATURE_WORDS: &str = "temperature temp temperatur température temperatura";
+
+/// Units and words of a charge and a state of charge.
+const CHARGE_UNITS: &str = "Ah mAh mAh/g Ah/kg";
+const CHARGE_WORDS: &str = "soc dod capacity";
+
+/// Units and words of voltages.
+const VOLTAGE_UNITS: &str = "V mV";
+const VOLTAGE_WORDS: &str = "voltage potential ocv";
+
+/// Units and words of the discharge of a river.
+const STREAM_UNITS: &str = "m3/s m^3/s m³/s l/s L/s cfs ft3/s";
+const STREAM_WORDS: &str = "streamflow runoff discharge";
+
+/// Units and words of what a river carries.
+const SOLUTE_UNITS: &str = "mg/l mg/L g/L g/l ug/L µg/L NTU FNU uS/cm µS/cm";
+const SOLUTE_WORDS: &str = "turbidity concentration ssc tss sediment nitrate phosphorus conductivity";
 
 fn has_word(name: &str, words: &str) -> bool {
     let lower = name.to_lowercase();
@@ -127,6 +186,13 @@ mod tests {
             ("rotation (rad)", "moment (kN m)", Field::Structure),
             ("Strain (%)", "Stress (kPa)", Field::Structure),
             ("x", "y", Field::General),
+            ("Temperature (°C)", "Strain (%)", Field::Thermal),
+            ("T [K]", "R [ohm]", Field::Thermal),
+            ("SOC (%)", "Voltage (V)", Field::Battery),
+            ("Capacity (Ah)", "E (V)", Field::Battery),
+            ("Q [m3/s]", "Turbidity [NTU]", Field::Hydrology),
+            ("streamflow", "nitrate", Field::Hydrology),
+            ("I (A)", "Voltage (V)", Field::General),
             ("force_N", "x_mm", Field::General),
         ] {
             let names = ColumnNames::of(None, &[input], output);

@@ -78,13 +78,46 @@ impl Quantities {
             FigureQuantity::Time => named(name, self.time.clone()),
             FigureQuantity::Frequency => named(name, self.time.as_deref().map(frequency)),
             FigureQuantity::Percent => named(name, Some("%".into())),
+            FigureQuantity::Ratio => name.into(),
+            FigureQuantity::Angle => named(name, Some("deg".into())),
+            FigureQuantity::EnergyPerMass => named(name, self.energy().and_then(|unit| per_mass(&unit))),
+            FigureQuantity::PowerPerMass => {
+                let power = self.energy().and_then(|unit| per_mass(&unit)).zip(self.time.clone());
+                named(
+                    name,
+                    power.map(|(energy, time)| match time.as_str() {
+                        "s" => energy.replace('J', "W"),
+                        _ => unit::quotient(&energy, &time),
+                    }),
+                )
+            }
         }
+    }
+
+    /// True if the input is a voltage.
+    pub fn is_of_voltage(&self) -> bool {
+        unit::of_column(&self.input).is_some_and(|unit| matches!(unit.as_str(), "V" | "kV" | "mV"))
+    }
+
+    /// True if the output is a charge of an area.
+    pub fn is_polarisation(&self) -> bool {
+        unit::of_column(&self.output).is_some_and(|unit| unit.contains('C') && unit.ends_with("m2"))
+    }
+
+    /// The product of both units if it is known and is no energy per volume.
+    pub(super) fn other_than_energy_per_volume(&self) -> Option<String> {
+        self.energy().filter(|unit| per_mass(unit).is_none())
     }
 
     fn energy(&self) -> Option<String> {
         let units = unit::of_column(&self.output).zip(unit::of_column(&self.input));
         units.map(|(output, input)| unit::energy(&output, &input))
     }
+}
+
+/// The unit of an energy per volume over a density in kg/m3.
+fn per_mass(energy: &str) -> Option<String> {
+    energy.strip_suffix("/m3").map(|energy| format!("{energy}/kg"))
 }
 
 /// The unit of a frequency.

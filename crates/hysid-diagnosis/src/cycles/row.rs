@@ -48,10 +48,20 @@ pub struct CycleRow {
     pub cumulative_energy: Option<f64>,
     /// Energy lost per unit of time.
     pub power: Option<f64>,
+    /// Energy lost per mass, of an energy per volume.
+    pub energy_per_mass: Option<f64>,
+    /// Energy lost per unit of time and mass.
+    pub power_per_mass: Option<f64>,
     /// Slope of the line from valley to peak.
     pub secant_stiffness: Option<f64>,
     /// Equivalent viscous damping ratio in percent of critical damping.
     pub damping_percent: Option<f64>,
+    /// First harmonic of the output in phase with a sine of the input, over its amplitude.
+    pub storage_modulus: Option<f64>,
+    /// First harmonic of the output a quarter of a period ahead of a sine of the input, over its amplitude.
+    pub loss_modulus: Option<f64>,
+    /// Angle in degrees whose tangent is the loss modulus over the storage modulus.
+    pub loss_angle: Option<f64>,
     /// Input at which the output is 0 on the way down from the peak.
     pub residual_after_peak: Option<f64>,
     /// Input at which the output is 0 on the way up from the valley.
@@ -64,6 +74,8 @@ pub struct CycleRow {
     pub coercive_input: Option<f64>,
     /// Half the distance along the output of both branches at the input 0.
     pub remanent_output: Option<f64>,
+    /// Remanence over half the range of the output.
+    pub squareness: Option<f64>,
     /// Largest difference of the outputs of both branches at equal input.
     pub width: Option<f64>,
     /// Standard deviation of the width from the noise of the output.
@@ -72,6 +84,24 @@ pub struct CycleRow {
     pub width_percent: Option<f64>,
     /// The input where it is.
     pub width_at_input: Option<f64>,
+    /// Largest deviation of the mean of both branches from the best straight line, in percent of the range of the output.
+    pub nonlinearity_percent: Option<f64>,
+    /// Input at which the transition of the rising branch starts, by tangents.
+    pub heating_start: Option<f64>,
+    /// Input at which it is finished.
+    pub heating_finish: Option<f64>,
+    /// Input at which the transition of the falling branch starts, by tangents.
+    pub cooling_start: Option<f64>,
+    /// Input at which it is finished.
+    pub cooling_finish: Option<f64>,
+    /// Middle of the transition of the rising branch less that of the falling branch.
+    pub thermal_width: Option<f64>,
+    /// Mean distance of both branches along the output.
+    pub mean_gap: Option<f64>,
+    /// `∫ y dx` of one direction in percent of that of the other, the smaller over the larger.
+    pub energy_efficiency_percent: Option<f64>,
+    /// Mean difference of the rising and the falling branch in shares of the range of the output.
+    pub hysteresis_index: Option<f64>,
     /// Duration of the longest hold of the input that begins in the cycle.
     pub hold_duration: Option<f64>,
     /// Change of the output during that hold.

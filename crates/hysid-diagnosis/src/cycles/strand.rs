@@ -1,10 +1,15 @@
 //! A way of the input from one end of a loop to the other, through all branches between them: where the output passes a
 //! level, and its value at an input.
 
+use super::CLOSED;
 use crate::branch::Branch;
 
 /// Deviations of the noise by which an output is on one side of a level.
 const CLEAR: f64 = 3.0;
+
+/// Levels at which the ways down and up are compared, and the share of their distance by which they change sides.
+const LEVELS: u32 = 32;
+const CROSSED: f64 = 0.15;
 
 /// Output over input in the order of time.
 #[derive(Debug, Clone, Default)]
@@ -89,4 +94,18 @@ impl Strand {
         let nearest = self.points.iter().min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()));
         nearest.filter(near).map(|point| point.y)
     }
+}
+
+/// True if the ways down and up change sides between their ends, by more than a small part of what is between them.
+pub(super) fn cross(falling: &Strand, rising: &Strand, (low, high): (f64, f64)) -> bool {
+    let (mut above, mut below) = (0.0, 0.0);
+    for place in 1..LEVELS {
+        let x = low + (high - low) * f64::from(place) / f64::from(LEVELS);
+        let within = CLOSED * (high - low);
+        if let Some((down, up)) = falling.output_at(x, within).zip(rising.output_at(x, within)) {
+            above += (down - up).max(0.0);
+            below += (up - down).max(0.0);
+        }
+    }
+    f64::min(above, below) > CROSSED * (above + below)
 }

@@ -4,22 +4,31 @@ use std::f64::consts::{PI, SQRT_2};
 
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::elementary::square;
-use hysid_core::error::Result;
+use hysid_core::error::{Error, Result};
 use hysid_core::significant::Significant;
 use serde::Serialize;
 
 use super::CLOSED;
 use super::backbone::{BackbonePoint, Direction, backbone};
+use super::branches;
 use super::correction::gap;
 use super::creep::{CycleHold, holds};
 use super::division::{Division, LAST_STEP, Span, SpanPart, choose, divide, level, output_closes};
+use super::elastic_plastic;
 use super::field::Field;
+use super::harmonic::ComplexModulus;
 use super::joint::joint;
+use super::levels::{self, LevelRow};
+use super::loss_separation;
 use super::losses::{LossAtFrequency, losses};
+use super::notes::notes;
 use super::path::{Closure, CyclePath, area, at, range, weights, width};
+use super::quantities::Quantities;
 use super::reading::{Widest, output_at_end, secant, widest};
+use super::record_figure::RecordFigure;
 use super::row::CycleRow;
-use super::strand::Strand;
+use super::saturation;
+use super::strand::{Strand, cross};
 use crate::branch::{Branch, BranchSet, JITTERS, ReversalRule};
 use crate::smoothing::{BranchRow, Parabola};
 use crate::{DiagnosisOptions, FEWEST_ROWS};
@@ -42,12 +51,6 @@ const FEWEST_AT_AN_END: usize = 8;
 /// Deviations of the noise between the extremes of a turning point and of the rows beside it.
 const FAR_IN_NOISE: f64 = 6.0;
 
-/// Reversals that are ignored are said above this share of the range.
-const HIDDEN: f64 = 0.005;
-
-/// Relative difference of an amplitude and that of the reversals that is said.
-const MISMATCH: f64 = 0.05;
-
 /// Area of a loop below which it is rounding, as a share of its box.
 const LINE: f64 = 1e-5;
 
@@ -62,10 +65,6 @@ const ADDS: f64 = 0.01;
 
 /// An opening of a loop that is said, as a share of its height.
 const OPEN: f64 = 0.02;
-
-/// Levels at which the ways down and up are compared, and the share of their distance by which they change sides.
-const LEVELS: u32 = 32;
-const CROSSED: f64 = 0.15;
 
 /// A cycle whose ways there and back last unequally by this factor, between others that do not, has no frequency.
 const UNEVEN: f64 = 1.5;
@@ -87,11 +86,13 @@ pub struct CycleOptions {
     pub division: Option<Division>,
     /// The field of engineering; `None` for what names and units of the columns indicate.
     pub field: Option<Field>,
+    /// Mass density in kg/m³, for losses per mass.
+    pub density: Option<f64>,
 }
 
 impl Default for CycleOptions {
     fn default() -> Self {
-        Self { smallest_reversal: None, smoothing: true, division: None, field: None }
+        Self { smallest_reversal: None, smoothing: true, division: None, field: None, density: None }
     }
 }
 
@@ -139,6 +140,10 @@ pub struct CycleTable {
     pub cycles: Vec<CycleRow>,
     /// The backbone of each record.
     pub backbone: Vec<BackbonePoint>,
+    /// Amplitude levels of structures.
+    pub levels: Vec<LevelRow>,
+    /// Figures of whole records.
+    pub figures: Vec<RecordFigure>,
     /// Losses by amplitude and frequency, for data with time.
     pub losses: Vec<LossAtFrequency>,
     /// Notes on the whole table: why figures are missing in every row.
@@ -149,22 +154,52 @@ impl CycleTable {
     /// The cycles of the first input of the data and of their output.
     ///
     /// # Errors
-    /// Data without loops: a constant input or output, hardly any rows.
+    /// Data without loops: a constant input or output, hardly any rows. A density for data whose loops are no energy per
+    /// volume.
     pub fn of(data: &Dataset, options: &CycleOptions) -> Result<Self> {
         data.check_identifiable(FEWEST_ROWS)?;
+        let unit = Quantities::of(data.names()).other_than_energy_per_volume();
+        if let Some(unit) = unit.filter(|_| options.density.is_some()) {
+            return Err(Error::Parts(format!(
+                "losses per mass need an energy per volume, as of A/m and T, and the loops of these data are in {unit}: \
+                 leave the density out"
+            )));
+        }
         let survey = options.survey(data);
         let field = options.field.unwrap_or_else(|| Field::of(data.names()));
         let division = options.division.unwrap_or_else(|| choose(&survey, field));
         let (mut cycles, mut points) = (Vec::new(), Vec::new());
+        let (mut levels, mut figures) = (Vec::new(), Vec::new());
         for (number, record) in data.records().iter().enumerate() {
             let begins = record.inputs()[0].first().copied().unwrap_or_default();
             let level = level(&survey, number, division).unwrap_or(begins);
             let backbone = if field.has_structures() { backbone(&survey, number, level) } else { Vec::new() };
-            cycles.extend(rows_of(&survey, number, (field, division), &backbone));
+            let rows = rows_of(&survey, number, (field, division), &backbone);
+            if field == Field::Structure {
+                let own = elastic_plastic::figures(record.name(), &backbone, level);
+                levels.extend(levels::levels(&rows, elastic_plastic::mean_yield_input(&own)));
+                figures.extend(own);
+            }
+            if field == Field::Magnet {
+                figures.extend(saturation::figures(record));
+            }
+            cycles.extend(rows);
             points.extend(backbone);
         }
+        if let Some(density) = options.density.filter(|_| field.has_magnets()) {
+            for row in &mut cycles {
+                row.energy_per_mass = row.energy.map(|energy| energy / density);
+                row.power_per_mass = row.power.map(|power| power / density);
+            }
+        }
+        let (of_losses, separation) = match field {
+            Field::Magnet => loss_separation::figures(&cycles),
+            _ => (Vec::new(), None),
+        };
+        figures.extend(of_losses);
         let notes = notes(&survey, &cycles, (field, division));
-        Ok(Self { field, division, losses: losses(&cycles), cycles, backbone: points, notes })
+        let losses = losses(&cycles, separation.as_ref());
+        Ok(Self { field, division, losses, cycles, backbone: points, levels, figures, notes })
     }
 
     /// The rows of complete cycles.
@@ -181,7 +216,7 @@ fn rows_of(
     backbone: &[BackbonePoint],
 ) -> Vec<CycleRow> {
     let branches = survey.of_record(record);
-    let holds = if field.has_actuators() { holds(survey, record) } else { Vec::new() };
+    let holds = if field.has_holds() { holds(survey, record) } else { Vec::new() };
     let spans = divide(survey, record, division);
     let mut cumulative = Some(0.0);
     let (mut rows, mut unevenness) = (Vec::new(), Vec::new());
@@ -332,10 +367,21 @@ impl CycleReader<'_> {
             ));
         }
         let strands = self.strands(tips, (low, high));
-        if let Some((falling, rising)) = &strands
-            && self.field != Field::Actuator
-        {
+        if let Some((falling, rising)) = &strands {
             self.read_levels(row, falling, rising);
+            match self.field {
+                Field::Actuator | Field::General => {
+                    row.nonlinearity_percent = branches::nonlinearity_percent(falling, rising, (low, high));
+                }
+                Field::Thermal => branches::read_transitions(row, falling, rising, (low, high)),
+                Field::Hydrology => {
+                    row.hysteresis_index = branches::hysteresis_index(falling, rising, (low, high));
+                }
+                _ => {}
+            }
+        }
+        if self.field == Field::Battery && path.blanks() == 0 {
+            branches::read_battery(row, &path.x, &path.y);
         }
         if high - low < COMES_BACK * (highest - lowest) {
             row.notes.push(match closure {
@@ -345,7 +391,7 @@ impl CycleReader<'_> {
                 _ => "the input goes beyond where the cycle began: the loop is the part before".into(),
             });
             if closure == Closure::BeginningCut {
-                (row.coercive_input, row.remanent_output) = (None, None);
+                (row.coercive_input, row.remanent_output, row.squareness) = (None, None, None);
                 return;
             }
         }
@@ -364,7 +410,10 @@ impl CycleReader<'_> {
                 row.secant_stiffness = Some(secant(valley, peak)).filter(|slope| slope.is_finite());
             }
         }
-        if self.field != Field::Actuator && path.blanks() == 0 {
+        if self.field.has_structures() && path.blanks() == 0 {
+            self.read_modulus(row);
+        }
+        if self.field.has_areas() && path.blanks() == 0 {
             let crosses =
                 strands.as_ref().is_some_and(|(falling, rising)| cross(falling, rising, (low, high)));
             self.read_area(row, &path, high - low, crosses);
@@ -376,10 +425,31 @@ impl CycleReader<'_> {
         if should_close && path.blanks() == 0 {
             self.note_open_loop(row, &path);
         }
-        if self.field.has_actuators() && is_coarse {
+        if self.field.has_widths() && is_coarse {
             row.notes.push("no width: the rows are too far apart".into());
-        } else if self.field.has_actuators() {
+        } else if self.field.has_widths() {
             self.read_width(row, &path, high - low);
+        }
+    }
+
+    /// Storage and loss modulus of a cycle of a sine.
+    fn read_modulus(&self, row: &mut CycleRow) {
+        let Some(time) = self.record.time() else { return };
+        let Span { from, to, .. } = *self.span;
+        let inner = from.floor() as usize + 1..to.ceil() as usize;
+        let column = |values: &[f64], last: f64| -> Vec<f64> {
+            let missing = (self.missing_time() > 0.0).then_some(last);
+            let rows = values[inner.clone()].iter().copied();
+            [at(values, from)].into_iter().chain(rows).chain([at(values, to)]).chain(missing).collect()
+        };
+        // Where the last step is missing, the cycle comes back to where it began.
+        let (x, y) = (&self.record.inputs()[0], self.record.output());
+        let end = at(time, to) + self.missing_time();
+        let columns = (column(time, end), column(x, at(x, from)), column(y, at(y, from)));
+        if let Some(modulus) = ComplexModulus::of(&columns.0, &columns.1, &columns.2) {
+            row.storage_modulus = Some(modulus.storage);
+            row.loss_modulus = Some(modulus.loss);
+            row.loss_angle = Some(modulus.angle());
         }
     }
 
@@ -542,6 +612,8 @@ impl CycleReader<'_> {
         }
         let (down, up) = (falling.output_at(0.0, CLOSED * swing), rising.output_at(0.0, CLOSED * swing));
         row.remanent_output = down.zip(up).map(|(down, up)| told(0.5 * (down - up).abs(), height));
+        row.squareness =
+            row.remanent_output.map(|remanence| 2.0 * remanence / height).filter(|ratio| ratio.is_finite());
         if row.remanent_output.is_none() {
             row.notes.push("a branch does not pass the input 0: no remanence".into());
         }
@@ -672,20 +744,6 @@ fn end_without_noise(x: &[f64], branch: &Branch, is_last: bool) -> Option<f64> {
     Some(places.iter().map(|place| parabola.weight(place) * place.x).sum())
 }
 
-/// True if the ways down and up change sides between their ends, by more than a small part of what is between them.
-fn cross(falling: &Strand, rising: &Strand, (low, high): (f64, f64)) -> bool {
-    let (mut above, mut below) = (0.0, 0.0);
-    for place in 1..LEVELS {
-        let x = low + (high - low) * f64::from(place) / f64::from(LEVELS);
-        let within = CLOSED * (high - low);
-        if let Some((down, up)) = falling.output_at(x, within).zip(rising.output_at(x, within)) {
-            above += (down - up).max(0.0);
-            below += (up - down).max(0.0);
-        }
-    }
-    f64::min(above, below) > CROSSED * (above + below)
-}
-
 /// Which branch does not pass a level.
 fn missed(after_peak: bool, after_valley: bool) -> Option<&'static str> {
     match (after_peak, after_valley) {
@@ -732,57 +790,4 @@ impl Tips {
 fn damping(energy: f64, stiffness: f64, swing: f64) -> Option<f64> {
     let stored = 0.5 * stiffness * square(0.5 * swing);
     (stored > 0.0 && energy >= 0.0).then(|| energy / (4.0 * PI * stored))
-}
-
-/// Figures that every row lacks, and why.
-fn notes(survey: &BranchSet, cycles: &[CycleRow], (field, division): (Field, Division)) -> Vec<String> {
-    let mut notes = Vec::new();
-    let complete = cycles.iter().filter(|row| row.complete).count();
-    if complete == 0 {
-        notes.push("no whole cycle: the input does not come back to where a cycle began".to_string());
-    }
-    let hidden = survey.smallest_reversal;
-    if hidden > HIDDEN * survey.width() && survey.input_noise.deviation() > JITTERS * survey.width() {
-        notes.push(format!(
-            "reversals of the input below {:.2}, {:.1} % of its range, are not told from its noise",
-            Significant(hidden),
-            100.0 * hidden / survey.width()
-        ));
-    }
-    notes.extend(check(cycles, division));
-    if !survey.data.has_time() {
-        let missing = match field {
-            Field::Structure => "period and frequency",
-            Field::Magnet => "period, frequency and loss per time",
-            Field::Actuator => "period, frequency and creep",
-            Field::General => "period, frequency, loss per time and creep",
-        };
-        notes.push(format!("no time: no {missing}"));
-    } else if field == Field::Actuator && cycles.iter().all(|row| row.creep.is_none()) {
-        notes.push("no creep: the input rests nowhere long enough".into());
-    }
-    notes
-}
-
-/// Contradictions in a table: rows that do not follow each other, amplitudes that are not those of the reversals.
-fn check(cycles: &[CycleRow], division: Division) -> Vec<String> {
-    let mut notes = Vec::new();
-    let follows = |pair: &[CycleRow]| {
-        pair[0].record != pair[1].record || pair[1].rows.0.saturating_sub(pair[0].rows.1) <= 1
-    };
-    if !cycles.windows(2).all(follows) {
-        notes.push("cycles do not follow each other without a gap: check their rows".into());
-    }
-    let differs = |row: &&CycleRow| {
-        let tips = row.peak_input.zip(row.valley_input).map(|(peak, valley)| 0.5 * (peak - valley));
-        row.complete && tips.zip(row.amplitude).is_some_and(|(tips, own)| (tips - own).abs() > MISMATCH * own)
-    };
-    let unlike: Vec<String> = cycles.iter().filter(differs).map(|row| row.cycle.to_string()).collect();
-    if division != Division::Reversals && !unlike.is_empty() {
-        notes.push(format!(
-            "amplitudes that are not half the distance of the reversals: cycles {}",
-            unlike.join(", ")
-        ));
-    }
-    notes
 }

@@ -12,7 +12,7 @@ use crate::branch::BranchSet;
 pub(super) const ACCEPTED: f64 = 0.05;
 
 /// Smoothing factors that are tried.
-const TRIED: std::ops::RangeInclusive<usize> = 2..=6;
+const TRIED: std::ops::RangeInclusive<usize> = 1..=6;
 
 /// Share of a full window that must have rows. On the diagonal half of the window has none.
 const FULL: f64 = 0.45;
@@ -93,8 +93,9 @@ impl Smoothing {
         let windows: Vec<Vec<[f64; 4]>> =
             nodes.iter().map(|&(curve, x)| self.window(curve, x, factor)).collect();
         let full = windows.iter().map(Vec::len).max().unwrap_or(0);
-        let is_filled =
-            |window: &Vec<[f64; 4]>| window.len() > COEFFICIENTS && window.len() as f64 >= FULL * full as f64;
+        let is_filled = |window: &Vec<[f64; 4]>| {
+            window.len() >= COEFFICIENTS && window.len() as f64 >= FULL * full as f64
+        };
         windows.iter().map(|window| is_filled(window).then(|| self.density(window, factor))?).collect()
     }
 

@@ -52,10 +52,10 @@ fn found(data: &Dataset) -> ReversalCurves {
 }
 
 #[test]
-fn a_known_density_is_found_within_four_percent_of_its_largest_value() {
+fn a_known_density_is_found_within_two_percent_of_its_largest_value() {
     let curves = found(&curves(0.0));
     assert!(curves.rising);
-    assert_eq!((curves.curves.len(), curves.smoothing_factor), (40, 2));
+    assert_eq!((curves.curves.len(), curves.smoothing_factor), (40, 1));
     assert_relative_eq!(curves.step, 0.1, epsilon = 1e-9);
     assert_eq!(curves.nodes.len(), (1..=40).map(|k| k + 1).sum::<usize>());
     let mut known = 0;
@@ -65,16 +65,70 @@ fn a_known_density_is_found_within_four_percent_of_its_largest_value() {
         assert_relative_eq!(node.output, output(r, x), epsilon = 1e-9);
         if let Some(found) = node.density {
             known += 1;
-            assert!((found - density(x, r)).abs() < 0.04, "{r} {x}: {found} {}", density(x, r));
+            assert!((found - density(x, r)).abs() < 0.02, "{r} {x}: {found} {}", density(x, r));
         }
     }
-    assert!(known as f64 > 0.95 * curves.nodes.len() as f64, "{known} of {}", curves.nodes.len());
+    assert!(known as f64 > 0.94 * curves.nodes.len() as f64, "{known} of {}", curves.nodes.len());
+}
+
+/// Integral of the density over the other field, within the triangle that was measured, by the midpoint rule.
+fn marginal(of: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let step = 1e-3;
+    let places = (-4000..4000).map(|k| of((f64::from(k) + 0.5) * step));
+    // dr dx = 2 dH_c dH_u
+    places.filter(|(x, r)| *x >= *r && *x <= END && *r >= -END).map(|(x, r)| 2.0 * step * density(x, r)).sum()
+}
+
+#[test]
+fn marginal_distributions_are_integrals_of_the_density() {
+    let curves = found(&curves(0.0));
+    let [coercivity, interaction] = curves.marginals();
+    for value in coercivity.iter().filter(|value| (0.1..1.5).contains(&value.field)) {
+        let exact = marginal(|u| (u + value.field, u - value.field));
+        assert!((value.density - exact).abs() < 0.02, "{value:?} {exact}");
+    }
+    for value in interaction.iter().filter(|value| value.field.abs() < 1.5) {
+        let exact = marginal(|c| (value.field + c, value.field - c));
+        // The nodes on the diagonal stand for whole cells.
+        assert!((value.density - exact).abs() < 0.15, "{value:?} {exact}");
+    }
+}
+
+/// Single rows at 3, before each curve, whose outputs and those of the curves drift by 0.3 in all.
+#[test]
+fn calibration_points_are_left_out_and_their_drift_is_removed() {
+    let (mut x, mut y) = (vec![], vec![]);
+    for reversal in 1..=30 {
+        let r = 1.0 - 0.1 * f64::from(reversal);
+        let points = (0..=10 + reversal).map(|k| r + 0.1 * f64::from(k));
+        for (input, own) in std::iter::once((3.0, 1.0)).chain(points.map(|x| (x, output(r, x)))) {
+            x.push(input);
+            y.push(own);
+        }
+    }
+    x.push(3.0);
+    y.push(1.0);
+    let last = (x.len() - 1) as f64;
+    let drifting = y.iter().enumerate().map(|(row, y)| y + 0.3 * row as f64 / last).collect::<Vec<f64>>();
+    for (output, words) in [(&y, "show no drift"), (&drifting, "drift by 0.3")] {
+        let data = Dataset::from_slices(&x, output).unwrap();
+        let (cleaned, note) = without_calibration_points(&data).unwrap();
+        assert!(note.starts_with("31 calibration points at 3") && note.contains(words), "{note}");
+        let curves = found(&cleaned);
+        assert_eq!(curves.curves.len(), 30);
+        assert_relative_eq!(curves.end, 2.0, epsilon = 1e-9);
+        for node in &curves.nodes {
+            assert!(node.input <= 2.0 + 1e-9);
+            assert_relative_eq!(node.everett, everett(node.input, node.reversal_input), epsilon = 1e-9);
+        }
+        assert!(without_calibration_points(&cleaned).is_none());
+    }
 }
 
 #[test]
 fn noise_chooses_more_smoothing_and_the_deviation_is_that_of_the_errors() {
     let curves = found(&curves(0.03));
-    assert!(curves.smoothing_factor > 2, "{}", curves.smoothing_factor);
+    assert!(curves.smoothing_factor > 1, "{}", curves.smoothing_factor);
     let errors: Vec<f64> = curves
         .nodes
         .iter()

@@ -51,6 +51,17 @@ impl Axis {
         Self { label, logarithmic, low, high, ticks: Vec::new(), step: 0.0 }
     }
 
+    /// Difference of its ends.
+    pub(super) fn span(&self) -> f64 {
+        self.high - self.low
+    }
+
+    /// The axis with this difference of its ends and the same middle.
+    pub(super) fn with_span(&self, span: f64) -> Self {
+        let middle = 0.5 * (self.low + self.high);
+        Self::new(self.label.clone(), self.logarithmic, middle - 0.5 * span, middle + 0.5 * span)
+    }
+
     /// The axis with about this many ticks, at least two.
     pub(super) fn with_ticks(mut self, count: usize) -> Self {
         let wanted = (self.high - self.low) / count.max(2) as f64;

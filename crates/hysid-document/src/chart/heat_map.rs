@@ -10,6 +10,10 @@ use super::thin::Point;
 use super::{Chart, Colour, Curve, LEVELS};
 use crate::number::number;
 
+/// Width and height of a heat map, in pixels.
+const WIDTH: f64 = 680.0;
+const HEIGHT: f64 = 560.0;
+
 /// A cell of a heat map: a range along each of two coordinates, and the value in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeatCell {
@@ -21,7 +25,7 @@ pub struct HeatCell {
 }
 
 /// A heat map of cells, which are in rows along the first coordinate. `place` gives the point of the chart at two coordinates.
-/// Cells without a finite value are left out. `x` and `y` are the labels of the axes, `description` is for readers who cannot
+/// Cells without a finite value are left out; both axes have the same scale. `x` and `y` are the labels of the axes, `description` is for readers who cannot
 /// see the chart.
 ///
 /// ```
@@ -62,7 +66,8 @@ pub fn heat_map(
     let used = LEVELS.filter(|level| areas.iter().any(|(used, _)| used == level));
     let legend: Vec<(Colour, String)> =
         used.map(|level| (Colour::Level(level), limits(level, step))).collect();
-    Chart::new(description, x, y, curves).with_height(560.0).with_legend(legend)
+    let chart = Chart::new(description, x, y, curves).sized(WIDTH, HEIGHT).with_legend(legend);
+    Chart { has_equal_axes: true, ..chart }
 }
 
 /// The width of a class: round, and such that the values have at most as many classes as there are levels.
@@ -110,6 +115,13 @@ mod tests {
         assert_eq!(names, ["below −2.5", "−0.5 to 0.5", "3.5 to 4.5", "7.5 to 8.5"]);
         let svg = chart.svg();
         assert_balanced(&svg);
+        // The first area is two units wide and one high.
+        let path = svg.split("fill=\"#102030\"").next().unwrap().rsplit("<path").next().unwrap();
+        let numbers: Vec<f64> = path
+            .split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'))
+            .filter_map(|text| text.parse().ok())
+            .collect();
+        eprintln!("{numbers:?}");
         for marker in ["#102038", "#102133", "#102034", "#102030"] {
             assert!(svg.contains(&format!("fill=\"{marker}\"")), "{marker}");
             assert!(super::super::style().contains(&format!("[fill=\"{marker}\"]")), "{marker}");

@@ -3,7 +3,7 @@
 use super::Chart;
 use super::appearance::{Appearance, PIXELS_PER_MILLIMETRE};
 use super::curves::{attributes, curves};
-use super::frame::{FINE, frame, room_of_axis};
+use super::frame::{self, FINE, room_of_axis};
 use super::palette::{fixed, style};
 use crate::escape::escape;
 
@@ -90,7 +90,12 @@ fn shared_room(charts: &[Chart], columns: usize, appearance: &Appearance) -> (us
 
 /// The `svg` element; `outer` are further attributes of it and `beginning` its first content, both markup.
 fn element(chart: &Chart, appearance: &Appearance, outer: &str, beginning: &str, tracks: bool) -> String {
-    let frame = frame(chart, appearance);
+    let mut frame = frame::frame(chart, appearance);
+    let equal = chart.has_equal_axes.then(|| equalised(chart, frame.place));
+    let chart = equal.as_ref().unwrap_or(chart);
+    if chart.has_equal_axes {
+        frame = frame::frame(chart, appearance);
+    }
     let curves = curves(chart, &frame, appearance, tracks);
     let attributes = if tracks { attributes(chart, &frame) } else { String::new() };
     let drawing = format!("<g class=\"frame\">{}</g>\n{curves}", frame.markup);
@@ -102,4 +107,11 @@ fn element(chart: &Chart, appearance: &Appearance, outer: &str, beginning: &str,
         FINE * chart.size.0,
         FINE * chart.size.1
     )
+}
+
+/// The chart with one axis longer, so that both have the same scale in a place of this width and height.
+fn equalised(chart: &Chart, [.., width, height]: [i32; 4]) -> Chart {
+    let (width, height) = (f64::from(width), f64::from(height));
+    let scale = (chart.x.span() / width).max(chart.y.span() / height);
+    Chart { x: chart.x.with_span(scale * width), y: chart.y.with_span(scale * height), ..chart.clone() }
 }

@@ -15,6 +15,7 @@ fn chart(points: Vec<Point>) -> Chart {
         curves: vec![Curve::new(points, Colour::Simulated, 1.5)],
         legend: vec![(Colour::Simulated, "model".into())],
         shares_axis: false,
+        has_equal_axes: false,
     }
 }
 

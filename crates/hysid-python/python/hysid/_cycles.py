@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hysid import _hysid
-from hysid._arguments import fraction, name_of, truth, whole
+from hysid._arguments import fraction, name_of, real, truth, whole
 from hysid._data import columns
 
 if TYPE_CHECKING:
@@ -23,7 +23,19 @@ FIRST = ("record", "cycle", "first_row", "last_row", "complete")
 LAST = ("backbone_peak", "backbone_valley", "notes")
 
 BACKBONE = ("record", "row", "direction", "input", "output")
-LOSSES = ("amplitude", "frequency", "energy", "power", "cycles")
+LOSSES = (
+    "amplitude",
+    "output_amplitude",
+    "frequency",
+    "energy",
+    "power",
+    "hysteresis",
+    "eddy",
+    "excess",
+    "cycles",
+)
+LEVELS = ("record", "level", "cycles")
+FIGURES = ("record", "of", "name", "symbol", "value", "deviation", "low", "high", "source", "note")
 NODES = ("reversal_input", "input", "output", "everett", "density", "density_deviation")
 
 
@@ -38,15 +50,23 @@ class Cycles(Mapping[str, np.ndarray]):
     Attributes
     ----------
     field : str
-        The field of engineering: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"``.
+        The field of engineering: ``"structure"``, ``"magnet"``, ``"actuator"``, ``"thermal"``, ``"battery"``,
+        ``"hydrology"`` or ``"general"``.
     division : str
         Where cycles begin: ``"zero"``, ``"mean"``, ``"reversals"`` or ``"start"``.
     rows : dict of arrays
         The columns.
     backbone : dict of arrays
         The turning points of the first cycle of each amplitude: record, row, direction, input, output.
+    levels : dict of arrays
+        The amplitude levels of structures: record, level, number of cycles, and the figures of docs/cycles.md, such as
+        strength_loss_percent.
+    figures : dict of arrays
+        Figures of whole records, such as ductility: record, the part that each is of, name, symbol, value, deviation,
+        low and high end of the 95 % interval, source, and a note.
     losses : dict of arrays
-        Means by amplitude and frequency: amplitude, frequency, energy, power, and the number of cycles.
+        Means by amplitude and frequency: amplitude, output_amplitude, frequency, energy, power, the separated parts
+        hysteresis, eddy and excess of the energy, and the number of cycles.
     reversal_curves : dict of arrays or None
         The nodes of first-order reversal curves, if there are any: reversal_input, input, output, everett, density,
         density_deviation.
@@ -60,6 +80,8 @@ class Cycles(Mapping[str, np.ndarray]):
     division: str
     rows: dict[str, np.ndarray]
     backbone: dict[str, np.ndarray]
+    levels: dict[str, np.ndarray]
+    figures: dict[str, np.ndarray]
     losses: dict[str, np.ndarray]
     reversal_curves: dict[str, np.ndarray] | None
     smoothing_factor: int | None
@@ -73,11 +95,18 @@ class Cycles(Mapping[str, np.ndarray]):
             {**row, "first_row": row["rows"][0], "last_row": row["rows"][1], "notes": "; ".join(row["notes"])}
             for row in table["cycles"]
         ]
+        figures = [
+            {**figure, "low": low, "high": high}
+            for figure in table["figures"]
+            for low, high in [figure["interval"] or (None, None)]
+        ]
         return cls(
             field=table["field"],
             division=table["division"],
             rows=_arrays(cycles, (*FIRST, *_hysid.figure_names(), *LAST)),
             backbone=_arrays(table["backbone"], BACKBONE),
+            levels=_arrays(table["levels"], (*LEVELS, *_hysid.level_figure_names())),
+            figures=_arrays(figures, FIGURES),
             losses=_arrays(table["losses"], LOSSES),
             reversal_curves=_arrays(curves["nodes"], NODES) if curves else None,
             smoothing_factor=curves["smoothing_factor"] if curves else None,
@@ -114,9 +143,9 @@ class Cycles(Mapping[str, np.ndarray]):
 
 def _arrays(rows: list[dict[str, Any]], names: tuple[str, ...]) -> dict[str, np.ndarray]:
     """Columns of rows; None is NaN."""
-    whole_numbers = {"cycle", "first_row", "last_row", "row", "cycles"}
+    whole_numbers = {"cycle", "first_row", "last_row", "row", "cycles", "level"}
     truths = {"complete", "backbone_peak", "backbone_valley"}
-    texts = {"record", "direction", "notes"}
+    texts = {"record", "direction", "notes", "of", "name", "symbol", "source", "note"}
 
     def column(name: str) -> np.ndarray:
         values = [row[name] for row in rows]
@@ -150,6 +179,7 @@ def cycles(
     smallest_reversal: float | None = None,
     smoothing: bool = True,
     smoothing_factor: int | None = None,
+    density: float | None = None,
 ) -> Cycles:
     """Read the figures of each cycle in measured data: energy, damping, stiffness, coercive field, losses, width, creep.
 
@@ -166,14 +196,16 @@ def cycles(
     division : str, optional
         Where cycles begin: ``"zero"``, ``"mean"``, ``"reversals"`` or ``"start"``; as suits the data by default.
     field : str, optional
-        What is read: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"`` (all); by default as names and units
-        of pandas objects indicate.
+        What is read: ``"structure"``, ``"magnet"``, ``"actuator"``, ``"thermal"``, ``"battery"``, ``"hydrology"`` or
+        ``"general"``; by default as names and units of pandas objects indicate.
     smallest_reversal : float, optional
         Reversals of the input below this share of its range are ignored; by default the noise of the input decides.
     smoothing : bool
         Smooth branches before outputs are read from them.
     smoothing_factor : int, optional
         Smoothing factor of the density of first-order reversal curves, 1 to 10; chosen by the noise by default.
+    density : float, optional
+        Mass density in kg/m³, for losses of magnets per mass.
 
     Returns
     -------
@@ -201,7 +233,11 @@ def cycles(
     smoothing = truth("smoothing", smoothing)
     options = named_options(division, field, smoothing_factor)
     arranged = columns(x, y, time, None, records)
-    return cycles_of(arranged, *options, smallest_reversal=smallest_reversal, smoothing=smoothing)
+    if density is not None and not (density := real("density", density)) > 0:
+        raise ValueError(f"density: a number above 0 is needed, not {density}")
+    return cycles_of(
+        arranged, *options, smallest_reversal=smallest_reversal, smoothing=smoothing, density=density
+    )
 
 
 def cycles_of(
@@ -212,7 +248,8 @@ def cycles_of(
     *,
     smallest_reversal: float | None = None,
     smoothing: bool = True,
+    density: float | None = None,
 ) -> Cycles:
     """The figures of each cycle in columns; arguments as of `cycles`."""
     options = (division, field, smoothing_factor)
-    return Cycles._of(_hysid.cycles(arranged.dataset(), smallest_reversal, smoothing, *options))
+    return Cycles._of(_hysid.cycles(arranged.dataset(), smallest_reversal, smoothing, *options, density))

@@ -27,6 +27,7 @@ __all__ = [
     "folds",
     "identify",
     "law",
+    "level_figure_names",
     "model_names",
     "name_and_unit",
     "option_names",
@@ -217,9 +218,11 @@ def cycles(
     division: str | None,
     field: str | None,
     smoothing_factor: int | None,
+    density: float | None,
 ) -> str: ...
 def figure_label(figure: str, input: str, output: str, time: str | None) -> str: ...
 def figure_names() -> list[str]: ...
+def level_figure_names() -> list[str]: ...
 def axis_label(column: str) -> str: ...
 def name_and_unit(column: str) -> tuple[str, str | None]: ...
 def folds(

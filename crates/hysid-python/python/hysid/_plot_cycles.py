@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["backbone", "cycles", "energy", "frequency"]
 
 FIGURE = {"structure": "energy", "magnet": "energy", "actuator": "width_percent", "general": "energy"}
+FIGURE |= {"thermal": "thermal_width", "battery": "mean_gap", "hydrology": "hysteresis_index"}
 """The figure of a cycle that each field looks at first."""
 
 DOTS: dict[str, dict[str, Any]] = {

@@ -792,8 +792,8 @@ class Model(StoredModel):
         division : str, optional
             Where cycles begin: ``"zero"``, ``"mean"`` or ``"reversals"``; as suits the data by default.
         field : str, optional
-            What is read: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"``; by default as the names and
-            units of the columns indicate.
+            What is read: ``"structure"``, ``"magnet"``, ``"actuator"``, ``"thermal"``, ``"battery"``, ``"hydrology"`` or
+            ``"general"``; by default as the names and units of the columns indicate.
         smoothing_factor : int, optional
             Smoothing factor of the density of the reversal curves, 1 to 10; chosen by default.
 

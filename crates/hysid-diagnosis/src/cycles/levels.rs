@@ -1,0 +1,104 @@
+//! Amplitude levels of a cyclic test: what is lost within a level, and from one to the next.
+
+use serde::Serialize;
+
+use super::row::CycleRow;
+
+/// Successive cycles whose amplitudes differ by less than this share are of one level.
+const ALIKE: f64 = 0.05;
+
+/// Successive complete cycles of one amplitude. The output of a cycle is half the distance of the outputs at its peak and its valley.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LevelRow {
+    /// Name of the record.
+    pub record: String,
+    /// Number of the level within its record, counted from 1.
+    pub level: usize,
+    /// Number of its cycles.
+    pub cycles: usize,
+    /// Amplitude of its first cycle.
+    pub amplitude: Option<f64>,
+    /// Output of its first cycle.
+    pub output_first: Option<f64>,
+    /// Loss of output from its first to its last cycle, in percent of the first.
+    pub strength_loss_percent: Option<f64>,
+    /// Output of its first cycle in percent of the largest so far.
+    pub strength_percent: Option<f64>,
+    /// Secant stiffness of its first cycle.
+    pub stiffness_first: Option<f64>,
+    /// Loss of secant stiffness from its first to its last cycle, in percent of the first.
+    pub stiffness_loss_percent: Option<f64>,
+    /// Secant stiffness of its first cycle in percent of that of the first level.
+    pub stiffness_percent: Option<f64>,
+    /// Energy of its first cycle.
+    pub energy_first: Option<f64>,
+    /// Mean energy of its cycles.
+    pub energy_mean: Option<f64>,
+    /// Mean equivalent damping of its cycles.
+    pub damping_percent: Option<f64>,
+    /// Energy of all complete cycles of the record up to its end.
+    pub cumulative_energy: Option<f64>,
+    /// Amplitude over the yield input of the mean backbone.
+    pub ductility: Option<f64>,
+    /// Sum of the ductilities of all half cycles of the record up to its end.
+    pub cumulative_ductility: Option<f64>,
+}
+
+/// The levels of the rows of one record. `yielding` is the yield input of its mean backbone.
+pub(super) fn levels(rows: &[CycleRow], yielding: Option<f64>) -> Vec<LevelRow> {
+    let complete: Vec<&CycleRow> = rows.iter().filter(|row| row.complete).collect();
+    let is_same = |a: &&CycleRow, b: &&CycleRow| {
+        a.amplitude.zip(b.amplitude).is_some_and(|(a, b)| (a - b).abs() <= ALIKE * a.max(b))
+    };
+    let (mut travelled, mut strongest, mut stiffness) = (Some(0.0), 0.0, None);
+    let groups = complete.chunk_by(is_same).enumerate();
+    let of_group = |(number, group): (usize, &[&CycleRow])| {
+        let (first, last) = (group[0], group[group.len() - 1]);
+        let of_all =
+            |of: fn(&CycleRow) -> Option<f64>| group.iter().map(|row| of(row)).collect::<Option<Vec<f64>>>();
+        let mean = |of| of_all(of).map(|values| values.iter().sum::<f64>() / values.len() as f64);
+        let own = output(first);
+        strongest = own.map_or(strongest, |own| f64::max(strongest, own));
+        stiffness = stiffness.or(first.secant_stiffness);
+        let amplitudes = of_all(|row| row.amplitude).map(|amplitudes| 2.0 * amplitudes.iter().sum::<f64>());
+        travelled = travelled.zip(amplitudes).map(|(sum, amplitudes)| sum + amplitudes);
+        let over_yield = |value: Option<f64>| value.zip(yielding).map(|(value, yielding)| value / yielding);
+        LevelRow {
+            record: first.record.clone(),
+            level: number + 1,
+            cycles: group.len(),
+            amplitude: first.amplitude,
+            output_first: own,
+            strength_loss_percent: loss(group, own, output(last)),
+            strength_percent: own.and_then(|own| percent(own, strongest)),
+            stiffness_first: first.secant_stiffness,
+            stiffness_loss_percent: loss(group, first.secant_stiffness, last.secant_stiffness),
+            stiffness_percent: first
+                .secant_stiffness
+                .zip(stiffness)
+                .and_then(|(own, first)| percent(own, first)),
+            energy_first: first.energy,
+            energy_mean: mean(|row| row.energy),
+            damping_percent: mean(|row| row.damping_percent),
+            cumulative_energy: last.cumulative_energy,
+            ductility: over_yield(first.amplitude),
+            cumulative_ductility: over_yield(travelled),
+        }
+    };
+    groups.map(of_group).collect()
+}
+
+/// Half the distance of the outputs at peak and valley.
+fn output(row: &CycleRow) -> Option<f64> {
+    Some(0.5 * (row.peak_output? - row.valley_output?))
+}
+
+fn percent(part: f64, whole: f64) -> Option<f64> {
+    (whole > 0.0).then(|| 100.0 * part / whole)
+}
+
+/// Loss from the first to the last of several cycles.
+fn loss(group: &[&CycleRow], first: Option<f64>, last: Option<f64>) -> Option<f64> {
+    let (first, last) = first.zip(last).filter(|_| group.len() > 1)?;
+    percent(first - last, first)
+}
