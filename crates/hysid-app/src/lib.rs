@@ -14,6 +14,7 @@ mod band_coverage;
 mod beforehand;
 pub mod compare;
 mod course;
+mod cycle_comparison;
 pub mod cycles;
 pub mod date;
 pub mod diagnosis;
@@ -142,6 +143,7 @@ pub fn page(report: &Report) -> Page {
     parts.push(errors::section(report));
     parts.extend(provenance::notes(report));
     parts.push(provenance::warnings(report));
+    parts.extend(report.sets.iter().filter_map(cycle_comparison::section));
     parts.extend(report.sets.iter().map(histories::section));
     parts.extend(frequency_response::section(report));
     parts.extend(usage::sections(report));

@@ -7,6 +7,8 @@ use hysid::fit::network::fit;
 use hysid::options::network::FitOptions;
 use hysid_core::elementary::sin;
 use hysid_core::network::Sizes;
+use hysid_core::operator::{Operator, Stop};
+use hysid_document::{Cell, Part};
 
 use super::*;
 
@@ -194,4 +196,23 @@ fn a_response_that_cannot_be_drawn_is_explained() {
         let section = section.split("</section>").next().unwrap();
         assert!(section.contains(told), "{told}: {section}");
     }
+}
+
+/// An elastic, perfectly plastic member, and a model whose force is a tenth too large: energy and stiffness differ by 10 %,
+/// damping and residual displacement do not.
+#[test]
+fn cycles_of_the_model_stand_beside_those_of_the_data() {
+    let x: Vec<f64> = (0..=1200).map(|k| 3.0 * sin(std::f64::consts::TAU * f64::from(k) / 400.0)).collect();
+    let y = Stop::new(1.0).unwrap().run(&x);
+    let simulated = vec![y.iter().map(|y| 1.1 * y).collect::<Vec<f64>>()];
+    let record = Record::new("r", vec![x], y).unwrap();
+    let data = Dataset::new(ColumnNames::of(None, &["x_mm"], "force_kN"), vec![record]).unwrap();
+    let set = ReportSet { simulated, ..set("training", &model(&data), &data) };
+    let Some(Part::Section(_, parts)) = cycle_comparison::section(&set) else { panic!("no section") };
+    let Some(Part::Table(table)) = parts.last() else { panic!("no table") };
+    assert_eq!(table.rows.len(), 3);
+    let second: Vec<String> = table.rows[1].iter().map(Cell::ascii).collect();
+    let expected =
+        ["2", "3", "8", "8.8", "+10.0", "42.4", "42.4", "+0.0", "0.333", "0.367", "+10.0", "2", "2", "+0.0"];
+    assert_eq!(second, expected, "{:?}", table.columns);
 }

@@ -1,0 +1,109 @@
+//! The cycles of a model beside those of the data, cycle by cycle.
+
+use hysid::data::record::{Dataset, Record};
+use hysid::diagnosis::cycles::{CycleOptions, CycleRow, CycleTable, FIGURES, Field, Figure};
+use hysid_document::{Cell, Part, Table, count, unit};
+
+use crate::ReportSet;
+use crate::quantities::Quantities;
+
+/// Most cycles of a table: of more, the one of the largest amplitude and others at equal distances are shown.
+const MOST_CYCLES: usize = 30;
+
+/// Significant digits of figures.
+const DIGITS: u8 = 3;
+
+/// Figures that are compared.
+fn names(field: Field) -> &'static [&'static str] {
+    match field {
+        Field::Structure => &["energy", "damping_percent", "secant_stiffness", "residual_after_peak"],
+        Field::Magnet => &["energy", "coercive_input", "remanent_output"],
+        Field::Actuator => &["width", "output_max"],
+        Field::Thermal => &["thermal_width", "width"],
+        Field::Battery => &["energy", "mean_gap"],
+        Field::Hydrology => &["hysteresis_index"],
+        Field::General => &["energy", "width", "secant_stiffness"],
+    }
+}
+
+/// The table of the data and that of the model on the same inputs, divided alike; `None` for data without loops.
+fn tables(set: &ReportSet) -> Option<(CycleTable, CycleTable)> {
+    let measured = CycleTable::of(set.data, &CycleOptions::default()).ok()?;
+    let with_model = |(record, output): (&Record, &Vec<f64>)| {
+        // Where nothing was measured, nothing is compared.
+        let rows = output.iter().zip(record.output());
+        record
+            .clone()
+            .with_output(rows.map(|(model, y)| if y.is_nan() { f64::NAN } else { *model }).collect())
+    };
+    let records = set.data.records().iter().zip(&set.simulated).map(with_model);
+    let simulated =
+        Dataset::new(set.data.names().clone(), records.collect::<hysid::Result<_>>().ok()?).ok()?;
+    let alike = CycleOptions {
+        division: Some(measured.division),
+        field: Some(measured.field),
+        ..CycleOptions::default()
+    };
+    let model = CycleTable::of(&simulated, &alike).ok()?;
+    Some((measured, model))
+}
+
+/// The section of a report; `None` for data without cycles.
+pub fn section(set: &ReportSet) -> Option<Part> {
+    let (measured, model) = tables(set)?;
+    let pairs: Vec<(&CycleRow, &CycleRow)> = measured
+        .complete()
+        .filter_map(|row| Some((row, model.complete().find(|other| is_of_same_rows(row, other))?)))
+        .collect();
+    let has = |figure: &&Figure| pairs.iter().any(|(row, _)| (figure.of)(row).is_some());
+    let of_name = |name: &&str| FIGURES.iter().find(|figure| figure.name == *name);
+    let figures: Vec<&Figure> =
+        names(measured.field).iter().filter_map(|name| of_name(name)).filter(has).collect();
+    if pairs.is_empty() || figures.is_empty() {
+        return None;
+    }
+    let quantities = Quantities::of(set.data.names());
+    let several = set.data.records().len() > 1;
+    let mut headings: Vec<String> = vec!["cycle".into(), unit::label(&quantities.as_input("amplitude"))];
+    for figure in &figures {
+        headings.extend([
+            unit::label(&quantities.as_figure(figure.label, figure.quantity)),
+            "model".into(),
+            "%".into(),
+        ]);
+    }
+    let every = pairs.len().div_ceil(MOST_CYCLES);
+    let largest = (0..pairs.len()).max_by(|&a, &b| amplitude(&pairs, a).total_cmp(&amplitude(&pairs, b)));
+    let shown = pairs.iter().enumerate().filter(|(place, _)| place % every == 0 || Some(*place) == largest);
+    let row_of = |(_, (row, other)): (usize, &(&CycleRow, &CycleRow))| -> Vec<Cell> {
+        let cycle = if several { format!("{}, {}", row.record, row.cycle) } else { row.cycle.to_string() };
+        let figures = figures.iter().flat_map(|figure| compared((figure.of)(row), (figure.of)(other)));
+        [cycle.into(), Cell::number(row.amplitude, DIGITS)].into_iter().chain(figures).collect()
+    };
+    let table = Table::new(headings).with_rows(shown.map(row_of));
+    let left_out = if every == 1 { "" } else { " Not all of them are in the table." };
+    let words = format!(
+        "Figures of {} of the data, of the model over the same rows, and by how many percent the model differs.{left_out}",
+        count(pairs.len(), "complete cycle")
+    );
+    Some(Part::section(format!("Cycles: {} data", set.name), [Part::note(words), Part::Table(table)]))
+}
+
+fn is_of_same_rows(row: &CycleRow, other: &CycleRow) -> bool {
+    row.record == other.record && row.rows == other.rows
+}
+
+fn amplitude(pairs: &[(&CycleRow, &CycleRow)], place: usize) -> f64 {
+    pairs[place].0.amplitude.unwrap_or_default()
+}
+
+/// A figure of the data, of the model, and the difference in percent of that of the data.
+fn compared(measured: Option<f64>, model: Option<f64>) -> [Cell; 3] {
+    let difference = measured.zip(model).filter(|(measured, _)| *measured != 0.0);
+    // The sum with 0 has no sign at 0.
+    let percent =
+        |(measured, model): (f64, f64)| (1000.0 * (model - measured) / measured.abs()).round() / 10.0 + 0.0;
+    let percent =
+        difference.map_or(Cell::Missing, |pair| format!("{:+.1}", percent(pair)).replace('-', "−").into());
+    [Cell::number(measured, DIGITS), Cell::number(model, DIGITS), percent]
+}
