@@ -1,5 +1,7 @@
 //! The cycles of a model beside those of the data, cycle by cycle.
 
+use std::collections::HashMap;
+
 use hysid::data::record::{Dataset, Record};
 use hysid::diagnosis::cycles::{CycleOptions, CycleRow, CycleTable, FIGURES, Field, Figure};
 use hysid_document::{Cell, Part, Table, count, unit};
@@ -51,10 +53,9 @@ fn tables(set: &ReportSet) -> Option<(CycleTable, CycleTable)> {
 /// The section of a report; `None` for data without cycles.
 pub fn section(set: &ReportSet) -> Option<Part> {
     let (measured, model) = tables(set)?;
-    let pairs: Vec<(&CycleRow, &CycleRow)> = measured
-        .complete()
-        .filter_map(|row| Some((row, model.complete().find(|other| is_of_same_rows(row, other))?)))
-        .collect();
+    let others: HashMap<_, &CycleRow> = model.complete().map(|row| (rows_of(row), row)).collect();
+    let pairs: Vec<(&CycleRow, &CycleRow)> =
+        measured.complete().filter_map(|row| Some((row, *others.get(&rows_of(row))?))).collect();
     let has = |figure: &&Figure| pairs.iter().any(|(row, _)| (figure.of)(row).is_some());
     let of_name = |name: &&str| FIGURES.iter().find(|figure| figure.name == *name);
     let figures: Vec<&Figure> =
@@ -89,8 +90,8 @@ pub fn section(set: &ReportSet) -> Option<Part> {
     Some(Part::section(format!("Cycles: {} data", set.name), [Part::note(words), Part::Table(table)]))
 }
 
-fn is_of_same_rows(row: &CycleRow, other: &CycleRow) -> bool {
-    row.record == other.record && row.rows == other.rows
+fn rows_of(row: &CycleRow) -> (&str, (usize, usize)) {
+    (&row.record, row.rows)
 }
 
 fn amplitude(pairs: &[(&CycleRow, &CycleRow)], place: usize) -> f64 {
