@@ -21,8 +21,8 @@ pub(super) const BACK_END: BackEnd = BackEnd {
     usage,
 };
 
-/// Turning points of the cycles that a native material is compared over, as shares of half the trained range.
-const TURNS: [f64; 9] = [0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 1.0, 0.5, 1.0];
+/// Turning points of the cycles that a material is compared over, as shares of half the trained range.
+const TURNS: [f64; 11] = [0.25, -0.25, 0.5, -0.5, 0.5, -0.5, 1.0, -1.0, 1.0, 0.5, 1.0];
 
 const ROWS_OF_BRANCH: usize = 50;
 
@@ -42,10 +42,16 @@ fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
     files.push(c::test(subject));
     files.push(ExportFile::new(format!("{name}Material.h"), material::header(subject)));
     files.push(ExportFile::new(format!("{name}Material.cpp"), material::source(subject)));
-    if let Ok(native) = native::Native::of(subject.model()) {
+    let model = subject.model();
+    if let Ok(native) = native::Native::of(model) {
         files.push(ExportFile::new(format!("{name}.tcl"), native.tcl()));
         files.push(ExportFile::new(format!("{name}.py"), native.python(name)));
-        files.push(ExportFile::new(format!("{name}_cycles.csv"), cycles(subject.model())));
+    } else if model.rate().is_none() {
+        let calibration = filled(include_str!("opensees/pinching4.py.txt"), &[("NAME", name)]);
+        files.push(ExportFile::new(format!("{name}_pinching4.py"), calibration));
+    }
+    if model.rate().is_none() {
+        files.push(ExportFile::new(format!("{name}_cycles.csv"), cycles(model)));
     }
     Ok(files.into())
 }
@@ -65,7 +71,16 @@ fn usage(subject: &ExportSubject<'_>) -> String {
             native.agreement(),
             native.constants()
         ),
-        Err(reason) => format!("There is no native command for this model: {reason}."),
+        Err(reason) if model.rate().is_some() => {
+            format!("There is no native command for this model: {reason}.")
+        }
+        Err(reason) => format!(
+            "There is no native command for this model: {reason}.\n\n\
+             `python {name}_pinching4.py` (with openseespy and scipy) calibrates OpenSees' `Pinching4`, for members that \
+             pinch and degrade, to `{name}_cycles.csv`, cycles of this model over its trained range. It prints the command \
+             and how much it differs. `python {name}_pinching4.py TABLE.csv X Y` does the same for a table that `hysid \
+             simulate` wrote."
+        ),
     };
     filled(
         include_str!("opensees/usage.md.txt"),

@@ -188,6 +188,20 @@ impl NativeCase {
     }
 }
 
+/// Runs a short calibration, and the command that it prints, from its text alone.
+const CALIBRATION: &str = include_str!("opensees/calibration.py.txt");
+
+#[test]
+fn pinching4_is_calibrated_where_there_is_no_native_law() {
+    let modules = ["numpy", "scipy", "openseespy.opensees"];
+    let Some(python) = python("the calibration of Pinching4", &modules) else { return };
+    let (_, model) = MODELS.iter().find(|(name, _)| name.starts_with("peak-oriented")).unwrap();
+    let folder = written(model, Target::OpenSees, &Options::named(NAME));
+    let output = succeeds(Command::new(python).current_dir(&folder).args(["-c", CALIBRATION]));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.ends_with("the command has the printed difference\n"), "{text}");
+}
+
 #[test]
 fn what_differs_has_no_native_command() {
     let law = BoucWen { damping: 1.0, ..BoucWen::new(2.0, 30.0, 1.5).unwrap() };
