@@ -8,6 +8,7 @@ mod model_options;
 mod plan;
 mod plot;
 mod program;
+mod program_help;
 mod reading;
 mod restoring_force;
 mod studio;
@@ -44,7 +45,13 @@ pub use studio::Studio;
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.
 #[derive(Debug, Parser)]
-#[command(name = "hysid", version, arg_required_else_help = true, max_term_width = 80)]
+#[command(
+    name = "hysid",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true,
+    max_term_width = 80
+)]
 pub struct Arguments {
     /// Say only warnings and errors on stderr
     ///
@@ -77,12 +84,13 @@ impl Arguments {
             }
         };
         let command = Self::whole().mut_subcommands(|command| command.mut_args(takes_numbers));
-        Self::from_arg_matches(&command.try_get_matches()?)
+        let words = program_help::in_one_word(std::env::args_os());
+        Self::from_arg_matches(&command.try_get_matches_from(words)?)
     }
 
     /// The definition of the whole command line.
     pub fn whole() -> clap::Command {
-        Self::command()
+        program_help::with_help(Self::command())
     }
 }
 
@@ -477,9 +485,9 @@ pub struct Evaluate {
     /// A model file of `hysid fit`
     #[arg(value_name = "MODEL.json")]
     pub model: PathBuf,
-    /// Table with the inputs of the model and the measured output
-    #[arg(value_name = "DATA.csv")]
-    pub data: PathBuf,
+    /// Tables with the inputs of the model and the measured output; each is evaluated by itself
+    #[arg(value_name = "DATA.csv", required = true)]
+    pub data: Vec<PathBuf>,
     /// Print the share of measured outputs within the prediction band of this probability, such as 0.9
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
@@ -729,17 +737,18 @@ mod tests {
 
     #[test]
     fn the_command_line_is_sound() {
-        Arguments::command().debug_assert();
+        Arguments::whole().debug_assert();
     }
 
     #[test]
     fn the_short_help_of_a_command_fits_on_a_screen_and_has_examples() {
         const LINES: usize = 40;
         const COLUMNS: usize = 80;
-        for command in Arguments::command().get_subcommands() {
+        for command in Arguments::whole().get_subcommands() {
             let name = command.get_name().to_string();
-            let typed = ["hysid", &name, "-h"];
-            let help = Arguments::try_parse_from(typed).expect_err("a request for help").to_string();
+            let typed = ["hysid", &name, "--help"];
+            let help =
+                Arguments::whole().try_get_matches_from(typed).expect_err("a request for help").to_string();
             assert!(help.contains("\nExamples:\n"), "{name} has no examples:\n{help}");
             assert!(help.lines().count() <= LINES, "{name} has {} lines:\n{help}", help.lines().count());
             let widest = help.lines().map(|line| line.chars().count()).max().unwrap_or(0);

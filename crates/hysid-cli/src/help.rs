@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use clap::CommandFactory;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use hysid_document::Problem;
 use hysid_document::shell::option;
 
@@ -22,10 +22,31 @@ fn typed() -> impl Iterator<Item = String> {
 /// The help of the command that these arguments of the program name. No option before the command takes a value.
 fn of_command(typed: impl IntoIterator<Item = String>) -> String {
     let named = typed.into_iter().find(|argument| !argument.starts_with('-'));
-    let command = Arguments::command();
+    let command = Arguments::whole();
     match named.as_deref().and_then(|name| command.find_subcommand(name)) {
         Some(command) => format!("hysid {} --help", command.get_name()),
         None => "hysid --help".into(),
+    }
+}
+
+/// Most letters that are missing, wrong or exchanged in a name that was meant.
+const MOST_SLIPS: usize = 2;
+
+/// Adds the command that was meant to an error about one that does not exist: short names with exchanged letters are too far
+/// apart for the library's own measure.
+pub fn suggest_command(error: &mut clap::Error) {
+    let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand) else { return };
+    if error.kind() != ErrorKind::InvalidSubcommand || error.get(ContextKind::SuggestedSubcommand).is_some() {
+        return;
+    }
+    let program = Arguments::whole();
+    let all = program.get_subcommands().map(|command| command.get_name());
+    let nearest = all.map(|one| (strsim::osa_distance(name, one), one)).min();
+    if let Some((slips, nearest)) = nearest
+        && slips <= MOST_SLIPS
+    {
+        let suggested = ContextValue::Strings(vec![nearest.to_string()]);
+        error.insert(ContextKind::SuggestedSubcommand, suggested);
     }
 }
 

@@ -23,7 +23,7 @@ use std::process::ExitCode;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use arguments::{Arguments, Command};
-use hysid_document::Problem;
+use hysid_document::{Problem, object};
 use messages::{StdoutClosed, insist, is_usage};
 
 /// How a command ended when nothing went wrong.
@@ -92,7 +92,9 @@ pub fn run() -> ExitCode {
         // Whoever read the results has seen enough.
         Err(error) if error.is::<StdoutClosed>() => ExitCode::SUCCESS,
         Err(error) => {
-            insist(format_args!("error: {error:#}{}", help::pointer(&error)));
+            let message = format!("{error:#}{}", help::pointer(&error));
+            insist(format_args!("error: {message}"));
+            say_as_json(&message);
             if interrupt::requested() && is_stopped(&error) {
                 return ExitCode::from(interrupt::exit_status());
             }
@@ -123,33 +125,28 @@ fn refuse(error: clap::Error) -> ExitCode {
         }
         _ => {
             let mut error = error;
-            let hint = match is_version(&error) {
-                // Commands have no version of their own, and no option that is like it.
-                true => {
-                    error.remove(ContextKind::SuggestedArg);
-                    Some("for the version: `hysid --version`".to_string())
-                }
-                false => is_extra_value(&error).then(help::hint_of_force).flatten(),
-            };
+            let hint = is_extra_value(&error).then(help::hint_of_force).flatten();
+            help::suggest_command(&mut error);
             let text = cleaned(error).render().to_string();
             let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
             let said: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:")).collect();
             let said = said.join(" ");
             let said = said.split(" For more information").next().unwrap_or_default().replace(" tip: ", "; ");
             let helps = hint.unwrap_or_else(|| format!("see `{}`", help::of_typed_command()));
-            insist(format_args!("{said} ({helps})"));
+            let message = format!("{said} ({helps})");
+            insist(format_args!("{message}"));
+            say_as_json(message.strip_prefix("error: ").unwrap_or(&message));
             ExitCode::from(2)
         }
     }
 }
 
-/// True if the error is about an option for the version.
-fn is_version(error: &clap::Error) -> bool {
-    let is_it = |value: &ContextValue| match value {
-        ContextValue::String(text) => text == "--version" || text == "-V",
-        _ => false,
-    };
-    error.kind() == ErrorKind::UnknownArgument && error.get(ContextKind::InvalidArg).is_some_and(is_it)
+/// With `--json`, an error is an object on stdout too, for programs that read it.
+fn say_as_json(message: &str) {
+    if std::env::args_os().any(|argument| argument == "--json") {
+        // Whoever closed stdout does not read it.
+        let _ = messages::json_results(&object! { error: message });
+    }
 }
 
 /// True if the error is about a value where none is expected.

@@ -7,7 +7,7 @@ Examples:
   hysid fit data.csv --model bouc-wen    one named model
   hysid fit a.csv b.csv --input i --output flux -o core.json
 
-All options: hysid fit --help; their ranges: docs/options.md";
+All options: hysid fit --help options; their ranges: docs/options.md";
 
 pub(super) const DEMO_EXAMPLES: &str = "\
 Examples:
@@ -23,6 +23,7 @@ Examples:
 pub(super) const EVALUATE_EXAMPLES: &str = "\
 Examples:
   hysid evaluate model.json test.csv
+  hysid evaluate model.json test-1.csv test-2.csv
   hysid evaluate model.json test.csv --band 0.9
   hysid evaluate model.json test.csv --residuals
   hysid evaluate model.json test.csv --json";

@@ -55,7 +55,7 @@ fn argument(option: &'static FitOption) -> Arg {
             .value_name(option.values.placeholder())
             .value_parser(by_name(names()))
             .hide_possible_values(true)
-            .help(format!("{help} [names: see --help]"))
+            .help(format!("{help} [names: see --help options]"))
             .long_help(format!("{help} [names: {}]", names().join(", "))),
         _ => {
             let read = |text: String| option.read(&text);
