@@ -8,8 +8,10 @@
 //! `W` is the loss of a cycle, `B` half the range of the output in it. Both fits are of relative errors. The coefficients of
 //! the second are not negative; its exponent is searched, and 2 where there is one amplitude.
 
+use hysid_core::data::record::Dataset;
 use hysid_core::elementary::{exp, ln, powf};
 
+use super::igse::{Steinmetz, Waveform};
 use super::least_squares::{LinearFit, fit};
 use super::record_figure::{RecordFigure, RecordFigureKind, record_figures};
 use super::row::CycleRow;
@@ -63,29 +65,73 @@ fn terms(exponent: f64, amplitude: f64, frequency: f64) -> [f64; 3] {
     [powf(amplitude, exponent), frequency * amplitude * amplitude, frequency.sqrt() * powf(amplitude, 1.5)]
 }
 
-/// Both laws of the losses of all records, and the second for [`Separation::parts`].
-pub(super) fn figures(rows: &[CycleRow]) -> (Vec<RecordFigure>, Option<Separation>) {
+/// Laws of the losses.
+#[derive(Debug, Default)]
+pub(super) struct LossLaws {
+    pub figures: Vec<RecordFigure>,
+    pub steinmetz: Option<Steinmetz>,
+    pub separation: Option<Separation>,
+}
+
+impl LossLaws {
+    /// Laws of the losses, by which each cycle gets its loss by the waveform of its output.
+    pub fn read(data: &Dataset, cycles: &mut [CycleRow]) -> Self {
+        let record = |row: &CycleRow| data.records().iter().find(|record| record.name() == row.record);
+        let waveforms: Vec<Option<Waveform>> =
+            cycles.iter().map(|row| Waveform::of(record(row)?, row)).collect();
+        let laws = laws(cycles, &waveforms);
+        for (row, waveform) in cycles.iter_mut().zip(&waveforms) {
+            row.igse_energy =
+                laws.steinmetz.as_ref().zip(waveform.as_ref()).map(|(law, wave)| wave.energy(law));
+        }
+        laws
+    }
+}
+
+/// The laws of the losses of all records. `waveforms` are those of the cycles that have one: if cycles of sines suffice for the Steinmetz
+/// equation, it is theirs alone.
+fn laws(rows: &[CycleRow], waveforms: &[Option<Waveform>]) -> LossLaws {
     let loss = |row: &CycleRow| {
         let (low, high) = row.output_min.zip(row.output_max)?;
         let loss =
             CycleLoss { amplitude: 0.5 * (high - low), frequency: row.frequency?, energy: row.energy? };
         (row.complete && loss.energy > 0.0 && loss.amplitude > 0.0 && loss.frequency > 0.0).then_some(loss)
     };
-    let losses: Vec<CycleLoss> = rows.iter().filter_map(loss).collect();
-    let (amplitudes, frequencies) = (
-        different(losses.iter().map(|loss| loss.amplitude)),
-        different(losses.iter().map(|loss| loss.frequency)),
-    );
-    if frequencies < 2 {
-        return (Vec::new(), None);
+    let all: Vec<(CycleLoss, bool)> = rows
+        .iter()
+        .zip(waveforms)
+        .filter_map(|(row, wave)| Some((loss(row)?, wave.as_ref().is_some_and(Waveform::is_sine))))
+        .collect();
+    let sines: Vec<CycleLoss> = all.iter().filter(|(_, is_sine)| *is_sine).map(|(loss, _)| *loss).collect();
+    let of_sines = frequencies(&sines) > 1;
+    let losses = if of_sines { sines } else { all.iter().map(|(loss, _)| *loss).collect() };
+    if frequencies(&losses) < 2 {
+        return LossLaws::default();
     }
-    let mut figures = steinmetz(&losses, amplitudes);
-    let separated = (frequencies >= 3).then(|| separation(&losses, amplitudes)).flatten();
+    let amplitudes = different(losses.iter().map(|loss| loss.amplitude));
+    let (mut figures, law) = steinmetz(&losses, amplitudes);
+    let separated = (frequencies(&losses) >= 3).then(|| separation(&losses, amplitudes)).flatten();
     match &separated {
         Some((own, _)) => figures.extend(own.iter().cloned()),
         None => figures.push(absent(HYSTERESIS, "a separation needs three frequencies at least")),
     }
-    (figures, separated.map(|(_, separation)| separation))
+    if !of_sines {
+        let note = "the flux density is no sine, which the law assumes";
+        figures
+            .iter_mut()
+            .filter(|figure| figure.note.is_none())
+            .for_each(|figure| figure.note = Some(note.into()));
+    }
+    LossLaws {
+        figures,
+        steinmetz: law.filter(|_| of_sines),
+        separation: separated.map(|(_, separation)| separation),
+    }
+}
+
+/// Number of different frequencies.
+fn frequencies(losses: &[CycleLoss]) -> usize {
+    different(losses.iter().map(|loss| loss.frequency))
 }
 
 fn absent(kind: &'static RecordFigureKind, why: &str) -> RecordFigure {
@@ -108,26 +154,27 @@ fn different(values: impl Iterator<Item = f64>) -> usize {
         .count()
 }
 
-fn steinmetz(losses: &[CycleLoss], amplitudes: usize) -> Vec<RecordFigure> {
+fn steinmetz(losses: &[CycleLoss], amplitudes: usize) -> (Vec<RecordFigure>, Option<Steinmetz>) {
     if amplitudes < 2 {
-        return vec![absent(COEFFICIENT, "the Steinmetz equation needs two amplitudes at least")];
+        return (vec![absent(COEFFICIENT, "the Steinmetz equation needs two amplitudes at least")], None);
     }
     let rows: Vec<[f64; 3]> =
         losses.iter().map(|loss| [1.0, ln(loss.frequency), ln(loss.amplitude)]).collect();
     let energies: Vec<f64> = losses.iter().map(|loss| ln(loss.energy)).collect();
     let Some(found) = fit(&rows, &energies) else {
-        return vec![absent(COEFFICIENT, "too few cycles for the Steinmetz equation")];
+        return (vec![absent(COEFFICIENT, "too few cycles for the Steinmetz equation")], None);
     };
     let ([level, frequency, amplitude], deviations) = (found.coefficients, found.deviations);
     let of = |kind, value, deviation| {
         RecordFigure::new(("", ""), kind, value).with_interval(deviation, found.degrees)
     };
-    vec![
+    let figures = vec![
         of(COEFFICIENT, exp(level), exp(level) * deviations[0]),
         of(FREQUENCY, frequency + 1.0, deviations[1]),
         of(AMPLITUDE, amplitude, deviations[2]),
         RecordFigure::new(("", ""), STEINMETZ_ERROR, 100.0 * found.rms),
-    ]
+    ];
+    (figures, Some(Steinmetz { coefficient: exp(level), frequency: frequency + 1.0, amplitude }))
 }
 
 /// Relative terms of the losses in columns that are chosen.
