@@ -74,7 +74,7 @@ pub(super) struct LossLaws {
 }
 
 impl LossLaws {
-    /// Laws of the losses, by which each cycle gets its loss by the waveform of its output.
+    /// Finds the laws and gives each cycle the loss that they have for its waveform.
     pub fn read(data: &Dataset, cycles: &mut [CycleRow]) -> Self {
         let record = |row: &CycleRow| data.records().iter().find(|record| record.name() == row.record);
         let waveforms: Vec<Option<Waveform>> =
@@ -88,7 +88,7 @@ impl LossLaws {
     }
 }
 
-/// The laws of the losses of all records. `waveforms` are those of the cycles that have one: if cycles of sines suffice for the Steinmetz
+/// The laws of the losses of all records. `waveforms` are those of the cycles; if cycles of sines suffice for the Steinmetz
 /// equation, it is theirs alone.
 fn laws(rows: &[CycleRow], waveforms: &[Option<Waveform>]) -> LossLaws {
     let loss = |row: &CycleRow| {
