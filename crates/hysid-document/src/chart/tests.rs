@@ -14,6 +14,7 @@ fn chart(points: Vec<Point>) -> Chart {
         y: Axis::linear("y", points.iter().map(|p| p.1)),
         curves: vec![Curve::new(points, Colour::Simulated, 1.5)],
         legend: vec![(Colour::Simulated, "model".into())],
+        has_equal_axes: false,
     }
 }
 
