@@ -60,7 +60,7 @@ struct Harmonic {
 impl Harmonic {
     fn of(time: &[f64], values: &[f64]) -> Option<Self> {
         let period = time.last()? - time.first()?;
-        if time.len() < FEWEST || !(period > 0.0) {
+        if time.len() < FEWEST || period <= 0.0 {
             return None;
         }
         let mean = |of: &dyn Fn(usize) -> f64| {

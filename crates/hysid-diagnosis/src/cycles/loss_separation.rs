@@ -23,6 +23,12 @@ const DIFFERENT: f64 = 1.05;
 const EXPONENTS: (f64, f64) = (1.0, 4.0);
 const OF_ONE_AMPLITUDE: f64 = 2.0;
 
+/// An exponent this close to the end of those that are searched is at its bound.
+const AT_BOUND: f64 = 1e-3;
+
+/// Largest RMS error of a law that describes the losses.
+const DESCRIBES: f64 = 0.1;
+
 /// Halvings of the search of the exponent by golden section.
 const STEPS: usize = 60;
 
@@ -110,23 +116,25 @@ fn laws(rows: &[CycleRow], waveforms: &[Option<Waveform>]) -> LossLaws {
     }
     let amplitudes = different(losses.iter().map(|loss| loss.amplitude));
     let (mut figures, law) = steinmetz(&losses, amplitudes);
-    let separated = (frequencies(&losses) >= 3).then(|| separation(&losses, amplitudes)).flatten();
-    match &separated {
-        Some((own, _)) => figures.extend(own.iter().cloned()),
-        None => figures.push(absent(HYSTERESIS, "a separation needs three frequencies at least")),
+    let separated = match frequencies(&losses) {
+        ..3 => Err("a separation needs three frequencies at least".to_string()),
+        _ => separation(&losses, amplitudes),
+    };
+    let separation = match separated {
+        Ok((own, separation)) => {
+            figures.extend(own);
+            Some(separation)
+        }
+        Err(why) => {
+            figures.push(absent(HYSTERESIS, &why));
+            None
+        }
+    };
+    let is_first = |figure: &&mut RecordFigure| figure.kind == COEFFICIENT || figure.kind == HYSTERESIS;
+    for figure in figures.iter_mut().filter(is_first).filter(|figure| !of_sines && figure.note.is_none()) {
+        figure.note = Some("the flux density is no sine, which the law assumes".into());
     }
-    if !of_sines {
-        let note = "the flux density is no sine, which the law assumes";
-        figures
-            .iter_mut()
-            .filter(|figure| figure.note.is_none())
-            .for_each(|figure| figure.note = Some(note.into()));
-    }
-    LossLaws {
-        figures,
-        steinmetz: law.filter(|_| of_sines),
-        separation: separated.map(|(_, separation)| separation),
-    }
+    LossLaws { figures, steinmetz: law.filter(|_| of_sines), separation }
 }
 
 /// Number of different frequencies.
@@ -164,6 +172,9 @@ fn steinmetz(losses: &[CycleLoss], amplitudes: usize) -> (Vec<RecordFigure>, Opt
     let Some(found) = fit(&rows, &energies) else {
         return (vec![absent(COEFFICIENT, "too few cycles for the Steinmetz equation")], None);
     };
+    if found.rms > DESCRIBES {
+        return (vec![absent(COEFFICIENT, &not_described(found.rms))], None);
+    }
     let ([level, frequency, amplitude], deviations) = (found.coefficients, found.deviations);
     let of = |kind, value, deviation| {
         RecordFigure::new(("", ""), kind, value).with_interval(deviation, found.degrees)
@@ -175,6 +186,10 @@ fn steinmetz(losses: &[CycleLoss], amplitudes: usize) -> (Vec<RecordFigure>, Opt
         RecordFigure::new(("", ""), STEINMETZ_ERROR, 100.0 * found.rms),
     ];
     (figures, Some(Steinmetz { coefficient: exp(level), frequency: frequency + 1.0, amplitude }))
+}
+
+fn not_described(rms: f64) -> String {
+    format!("the law does not describe the losses: its RMS error is {:.0} %", 100.0 * rms)
 }
 
 /// Relative terms of the losses in columns that are chosen.
@@ -212,10 +227,19 @@ fn not_negative(losses: &[CycleLoss], exponent: f64) -> Option<([f64; 3], f64)> 
     found.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-fn separation(losses: &[CycleLoss], amplitudes: usize) -> Option<(Vec<RecordFigure>, Separation)> {
+/// The separation and its figures, or why there is none.
+fn separation(losses: &[CycleLoss], amplitudes: usize) -> Result<(Vec<RecordFigure>, Separation), String> {
     let is_searched = amplitudes > 1;
-    let exponent = if is_searched { best_exponent(losses)? } else { OF_ONE_AMPLITUDE };
-    let (coefficients, rms) = not_negative(losses, exponent)?;
+    let exponent = if is_searched { best_exponent(losses) } else { OF_ONE_AMPLITUDE };
+    let found = not_negative(losses, exponent);
+    let (coefficients, rms) = found.ok_or("too few cycles for a separation")?;
+    if rms > DESCRIBES {
+        return Err(not_described(rms));
+    }
+    let is_at_bound = [EXPONENTS.0, EXPONENTS.1].iter().any(|bound| (exponent - bound).abs() < AT_BOUND);
+    if is_at_bound && coefficients[0] > 0.0 {
+        return Err(format!("the exponent of the hysteresis loss is at its bound {exponent:.0}"));
+    }
     // Derivatives for the deviations: the three terms and that of the exponent.
     let row = |loss: &CycleLoss| {
         let [h, e, x] = terms(exponent, loss.amplitude, loss.frequency);
@@ -252,11 +276,11 @@ fn separation(losses: &[CycleLoss], amplitudes: usize) -> Option<(Vec<RecordFigu
         of(EXCESS, 2, coefficients[2]),
         RecordFigure::new(("", ""), SEPARATION_ERROR, 100.0 * rms),
     ];
-    Some((figures, Separation { exponent, coefficients }))
+    Ok((figures, Separation { exponent, coefficients }))
 }
 
 /// The exponent with the smallest error, by golden section.
-fn best_exponent(losses: &[CycleLoss]) -> Option<f64> {
+fn best_exponent(losses: &[CycleLoss]) -> f64 {
     let error = |exponent| not_negative(losses, exponent).map_or(f64::INFINITY, |(_, rms)| rms);
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut low, mut high) = EXPONENTS;
@@ -264,5 +288,5 @@ fn best_exponent(losses: &[CycleLoss]) -> Option<f64> {
         let (a, b) = (high - golden * (high - low), low + golden * (high - low));
         if error(a) <= error(b) { high = b } else { low = a }
     }
-    Some(0.5 * (low + high)).filter(|exponent| error(*exponent).is_finite())
+    0.5 * (low + high)
 }

@@ -180,7 +180,7 @@ impl CycleTable {
                 levels.extend(levels::levels(&rows, elastic_plastic::mean_yield_input(&own)));
                 figures.extend(own);
             }
-            if field == Field::Magnet {
+            if field == Field::Magnet && rows.iter().any(|row| row.complete) {
                 figures.extend(saturation::figures(record));
             }
             cycles.extend(rows);
