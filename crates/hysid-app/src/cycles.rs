@@ -54,7 +54,7 @@ impl<'a> Cycles<'a> {
         data: &'a Dataset,
         options: &CycleOptions,
         corrections: &[Correction],
-        smoothing_factor: Option<usize>,
+        (smoothing_factor, smoothing_growth): (Option<usize>, f64),
         (file, understood): (&str, Vec<(String, String)>),
     ) -> hysid::Result<Self> {
         let (mut set, mut removed) = (Cow::Borrowed(data), Vec::new());
@@ -68,7 +68,8 @@ impl<'a> Cycles<'a> {
         }
         let mut table = CycleTable::of(&set, options)?;
         table.notes.splice(..0, removed);
-        let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor };
+        let of_curves =
+            ReversalCurveOptions { branches: options.branches(), smoothing_factor, smoothing_growth };
         let curves = ReversalCurves::of(&set, &of_curves)?;
         Ok(Self {
             file: file.into(),

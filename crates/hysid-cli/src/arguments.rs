@@ -48,7 +48,6 @@ pub use studio::Studio;
 #[command(
     name = "hysid",
     version,
-    propagate_version = true,
     arg_required_else_help = true,
     max_term_width = 80
 )]
@@ -310,7 +309,7 @@ pub struct Fit {
     pub inverse: bool,
     #[command(flatten)]
     pub model: ModelOptions,
-    /// Stop after this time and keep the best model so far
+    /// Stop after this time with the best model so far
     ///
     /// The time for reading and writing files is not counted.
     #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = RUN)]

@@ -13,6 +13,7 @@ mod elastic_plastic;
 mod field;
 mod figure;
 mod harmonic;
+mod igse;
 mod joint;
 mod least_squares;
 mod levels;

@@ -33,6 +33,9 @@ use super::{DiagnosisOptions, FEWEST_ROWS};
 /// Valid smoothing factors.
 pub const SMOOTHING_FACTORS: std::ops::RangeInclusive<usize> = 1..=10;
 
+/// Valid growths of the smoothing factor.
+pub const SMOOTHING_GROWTHS: std::ops::RangeInclusive<f64> = 0.0..=1.0;
+
 /// Grid lines of the table, at most; of more curves some are left out, in the table only.
 const MOST_LINES: usize = 120;
 
@@ -44,6 +47,10 @@ pub struct ReversalCurveOptions {
     /// The smoothing factor `SF`, within [`SMOOTHING_FACTORS`]; `None` for the smallest from 1 to 6 with which the noise of
     /// the output deviates the density by 5 % of its largest value or less.
     pub smoothing_factor: Option<usize>,
+    /// Growth `λ` of the smoothing factor, within [`SMOOTHING_GROWTHS`]: that of a node is `SF + λ min(H_c, |H_u|)/step`, at
+    /// most 10. So the ridges at `H_c = 0` and `H_u = 0` stay sharp and noise beside them is smoothed, as by VARIFORC (R. Egli,
+    /// Glob. Planet. Change 110, 2013, 302-320).
+    pub smoothing_growth: f64,
 }
 
 /// A first-order reversal curve.
@@ -118,14 +125,15 @@ impl ReversalCurves {
     pub fn of(data: &Dataset, options: &ReversalCurveOptions) -> Result<Option<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let survey = BranchSet::new(data, &options.branches);
-        Ok(recognised(&survey).map(|found| Self::from_candidates(&survey, &found, options.smoothing_factor)))
+        Ok(recognised(&survey).map(|found| Self::from_candidates(&survey, &found, options)))
     }
 
-    fn from_candidates(survey: &BranchSet, found: &CurveSet, wanted: Option<usize>) -> Self {
+    fn from_candidates(survey: &BranchSet, found: &CurveSet, options: &ReversalCurveOptions) -> Self {
+        let wanted = options.smoothing_factor;
         let sign = if found.rising { 1.0 } else { -1.0 };
         let step = median_step(&found.branches.iter().map(|&b| survey.branches[b].from).collect::<Vec<_>>());
         let lines = found.branches.len().div_ceil(MOST_LINES).max(1);
-        let smoothing = Smoothing::new(survey, found, step);
+        let smoothing = Smoothing::new(survey, found, step, options.smoothing_growth);
         let grid = grid(survey, found, step * lines as f64, lines);
         let places: Vec<(usize, f64)> =
             grid.iter().map(|&(curve, node)| (curve, sign * node.input)).collect();

@@ -35,7 +35,7 @@ pub fn level_figure_names() -> Vec<&'static str> {
 /// The cycles and first-order reversal curves of data, as JSON.
 #[pyfunction]
 #[allow(clippy::too_many_arguments, reason = "they are those of the function in Python")]
-#[pyo3(signature = (data, smallest_reversal, smoothing, division, field, smoothing_factor, density))]
+#[pyo3(signature = (data, smallest_reversal, smoothing, division, field, smoothing_factor, smoothing_growth, density))]
 pub fn cycles(
     py: Python<'_>,
     data: &Dataset,
@@ -44,10 +44,11 @@ pub fn cycles(
     division: Option<&str>,
     field: Option<&str>,
     smoothing_factor: Option<usize>,
+    smoothing_growth: f64,
     density: Option<f64>,
 ) -> PyResult<String> {
     let options = CycleOptions { smallest_reversal, smoothing, density, ..options(division, field)? };
-    let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor };
+    let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor, smoothing_growth };
     let set = Arc::clone(&data.set);
     let find = move || {
         let cleaned = without_calibration_points(&set);

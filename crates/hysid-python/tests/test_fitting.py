@@ -257,6 +257,13 @@ def test_cycles_are_those_of_the_program(program, tmp_path):
         expected = [np.nan if row[name] is None else row[name] for row in said["cycles"]]
         assert np.array_equal(table[name], expected, equal_nan=True), name
     assert list(table.backbone["input"]) == [point["input"] for point in said["backbone"]]
+    def known(rows, name):
+        return [np.nan if row[name] is None else row[name] for row in rows]
+
+    assert np.array_equal(table.figures["value"], known(said["figures"], "value"), equal_nan=True)
+    assert list(table.figures["name"]) == [figure["name"] for figure in said["figures"]]
+    for name in ("amplitude", "strength_loss_percent", "cumulative_ductility"):
+        assert np.array_equal(table.levels[name], known(said["levels"], name), equal_nan=True), name
     assert table["complete"].dtype == bool and table["notes"][-1].startswith("incomplete")
     assert table.reversal_curves is None
     assert list(table.to_frame()["cycle"]) == list(range(1, len(table["cycle"]) + 1))
@@ -270,12 +277,23 @@ def pandas_table(path):
     return pandas.read_csv(path)
 
 
+def test_losses_of_magnets_are_given_per_mass():
+    time = np.linspace(0, 0.06, 1201)
+    field, flux = 100 * np.sin(100 * np.pi * time), 1.2 * np.sin(100 * np.pi * time - 0.3)
+    table = hysid.cycles(field, flux, time, field="magnet", density=7650)
+    expected = np.pi * 100 * 1.2 * np.sin(0.3) * 50 / 7650
+    assert np.allclose(table["power_per_mass"][table["complete"]], expected, rtol=2e-3)
+    assert np.isnan(hysid.cycles(field, flux, time, field="magnet")["power_per_mass"]).all()
+    with pytest.raises(ValueError, match="density: a number above 0"):
+        hysid.cycles(field, flux, time, density=0)
+
+
 def test_a_model_has_cycles_and_reversal_curves(spring_and_slider):
     model = hysid.fit(*spring_and_slider, model="prandtl-ishlinskii")
     table = model.cycles(field="structure")
     assert table["complete"].sum() >= 14 and (np.diff(table.backbone["output"][table.backbone["direction"] == "up"]) > 0).all()
     curves = table.reversal_curves
-    assert curves["reversal_input"].shape == curves["density"].shape and table.smoothing_factor >= 2
+    assert curves["reversal_input"].shape == curves["density"].shape and table.smoothing_factor >= 1
     assert (curves["everett"] >= -1e-9).all()
     assert "first-order" in repr(table)
     with pytest.raises(ValueError, match="division `noon` is unknown|noon"):

@@ -61,7 +61,7 @@ pub fn shown(
     };
     let mut table = Table::new(std::iter::once("cycle".to_string()).chain(figures.iter().map(heading)));
     let is_read = |figure: &&Figure| !PLACES.contains(&figure.name);
-    let needed: Vec<&Figure> = match figures.iter().any(|figure| is_read(figure)) {
+    let needed: Vec<&Figure> = match figures.iter().any(is_read) {
         true => figures.iter().copied().filter(is_read).collect(),
         false => figures.to_vec(),
     };
@@ -118,12 +118,15 @@ pub fn levels(cycles: &Cycles, names: &[&str], label: impl Fn(&str) -> String) -
     (rows.len() > 1).then_some(table)
 }
 
+/// Label, quantity and value of a column of losses.
+type LossColumn = (&'static str, FigureQuantity, fn(&LossAtFrequency) -> Option<f64>);
+
 /// The first `most` losses of amplitudes with several frequencies, with their parts if they are separated, and the number
 /// of the others; `None` if there are none.
 pub fn losses(cycles: &Cycles, most: usize, label: impl Fn(&str) -> String) -> Option<(Table, usize)> {
     use FigureQuantity::{Energy, Frequency, Input, Power};
     let losses: Vec<&LossAtFrequency> = at_several_frequencies(cycles).into_iter().flatten().collect();
-    let columns: [(&str, FigureQuantity, fn(&LossAtFrequency) -> Option<f64>); 7] = [
+    let columns: [LossColumn; 7] = [
         ("amplitude", Input, |loss| Some(loss.amplitude)),
         ("frequency", Frequency, |loss| Some(loss.frequency)),
         ("loss per cycle", Energy, |loss| Some(loss.energy)),

@@ -61,7 +61,7 @@ pub fn side_tables(cycles: &Cycles) -> Vec<SideTable> {
         let (what, extension, beginning) = ("levels", "levels.csv", &b"record,level,cycles,"[..]);
         tables.push(SideTable { what, extension, beginning, content: levels_csv(cycles) });
     }
-    if !cycles.table.figures.is_empty() {
+    if cycles.table.figures.iter().any(|figure| figure.value.is_some()) {
         let (what, extension, beginning) = ("figures", "figures.csv", &b"record,of,figure,symbol,"[..]);
         tables.push(SideTable { what, extension, beginning, content: figures_csv(cycles) });
     }

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::{ArgAction, Args};
 use hysid::diagnosis::cycles::{Correction, CycleOptions, Division, Field};
-use hysid::diagnosis::reversal_curves::SMOOTHING_FACTORS;
+use hysid::diagnosis::reversal_curves::{SMOOTHING_FACTORS, SMOOTHING_GROWTHS};
 
 use super::{ColumnOptions, Overwriting, RUN, fraction, number_within};
 
@@ -13,7 +13,7 @@ const CYCLES_EXAMPLES: &str = "\
 Examples:
   hysid cycles data.csv                  data.cycles.csv, page data.cycles.html
   hysid cycles data.csv --field magnet -o loops.csv
-  hysid cycles model.json                cycles of the model, with an input by Hysid
+  hysid cycles model.json                cycles of the model, driven by Hysid
 
 Definitions of all figures: docs/cycles.md";
 
@@ -33,7 +33,10 @@ pub struct Cycles {
     pub overwriting: Overwriting,
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Figures of: structure, magnet, actuator, thermal, battery, hydrology or general [default: by names and units]
+    /// Figures of: structure, magnet, actuator, thermal, battery, hydrology or general
+    ///
+    /// By default the names and units of the columns tell the field. `general` has the figures of structures, magnets and
+    /// actuators.
     #[arg(long, value_name = "FIELD", value_parser = named::<Field>, help_heading = "Method")]
     pub field: Option<Field>,
     /// Where cycles begin: zero, mean, reversals or start [default: as suits the data]
@@ -53,7 +56,7 @@ pub struct Cycles {
     /// The offset is the middle of the output's values at both ends of the input.
     #[arg(long, help_heading = "Method")]
     pub center: bool,
-    /// Mass density in kg/m3, for losses per kilogram of magnets
+    /// Mass density in kg/m3, for losses per kg
     #[arg(long, value_name = "NUMBER", value_parser = positive, help_heading = "Method")]
     pub density: Option<f64>,
     /// Ignore reversals of the input below this share of its range [default: the noise of the input decides]
@@ -65,6 +68,12 @@ pub struct Cycles {
     /// Smoothing factor of first-order reversal curves, 1 to 10 [default: chosen by the noise]
     #[arg(long, value_name = "N", value_parser = smoothing_factor, help_heading = "Method", hide_short_help = true)]
     pub smoothing_factor: Option<usize>,
+    /// Growth of the smoothing factor away from the ridges of a FORC diagram, 0 to 1
+    ///
+    /// The smoothing factor of a node grows by this number in each step of the reversal fields that the node is away from
+    /// both H_c = 0 and H_u = 0, up to 10.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0.0, value_parser = growth, help_heading = "Method", hide_short_help = true)]
+    pub smoothing_growth: f64,
     /// Print the result as one JSON object
     #[arg(long, help_heading = RUN)]
     pub json: bool,
@@ -99,6 +108,11 @@ pub(super) fn named<T: FromStr<Err = hysid::Error>>(name: &str) -> Result<T, Str
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
     number.ok_or_else(|| "a number above 0 is needed".into())
+}
+
+fn growth(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| SMOOTHING_GROWTHS.contains(number));
+    number.ok_or_else(|| "a number from 0 to 1 is needed".into())
 }
 
 fn smoothing_factor(text: &str) -> Result<usize, String> {

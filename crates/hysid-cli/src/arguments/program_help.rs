@@ -22,7 +22,8 @@ const TEMPLATE: &str =
 /// The command line with this help.
 pub(super) fn with_help(command: Command) -> Command {
     let groups = grouped(&command);
-    with_two_helps(command.before_help(groups).help_template(TEMPLATE)).mut_subcommands(with_two_helps)
+    with_two_helps(command.before_help(groups).help_template(TEMPLATE))
+        .mut_subcommands(|command| with_version(with_two_helps(command)))
 }
 
 /// The arguments as they were typed, with `--help options` in one word.
@@ -49,6 +50,12 @@ fn with_two_helps(command: Command) -> Command {
     let all = Arg::new(ALL_OPTIONS).long(ALL_OPTIONS).action(ArgAction::HelpLong).hide(true);
     let short = short.help("Print help; all options: --help options");
     command.disable_help_flag(true).args([short, all])
+}
+
+/// A command has the version of the program, which its help does not tell.
+fn with_version(command: Command) -> Command {
+    let version = Arg::new("version").short('V').long("version").action(ArgAction::Version).hide(true);
+    command.disable_version_flag(true).version(env!("CARGO_PKG_VERSION")).arg(version)
 }
 
 /// The commands with what they do, group by group.

@@ -44,7 +44,8 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
                 warning("cycles ignores --rate: it needs no rate");
             }
             let told = (data.source.tables[0].file.as_str(), understood);
-            let cycles = Cycles::of_data(&data.set, &options, &arguments.corrections(), factor, told)
+            let smoothing = (factor, arguments.smoothing_growth);
+            let cycles = Cycles::of_data(&data.set, &options, &arguments.corrections(), smoothing, told)
                 .map_err(|error| data.explain(error))?;
             tell(arguments, &outputs, &cycles)
         }
@@ -119,6 +120,7 @@ fn useless_for_models(arguments: &arguments::Cycles) -> Vec<&'static str> {
         ("--smallest-reversal", arguments.smallest_reversal.is_some()),
         ("--subtract", !arguments.subtract.is_empty()),
         ("--center", arguments.center),
+        ("--smoothing-growth", arguments.smoothing_growth != 0.0),
         ("--smoothing", arguments.smoothing != CycleOptions::default().smoothing),
     ];
     arguments.columns.given(&further)

@@ -74,7 +74,24 @@ fn a_member_has_the_figures_of_its_law_in_csv_text_and_json() {
     assert!(ran.stdout.lines().all(|line| line.chars().count() <= 80), "{}", ran.stdout);
     must_contain(&ran.stdout, &["backbone: 4 points", "energy, J", "no time: no period and frequency"]);
 
+    // The backbone has the points (2, 2) and (4, 2): K_e = 1, and 2 kN from 2 mm on have its area.
+    let figures = self::rows(&bench.text("member.cycles.figures.csv"));
+    for (name, expected, unit) in
+        [("yield_output", 2.0, "kN"), ("yield_input", 2.0, "mm"), ("ductility", 2.0, "")]
+    {
+        let figure =
+            figures.iter().find(|row| row["figure"] == name && row["of"] == "mean of both sides").unwrap();
+        assert!((number(figure, "value") - expected).abs() < 1e-6, "{figure:?}");
+        assert_eq!((figure["unit"].as_str(), figure["source"].as_str()), (unit, "ASTM E2126"));
+    }
+    must_contain(&ran.stdout, &["levels of amplitude", "figures of the record", "ductility"]);
+    let levels = self::rows(&bench.text("member.cycles.levels.csv"));
+    assert_eq!(levels.len(), 2);
+    assert!((number(&levels[1], "cumulative_energy [J]") - 63.0).abs() < 1e-6);
+    assert!((number(&levels[1], "cumulative_ductility") - 12.0).abs() < 1e-6);
+
     let told = bench.json("cycles member.csv --json");
+    assert_eq!((&told["units"]["yield_output"], &told["levels"][0]["cycles"]), (&"kN".into(), &2.into()));
     assert_eq!((&told["field"], &told["division"]), (&"structure".into(), &"zero".into()));
     assert_eq!((&told["units"]["energy"], &told["of_model"]), (&"J".into(), &false.into()));
     assert!((told["cycles"][3]["energy"].as_f64().unwrap() - 24.0).abs() < 1e-6);
@@ -82,7 +99,16 @@ fn a_member_has_the_figures_of_its_law_in_csv_text_and_json() {
     assert_eq!(told["reversal_curves"], Value::Null);
 
     let page = bench.text("member.cycles.html");
-    for part in ["<svg", "Backbone", "equivalent damping (%)", "secant stiffness (kN/mm)", "energy (J)"] {
+    for part in [
+        "<svg",
+        "Backbone",
+        "Figures of the record",
+        "Levels of amplitude",
+        "Δ_y",
+        "equivalent damping (%)",
+        "secant stiffness (kN/mm)",
+        "energy (J)",
+    ] {
         assert!(page.contains(part), "{part}");
     }
 }
@@ -114,6 +140,11 @@ fn a_magnet_has_losses_in_its_units_at_each_frequency() {
     }
     assert!(ran.stdout.contains("losses by amplitude and frequency"), "{}", ran.stdout);
     assert!(!bench.path("core.cycles.html").exists());
+    let ran = bench.succeeds("cycles core.csv --output B_T --input H_A_per_m --no-report --density 7650");
+    let rows = self::rows(&bench.text("core.cycles.csv"));
+    let fast = rows.iter().find(|row| row["record"] == "fast" && row["complete"] == "yes").unwrap();
+    assert!((number(fast, "power_per_mass [W/kg]") / (loss * 50.0 / 7650.0) - 1.0).abs() < 2e-3);
+    must_contain(&ran.stdout, &["two amplitudes at least", "three frequencies at least"]);
 }
 
 /// Polarisation of an even density of relays over the Preisach triangle of -1 to 1.
@@ -160,6 +191,43 @@ fn reversal_curves_in_data_give_the_density_of_the_plane_as_table_and_picture() 
     assert!(ran.stdout.replace('\n', " ").contains("smoothing factor 4 (as asked for)"), "{}", ran.stdout);
 }
 
+/// Single rows in a field of 3 before each curve, which ends at 1.
+#[test]
+fn calibration_points_are_no_ends_of_curves() {
+    let bench = Workbench::new();
+    let mut text = String::from("H_A_per_m,B_T\n");
+    for curve in 1..=20 {
+        let reversal = 1.0 - 0.1 * f64::from(curve);
+        text += "3,1\n";
+        for row in 0..=2 * curve {
+            let x = reversal + 0.05 * f64::from(row);
+            text +=
+                &format!("{x:.3},{:.9}\n", 1.0 - 0.25 * square(1.0 - reversal) + 0.25 * square(x - reversal));
+        }
+    }
+    bench.put("forc.csv", text);
+    let ran = bench.succeeds("cycles forc.csv");
+    let words = ran.stdout.replace("\n", " ").replace("  ", " ");
+    must_contain(
+        &words,
+        &["19 rising first-order reversal curves", "that end at 1 A/m", "20 calibration points at 3"],
+    );
+    let nodes = rows(&bench.text("forc.cycles.forc.csv"));
+    assert!(nodes.iter().all(|node| number(node, "input [A/m]") < 1.01));
+    for node in nodes.iter().filter(|node| !node["density [T/(A/m)2]"].is_empty()) {
+        assert!((number(node, "density [T/(A/m)2]") - 0.25).abs() < 1e-4, "{node:?}");
+        let width = number(node, "input [A/m]") - number(node, "reversal_input [A/m]");
+        assert!((number(node, "coercivity [A/m]") - 0.5 * width).abs() < 1e-9);
+    }
+    let margins = rows(&bench.text("forc.cycles.forc-margins.csv"));
+    assert!(margins.iter().any(|row| row["distribution"] == "coercivity"));
+    assert!(
+        !ran.stdout.lines().any(|line| line.trim_end().ends_with("1/1*")),
+        "no rows of dashes: {}",
+        ran.stdout
+    );
+}
+
 #[test]
 fn a_model_is_driven_through_cycles_and_reversal_curves_and_they_are_said_to_be_its() {
     let bench = Workbench::new();
@@ -202,6 +270,8 @@ fn the_table_goes_to_stdout_where_asked_and_files_of_others_are_kept() {
         2 cycles member.csv --divide noon => zero, mean, reversals
         2 cycles member.csv --smoothing-factor 11 => choose 1 to 10
         2 cycles member.csv --smallest-reversal 2 => between 0 and 1
+        2 cycles member.csv --density 0 => above 0
+        2 cycles member.csv --density 7650 => per volume
         1 cycles nowhere.csv => nowhere.csv: cannot be read
         2 cycles => required
     ",

@@ -27,10 +27,37 @@ fn an_ignored_option_is_named_and_changes_nothing() {
 }
 
 #[test]
-fn help_is_short_where_it_is_asked_for_briefly() {
+fn help_is_short_unless_all_options_are_asked_for() {
     let bench = Workbench::new();
-    let (short, long) = (bench.run("fit -h").stdout, bench.run("fit --help").stdout);
+    let (short, long) = (bench.run("fit --help").stdout, bench.run("fit --help options").stdout);
     assert!(short.lines().count() < 60, "{} lines", short.lines().count());
     assert!(short.contains("Examples:") && !short.contains("--free-weights"), "{short}");
     assert!(long.contains("--free-weights"), "{long}");
+}
+
+#[test]
+fn every_command_has_the_version_and_names_with_slips_are_suggested() {
+    let bench = Workbench::new();
+    let version = |arguments: &str| bench.run(arguments).stdout.split(' ').next_back().map(str::to_string);
+    for command in ["fit", "evaluate", "man"] {
+        assert_eq!(version(&format!("{command} --version")), version("--version"), "{command}");
+    }
+    for (typed, meant) in [("fti", "fit"), ("lok", "look"), ("plto", "plot"), ("compar", "compare")] {
+        let ran = bench.run(typed);
+        assert_eq!(ran.status, Some(2));
+        assert!(ran.stderr.contains(&format!("a similar subcommand exists: '{meant}'")), "{}", ran.stderr);
+    }
+    assert!(!bench.run("nonsense").stderr.contains("similar"));
+}
+
+#[test]
+fn several_tables_are_evaluated_one_by_one() {
+    let bench = Workbench::new();
+    bench.succeeds("generate ferromagnet -o train.csv");
+    bench.succeeds("fit train.csv --model pnn --starts 1 --epochs 2 -o m.json --no-report");
+    let text = bench.succeeds("evaluate m.json train.csv train-test.csv").stdout;
+    let of = |file: &str| bench.succeeds(&format!("evaluate m.json {file}")).stdout;
+    assert_eq!(text, format!("train.csv\n{}\ntrain-test.csv\n{}", of("train.csv"), of("train-test.csv")));
+    let json: serde_json::Value = bench.json("evaluate m.json train.csv train-test.csv --json");
+    assert_eq!(json[1], bench.json("evaluate m.json train-test.csv --json"));
 }

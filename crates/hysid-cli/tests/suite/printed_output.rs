@@ -36,7 +36,7 @@ fn every_option_of_a_fit_is_on_a_page() {
         fs::read_to_string(path).unwrap()
     };
     let pages = page("options.md") + &page("files.md");
-    let help = Workbench::new().run("fit --help").stdout;
+    let help = Workbench::new().run("fit --help options").stdout;
     let words =
         help.lines().filter(|line| line.trim_start().starts_with('-')).flat_map(str::split_whitespace);
     let options: Vec<&str> = words.filter_map(|word| word.strip_prefix("--")).collect();

@@ -224,7 +224,7 @@ const HINT: &str =
 
 #[test]
 fn the_help_speaks_of_the_columns_of_a_motion() {
-    let help = Workbench::new().shell("hysid restoring-force --help").stdout;
+    let help = Workbench::new().shell("hysid restoring-force --help options").stdout;
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
     for told in [
         "Subtract from the displacement and from the restoring force their means over the first ROWS rows",

@@ -98,6 +98,7 @@ figures! {
     energy_deviation, "deviation of energy", Energy, &[Structure, Magnet, Battery];
     cumulative_energy, "cumulative energy", Energy, &[Structure];
     power, "loss per time", Power, &[Magnet];
+    igse_energy, "loss by iGSE", Energy, &[Magnet];
     energy_per_mass, "loss per cycle and mass", EnergyPerMass, &[Magnet];
     power_per_mass, "specific loss", PowerPerMass, &[Magnet];
     secant_stiffness, "secant stiffness", Stiffness, &[Structure];

@@ -32,7 +32,7 @@ impl ComplexModulus {
     /// The modulus of one cycle, whose times span its period; `None` for an input that is no sine.
     pub fn of(time: &[f64], x: &[f64], y: &[f64]) -> Option<Self> {
         let (input, output) = (Harmonic::of(time, x)?, Harmonic::of(time, y)?);
-        if input.distance(time, x) > SINE {
+        if !is_sine(time, x) {
             return None;
         }
         let size = square(input.cosine) + square(input.sine);
@@ -42,6 +42,11 @@ impl ComplexModulus {
         };
         (modulus.storage.is_finite() && modulus.loss.is_finite()).then_some(modulus)
     }
+}
+
+/// True if the values of one period are nearly a sine.
+pub(super) fn is_sine(time: &[f64], values: &[f64]) -> bool {
+    Harmonic::of(time, values).is_some_and(|harmonic| harmonic.distance(time, values) <= SINE)
 }
 
 /// `mean + cosine cos ωt + sine sin ωt`.
@@ -55,7 +60,7 @@ struct Harmonic {
 impl Harmonic {
     fn of(time: &[f64], values: &[f64]) -> Option<Self> {
         let period = time.last()? - time.first()?;
-        if time.len() < FEWEST || !(period > 0.0) {
+        if time.len() < FEWEST || period <= 0.0 {
             return None;
         }
         let mean = |of: &dyn Fn(usize) -> f64| {

@@ -8,8 +8,10 @@
 //! `W` is the loss of a cycle, `B` half the range of the output in it. Both fits are of relative errors. The coefficients of
 //! the second are not negative; its exponent is searched, and 2 where there is one amplitude.
 
+use hysid_core::data::record::Dataset;
 use hysid_core::elementary::{exp, ln, powf};
 
+use super::igse::{Steinmetz, Waveform};
 use super::least_squares::{LinearFit, fit};
 use super::record_figure::{RecordFigure, RecordFigureKind, record_figures};
 use super::row::CycleRow;
@@ -20,6 +22,12 @@ const DIFFERENT: f64 = 1.05;
 /// Exponents of the hysteresis loss that are searched, and the one of a single amplitude.
 const EXPONENTS: (f64, f64) = (1.0, 4.0);
 const OF_ONE_AMPLITUDE: f64 = 2.0;
+
+/// An exponent this close to the end of those that are searched is at its bound.
+const AT_BOUND: f64 = 1e-3;
+
+/// Largest RMS error of a law that describes the losses.
+const DESCRIBES: f64 = 0.1;
 
 /// Halvings of the search of the exponent by golden section.
 const STEPS: usize = 60;
@@ -63,29 +71,75 @@ fn terms(exponent: f64, amplitude: f64, frequency: f64) -> [f64; 3] {
     [powf(amplitude, exponent), frequency * amplitude * amplitude, frequency.sqrt() * powf(amplitude, 1.5)]
 }
 
-/// Both laws of the losses of all records, and the second for [`Separation::parts`].
-pub(super) fn figures(rows: &[CycleRow]) -> (Vec<RecordFigure>, Option<Separation>) {
+/// Laws of the losses.
+#[derive(Debug, Default)]
+pub(super) struct LossLaws {
+    pub figures: Vec<RecordFigure>,
+    pub steinmetz: Option<Steinmetz>,
+    pub separation: Option<Separation>,
+}
+
+impl LossLaws {
+    /// Finds the laws and gives each cycle the loss that they have for its waveform.
+    pub fn read(data: &Dataset, cycles: &mut [CycleRow]) -> Self {
+        let record = |row: &CycleRow| data.records().iter().find(|record| record.name() == row.record);
+        let waveforms: Vec<Option<Waveform>> =
+            cycles.iter().map(|row| Waveform::of(record(row)?, row)).collect();
+        let laws = laws(cycles, &waveforms);
+        for (row, waveform) in cycles.iter_mut().zip(&waveforms) {
+            row.igse_energy =
+                laws.steinmetz.as_ref().zip(waveform.as_ref()).map(|(law, wave)| wave.energy(law));
+        }
+        laws
+    }
+}
+
+/// The laws of the losses of all records. `waveforms` are those of the cycles; if cycles of sines suffice for the Steinmetz
+/// equation, it is theirs alone.
+fn laws(rows: &[CycleRow], waveforms: &[Option<Waveform>]) -> LossLaws {
     let loss = |row: &CycleRow| {
         let (low, high) = row.output_min.zip(row.output_max)?;
         let loss =
             CycleLoss { amplitude: 0.5 * (high - low), frequency: row.frequency?, energy: row.energy? };
         (row.complete && loss.energy > 0.0 && loss.amplitude > 0.0 && loss.frequency > 0.0).then_some(loss)
     };
-    let losses: Vec<CycleLoss> = rows.iter().filter_map(loss).collect();
-    let (amplitudes, frequencies) = (
-        different(losses.iter().map(|loss| loss.amplitude)),
-        different(losses.iter().map(|loss| loss.frequency)),
-    );
-    if frequencies < 2 {
-        return (Vec::new(), None);
+    let all: Vec<(CycleLoss, bool)> = rows
+        .iter()
+        .zip(waveforms)
+        .filter_map(|(row, wave)| Some((loss(row)?, wave.as_ref().is_some_and(Waveform::is_sine))))
+        .collect();
+    let sines: Vec<CycleLoss> = all.iter().filter(|(_, is_sine)| *is_sine).map(|(loss, _)| *loss).collect();
+    let of_sines = frequencies(&sines) > 1;
+    let losses = if of_sines { sines } else { all.iter().map(|(loss, _)| *loss).collect() };
+    if frequencies(&losses) < 2 {
+        return LossLaws::default();
     }
-    let mut figures = steinmetz(&losses, amplitudes);
-    let separated = (frequencies >= 3).then(|| separation(&losses, amplitudes)).flatten();
-    match &separated {
-        Some((own, _)) => figures.extend(own.iter().cloned()),
-        None => figures.push(absent(HYSTERESIS, "a separation needs three frequencies at least")),
+    let amplitudes = different(losses.iter().map(|loss| loss.amplitude));
+    let (mut figures, law) = steinmetz(&losses, amplitudes);
+    let separated = match frequencies(&losses) {
+        ..3 => Err("a separation needs three frequencies at least".to_string()),
+        _ => separation(&losses, amplitudes),
+    };
+    let separation = match separated {
+        Ok((own, separation)) => {
+            figures.extend(own);
+            Some(separation)
+        }
+        Err(why) => {
+            figures.push(absent(HYSTERESIS, &why));
+            None
+        }
+    };
+    let is_first = |figure: &&mut RecordFigure| figure.kind == COEFFICIENT || figure.kind == HYSTERESIS;
+    for figure in figures.iter_mut().filter(is_first).filter(|figure| !of_sines && figure.note.is_none()) {
+        figure.note = Some("the flux density is no sine, which the law assumes".into());
     }
-    (figures, separated.map(|(_, separation)| separation))
+    LossLaws { figures, steinmetz: law.filter(|_| of_sines), separation }
+}
+
+/// Number of different frequencies.
+fn frequencies(losses: &[CycleLoss]) -> usize {
+    different(losses.iter().map(|loss| loss.frequency))
 }
 
 fn absent(kind: &'static RecordFigureKind, why: &str) -> RecordFigure {
@@ -108,26 +162,34 @@ fn different(values: impl Iterator<Item = f64>) -> usize {
         .count()
 }
 
-fn steinmetz(losses: &[CycleLoss], amplitudes: usize) -> Vec<RecordFigure> {
+fn steinmetz(losses: &[CycleLoss], amplitudes: usize) -> (Vec<RecordFigure>, Option<Steinmetz>) {
     if amplitudes < 2 {
-        return vec![absent(COEFFICIENT, "the Steinmetz equation needs two amplitudes at least")];
+        return (vec![absent(COEFFICIENT, "the Steinmetz equation needs two amplitudes at least")], None);
     }
     let rows: Vec<[f64; 3]> =
         losses.iter().map(|loss| [1.0, ln(loss.frequency), ln(loss.amplitude)]).collect();
     let energies: Vec<f64> = losses.iter().map(|loss| ln(loss.energy)).collect();
     let Some(found) = fit(&rows, &energies) else {
-        return vec![absent(COEFFICIENT, "too few cycles for the Steinmetz equation")];
+        return (vec![absent(COEFFICIENT, "too few cycles for the Steinmetz equation")], None);
     };
+    if found.rms > DESCRIBES {
+        return (vec![absent(COEFFICIENT, &not_described(found.rms))], None);
+    }
     let ([level, frequency, amplitude], deviations) = (found.coefficients, found.deviations);
     let of = |kind, value, deviation| {
         RecordFigure::new(("", ""), kind, value).with_interval(deviation, found.degrees)
     };
-    vec![
+    let figures = vec![
         of(COEFFICIENT, exp(level), exp(level) * deviations[0]),
         of(FREQUENCY, frequency + 1.0, deviations[1]),
         of(AMPLITUDE, amplitude, deviations[2]),
         RecordFigure::new(("", ""), STEINMETZ_ERROR, 100.0 * found.rms),
-    ]
+    ];
+    (figures, Some(Steinmetz { coefficient: exp(level), frequency: frequency + 1.0, amplitude }))
+}
+
+fn not_described(rms: f64) -> String {
+    format!("the law does not describe the losses: its RMS error is {:.0} %", 100.0 * rms)
 }
 
 /// Relative terms of the losses in columns that are chosen.
@@ -165,10 +227,19 @@ fn not_negative(losses: &[CycleLoss], exponent: f64) -> Option<([f64; 3], f64)> 
     found.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-fn separation(losses: &[CycleLoss], amplitudes: usize) -> Option<(Vec<RecordFigure>, Separation)> {
+/// The separation and its figures, or why there is none.
+fn separation(losses: &[CycleLoss], amplitudes: usize) -> Result<(Vec<RecordFigure>, Separation), String> {
     let is_searched = amplitudes > 1;
-    let exponent = if is_searched { best_exponent(losses)? } else { OF_ONE_AMPLITUDE };
-    let (coefficients, rms) = not_negative(losses, exponent)?;
+    let exponent = if is_searched { best_exponent(losses) } else { OF_ONE_AMPLITUDE };
+    let found = not_negative(losses, exponent);
+    let (coefficients, rms) = found.ok_or("too few cycles for a separation")?;
+    if rms > DESCRIBES {
+        return Err(not_described(rms));
+    }
+    let is_at_bound = [EXPONENTS.0, EXPONENTS.1].iter().any(|bound| (exponent - bound).abs() < AT_BOUND);
+    if is_at_bound && coefficients[0] > 0.0 {
+        return Err(format!("the exponent of the hysteresis loss is at its bound {exponent:.0}"));
+    }
     // Derivatives for the deviations: the three terms and that of the exponent.
     let row = |loss: &CycleLoss| {
         let [h, e, x] = terms(exponent, loss.amplitude, loss.frequency);
@@ -205,11 +276,11 @@ fn separation(losses: &[CycleLoss], amplitudes: usize) -> Option<(Vec<RecordFigu
         of(EXCESS, 2, coefficients[2]),
         RecordFigure::new(("", ""), SEPARATION_ERROR, 100.0 * rms),
     ];
-    Some((figures, Separation { exponent, coefficients }))
+    Ok((figures, Separation { exponent, coefficients }))
 }
 
 /// The exponent with the smallest error, by golden section.
-fn best_exponent(losses: &[CycleLoss]) -> Option<f64> {
+fn best_exponent(losses: &[CycleLoss]) -> f64 {
     let error = |exponent| not_negative(losses, exponent).map_or(f64::INFINITY, |(_, rms)| rms);
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut low, mut high) = EXPONENTS;
@@ -217,5 +288,5 @@ fn best_exponent(losses: &[CycleLoss]) -> Option<f64> {
         let (a, b) = (high - golden * (high - low), low + golden * (high - low));
         if error(a) <= error(b) { high = b } else { low = a }
     }
-    Some(0.5 * (low + high)).filter(|exponent| error(*exponent).is_finite())
+    0.5 * (low + high)
 }

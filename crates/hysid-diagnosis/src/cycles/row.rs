@@ -48,6 +48,8 @@ pub struct CycleRow {
     pub cumulative_energy: Option<f64>,
     /// Energy lost per unit of time.
     pub power: Option<f64>,
+    /// Energy lost in a cycle by the improved generalised Steinmetz equation, with the parameters of the cycles of sines.
+    pub igse_energy: Option<f64>,
     /// Energy lost per mass, of an energy per volume.
     pub energy_per_mass: Option<f64>,
     /// Energy lost per unit of time and mass.

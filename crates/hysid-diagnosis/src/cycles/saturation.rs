@@ -18,7 +18,10 @@ const OUTER: f64 = 0.7;
 const SYMMETRIC: f64 = 0.1;
 
 /// Largest deviation of a saturation, as a share of it.
-const UNSURE: f64 = 0.05;
+const UNSURE: f64 = 0.02;
+
+/// Largest share of the saturation that is missing at the ends of the input.
+const MISSING: f64 = 0.1;
 
 record_figures! {
     SATURATION: "saturation_output", "saturation", "M_s", Output, "B. D. Cullity, C. D. Graham, Introduction to Magnetic Materials, 2009, section 9.17";
@@ -32,7 +35,7 @@ pub(super) fn figures(record: &Record) -> Vec<RecordFigure> {
     let (x, y) = (&*record.inputs()[0], record.output());
     let (low, high) = range(x);
     let (swing, middle) = (high - low, 0.5 * (low + high));
-    if !(middle.abs() <= SYMMETRIC * swing) {
+    if middle.abs() > SYMMETRIC * swing {
         return absent("the input does not go equally far to both sides of 0");
     }
     let half = 0.5 * swing;
@@ -52,10 +55,11 @@ pub(super) fn figures(record: &Record) -> Vec<RecordFigure> {
     let Some((found, other)) = law(square).zip(law(f64::abs)) else {
         return absent("too few rows in the outer 30 % of the input");
     };
-    let ([saturation, _, slope, _], [alternative, _, other_slope, _]) =
+    let ([saturation, missing, slope, _], [alternative, _, other_slope, _]) =
         (found.coefficients, other.coefficients);
     let deviation = hypot(found.deviations[0], 0.5 * (saturation - alternative));
-    if !(saturation > 0.0 && deviation <= UNSURE * saturation) {
+    let is_near = missing.abs() <= MISSING * saturation;
+    if !(saturation > 0.0 && deviation <= UNSURE * saturation && is_near) {
         return absent("the outer 30 % of the input does not determine it: the loop is not near saturation");
     }
     let slope_deviation = hypot(found.deviations[2], 0.5 * (slope - other_slope));

@@ -19,7 +19,7 @@ use super::field::Field;
 use super::harmonic::ComplexModulus;
 use super::joint::joint;
 use super::levels::{self, LevelRow};
-use super::loss_separation;
+use super::loss_separation::LossLaws;
 use super::losses::{LossAtFrequency, losses};
 use super::notes::notes;
 use super::path::{Closure, CyclePath, area, at, range, weights, width};
@@ -180,7 +180,7 @@ impl CycleTable {
                 levels.extend(levels::levels(&rows, elastic_plastic::mean_yield_input(&own)));
                 figures.extend(own);
             }
-            if field == Field::Magnet {
+            if field == Field::Magnet && rows.iter().any(|row| row.complete) {
                 figures.extend(saturation::figures(record));
             }
             cycles.extend(rows);
@@ -192,13 +192,11 @@ impl CycleTable {
                 row.power_per_mass = row.power.map(|power| power / density);
             }
         }
-        let (of_losses, separation) = match field {
-            Field::Magnet => loss_separation::figures(&cycles),
-            _ => (Vec::new(), None),
-        };
-        figures.extend(of_losses);
+        let laws =
+            if field == Field::Magnet { LossLaws::read(data, &mut cycles) } else { LossLaws::default() };
+        figures.extend(laws.figures);
         let notes = notes(&survey, &cycles, (field, division));
-        let losses = losses(&cycles, separation.as_ref());
+        let losses = losses(&cycles, laws.separation.as_ref());
         Ok(Self { field, division, losses, cycles, backbone: points, levels, figures, notes })
     }
 

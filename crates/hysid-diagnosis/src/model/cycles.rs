@@ -76,6 +76,7 @@ impl ModelCycles {
         let options_of_curves = ReversalCurveOptions {
             branches: DiagnosisOptions { smallest_reversal: 0.5 / f64::from(REVERSALS), ..branches },
             smoothing_factor,
+            smoothing_growth: 0.0,
         };
         let curves = reversal_curves(&probe)?;
         let has_loops = curves.check_identifiable(crate::FEWEST_ROWS).is_ok();

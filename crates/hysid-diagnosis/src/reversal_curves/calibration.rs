@@ -58,7 +58,7 @@ pub fn without_calibration_points(data: &Dataset) -> Option<(Dataset, String)> {
     let is_apart = curves.iter().all(|x| (x - centre).abs() > far);
     let is_one_field = isolated.iter().all(|point| (field(point) - centre).abs() <= SAME * (high - low));
     let is_measured = isolated.iter().all(|point| !point.output.is_nan());
-    if isolated.len() < FEWEST || !(is_apart && is_one_field && is_measured) || !(far > 0.0) {
+    if isolated.len() < FEWEST || !(is_apart && is_one_field && is_measured && far > 0.0) {
         return None;
     }
     let drift = Drift::of(data, &isolated);

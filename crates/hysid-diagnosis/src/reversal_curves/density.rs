@@ -5,6 +5,7 @@ use hysid_core::elementary::square;
 use hysid_core::linear_algebra::Symmetric;
 use hysid_core::stop_check::StopCheck;
 
+use super::SMOOTHING_FACTORS;
 use super::recognition::CurveSet;
 use crate::branch::BranchSet;
 
@@ -46,13 +47,14 @@ struct DensityCell {
 pub(super) struct Smoothing {
     step: f64,
     noise: f64,
+    growth: f64,
     reversals: Vec<f64>,
     /// The cells of each curve, in the order of the input.
     curves: Vec<Vec<DensityCell>>,
 }
 
 impl Smoothing {
-    pub fn new(survey: &BranchSet, found: &CurveSet, step: f64) -> Self {
+    pub fn new(survey: &BranchSet, found: &CurveSet, step: f64, growth: f64) -> Self {
         let sign = if found.rising { 1.0 } else { -1.0 };
         let end = sign * found.end;
         let curve = |&number: &usize| {
@@ -81,22 +83,36 @@ impl Smoothing {
         };
         Self {
             step,
+            growth,
             noise: survey.output_noise.deviation(),
             reversals: found.branches.iter().map(|&number| sign * survey.branches[number].from).collect(),
             curves: found.branches.iter().map(curve).collect(),
         }
     }
 
-    /// The density at each node, which is the number of a curve and an input, with a smoothing factor; `None` where too few
-    /// rows surround it.
+    /// The density at each node, which is the number of a curve and an input, with a smoothing factor that grows away from
+    /// both axes; `None` where too few rows surround it.
     pub fn densities(&self, nodes: &[(usize, f64)], factor: usize) -> Vec<Option<Density>> {
-        let windows: Vec<Vec<[f64; 4]>> =
-            nodes.iter().map(|&(curve, x)| self.window(curve, x, factor)).collect();
-        let full = windows.iter().map(Vec::len).max().unwrap_or(0);
-        let is_filled = |window: &Vec<[f64; 4]>| {
-            window.len() >= COEFFICIENTS && window.len() as f64 >= FULL * full as f64
+        let window = |&(curve, x): &(usize, f64)| {
+            let factor = self.factor_at(self.reversals[curve], x, factor);
+            (factor, self.window(curve, x, factor))
         };
-        windows.iter().map(|window| is_filled(window).then(|| self.density(window, factor))?).collect()
+        let windows: Vec<(usize, Vec<[f64; 4]>)> = nodes.iter().map(window).collect();
+        let mut full = [0; *SMOOTHING_FACTORS.end() + 1];
+        windows.iter().for_each(|(factor, window)| full[*factor] = full[*factor].max(window.len()));
+        let is_filled = |(factor, window): &(usize, Vec<[f64; 4]>)| {
+            window.len() >= COEFFICIENTS && window.len() as f64 >= FULL * full[*factor] as f64
+        };
+        let density =
+            |both: &(usize, Vec<[f64; 4]>)| is_filled(both).then(|| self.density(&both.1, both.0))?;
+        windows.iter().map(density).collect()
+    }
+
+    /// The smoothing factor of a node.
+    fn factor_at(&self, reversal: f64, x: f64, least: usize) -> usize {
+        let away = f64::min(0.5 * (x - reversal), 0.5 * (x + reversal).abs());
+        let grown = least + (self.growth * away / self.step).max(0.0) as usize;
+        grown.min(*SMOOTHING_FACTORS.end()).max(least)
     }
 
     /// Reversal input and input in units of the window, output, and number of rows of all cells around a node.

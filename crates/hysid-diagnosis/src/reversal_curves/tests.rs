@@ -141,6 +141,35 @@ fn noise_chooses_more_smoothing_and_the_deviation_is_that_of_the_errors() {
     assert!((0.6..2.0).contains(&rms), "{rms}");
 }
 
+/// With noise, a smoothing factor that grows away from both axes has smaller errors there, and the same on the axes.
+#[test]
+fn a_growing_smoothing_factor_smooths_away_from_both_axes_only() {
+    let data = curves(0.02);
+    let of = |smoothing_growth| {
+        let options =
+            ReversalCurveOptions { smoothing_factor: Some(2), smoothing_growth, ..Default::default() };
+        ReversalCurves::of(&data, &options).unwrap().unwrap()
+    };
+    let (even, growing) = (of(0.0), of(0.4));
+    let error = |curves: &ReversalCurves, is_of: &dyn Fn(f64) -> bool| {
+        let own = curves.nodes.iter().filter(|node| {
+            let (coercivity, interaction) = curves.fields(node);
+            is_of(coercivity.min(interaction.abs()))
+        });
+        let squares =
+            own.filter_map(|node| Some(square(node.density? - density(node.input, node.reversal_input))));
+        squares.sum::<f64>().sqrt()
+    };
+    let (near, away) = (|field: f64| field < 0.2, |field: f64| field > 0.3);
+    assert_eq!(error(&even, &near), error(&growing, &near));
+    assert!(
+        error(&growing, &away) < 0.6 * error(&even, &away),
+        "{} {}",
+        error(&growing, &away),
+        error(&even, &away)
+    );
+}
+
 /// A density that is the same everywhere makes the output a parabola of both, which is fitted exactly.
 #[test]
 fn an_even_density_is_exact_also_for_curves_that_fall_and_for_records_of_single_curves() {

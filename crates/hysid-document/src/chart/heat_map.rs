@@ -116,12 +116,11 @@ mod tests {
         let svg = chart.svg();
         assert_balanced(&svg);
         // The first area is two units wide and one high.
-        let path = svg.split("fill=\"#102030\"").next().unwrap().rsplit("<path").next().unwrap();
-        let numbers: Vec<f64> = path
-            .split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'))
-            .filter_map(|text| text.parse().ok())
-            .collect();
-        eprintln!("{numbers:?}");
+        let polygon =
+            svg.split("<polygon fill=\"#102030\" points=\"").nth(1).unwrap().split('"').next().unwrap();
+        let points: Vec<f64> = polygon.split([' ', ',']).map(|number| number.parse().unwrap()).collect();
+        let (width, height) = ((points[2] - points[0]).abs(), (points[5] - points[3]).abs());
+        assert!((width / height / 2.0 - 1.0).abs() < 0.01, "{polygon}");
         for marker in ["#102038", "#102133", "#102034", "#102030"] {
             assert!(svg.contains(&format!("fill=\"{marker}\"")), "{marker}");
             assert!(super::super::style().contains(&format!("[fill=\"{marker}\"]")), "{marker}");

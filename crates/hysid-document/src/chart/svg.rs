@@ -90,12 +90,14 @@ fn shared_room(charts: &[Chart], columns: usize, appearance: &Appearance) -> (us
 
 /// The `svg` element; `outer` are further attributes of it and `beginning` its first content, both markup.
 fn element(chart: &Chart, appearance: &Appearance, outer: &str, beginning: &str, tracks: bool) -> String {
-    let mut frame = frame::frame(chart, appearance);
-    let equal = chart.has_equal_axes.then(|| equalised(chart, frame.place));
-    let chart = equal.as_ref().unwrap_or(chart);
-    if chart.has_equal_axes {
-        frame = frame::frame(chart, appearance);
+    let mut chart = std::borrow::Cow::Borrowed(chart);
+    // The texts of the ticks change with the range of an axis, and their width changes the place of the curves: twice is enough.
+    for _ in 0..2 {
+        if chart.has_equal_axes {
+            chart = std::borrow::Cow::Owned(equalised(&chart, frame::frame(&chart, appearance).place));
+        }
     }
+    let (chart, frame) = (&*chart, frame::frame(&chart, appearance));
     let curves = curves(chart, &frame, appearance, tracks);
     let attributes = if tracks { attributes(chart, &frame) } else { String::new() };
     let drawing = format!("<g class=\"frame\">{}</g>\n{curves}", frame.markup);

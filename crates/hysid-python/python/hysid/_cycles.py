@@ -179,6 +179,7 @@ def cycles(
     smallest_reversal: float | None = None,
     smoothing: bool = True,
     smoothing_factor: int | None = None,
+    smoothing_growth: float = 0.0,
     density: float | None = None,
 ) -> Cycles:
     """Read the figures of each cycle in measured data: energy, damping, stiffness, coercive field, losses, width, creep.
@@ -204,6 +205,8 @@ def cycles(
         Smooth branches before outputs are read from them.
     smoothing_factor : int, optional
         Smoothing factor of the density of first-order reversal curves, 1 to 10; chosen by the noise by default.
+    smoothing_growth : float
+        Growth of the smoothing factor in each step away from the ridges of a FORC diagram, 0 to 1.
     density : float, optional
         Mass density in kg/m³, for losses of magnets per mass.
 
@@ -233,10 +236,17 @@ def cycles(
     smoothing = truth("smoothing", smoothing)
     options = named_options(division, field, smoothing_factor)
     arranged = columns(x, y, time, None, records)
+    if not 0 <= (smoothing_growth := real("smoothing_growth", smoothing_growth)) <= 1:
+        raise ValueError(f"smoothing_growth: a number from 0 to 1 is needed, not {smoothing_growth}")
     if density is not None and not (density := real("density", density)) > 0:
         raise ValueError(f"density: a number above 0 is needed, not {density}")
     return cycles_of(
-        arranged, *options, smallest_reversal=smallest_reversal, smoothing=smoothing, density=density
+        arranged,
+        *options,
+        smallest_reversal=smallest_reversal,
+        smoothing=smoothing,
+        smoothing_growth=smoothing_growth,
+        density=density,
     )
 
 
@@ -248,8 +258,10 @@ def cycles_of(
     *,
     smallest_reversal: float | None = None,
     smoothing: bool = True,
+    smoothing_growth: float = 0.0,
     density: float | None = None,
 ) -> Cycles:
     """The figures of each cycle in columns; arguments as of `cycles`."""
     options = (division, field, smoothing_factor)
-    return Cycles._of(_hysid.cycles(arranged.dataset(), smallest_reversal, smoothing, *options, density))
+    rest = (*options, smoothing_growth, density)
+    return Cycles._of(_hysid.cycles(arranged.dataset(), smallest_reversal, smoothing, *rest))

@@ -218,6 +218,7 @@ def cycles(
     division: str | None,
     field: str | None,
     smoothing_factor: int | None,
+    smoothing_growth: float,
     density: float | None,
 ) -> str: ...
 def figure_label(figure: str, input: str, output: str, time: str | None) -> str: ...

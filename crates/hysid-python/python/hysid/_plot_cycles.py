@@ -21,9 +21,19 @@ if TYPE_CHECKING:
 
 __all__ = ["backbone", "cycles", "energy", "frequency"]
 
-FIGURE = {"structure": "energy", "magnet": "energy", "actuator": "width_percent", "general": "energy"}
-FIGURE |= {"thermal": "thermal_width", "battery": "mean_gap", "hydrology": "hysteresis_index"}
+FIGURE = {
+    "structure": "energy",
+    "magnet": "energy",
+    "actuator": "width_percent",
+    "thermal": "thermal_width",
+    "battery": "mean_gap",
+    "hydrology": "hysteresis_index",
+    "general": "energy",
+}
 """The figure of a cycle that each field looks at first."""
+
+IN_GENERAL = ("structure", "magnet", "actuator", "general")
+"""Fields whose figures `general` has."""
 
 DOTS: dict[str, dict[str, Any]] = {
     "measured": {"color": MEASURED["color"], "marker": "o", "markersize": 6.0, "label": "measured"},
@@ -35,8 +45,9 @@ def _of_all_fields(run: Run, division: str | None) -> list[tuple[str, Cycles]]:
     """The cycles, measured and of the model, with the figures of all fields, divided as suits the field."""
     division, _, _ = named_options(division, None, None)
     (_, first), *_ = run.outputs()
-    by = cycles_of(first, division).division
-    return [(kind, cycles_of(columns, by, "general")) for kind, columns in run.outputs()]
+    by = cycles_of(first, division)
+    field = "general" if by.field in IN_GENERAL else by.field
+    return [(kind, cycles_of(columns, by.division, field)) for kind, columns in run.outputs()]
 
 
 def _check(figure: str) -> str:

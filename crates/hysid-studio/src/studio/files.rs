@@ -266,6 +266,6 @@ fn diagnosis_of(data: &Data) -> Result<String> {
 
 fn cycles_of(data: &Data) -> Result<String> {
     let understood = understanding::of_data(data, &Summary::of(&data.set), Face::Studio);
-    let cycles = Cycles::of_data(&data.set, &CycleOptions::default(), &[], None, ("", understood));
+    let cycles = Cycles::of_data(&data.set, &CycleOptions::default(), &[], (None, 0.0), ("", understood));
     Ok(html::parts(&cycles::page(&cycles.map_err(|error| data.explain(error))?).parts))
 }

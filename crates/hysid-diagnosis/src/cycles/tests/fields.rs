@@ -95,6 +95,34 @@ fn the_steinmetz_equation_has_the_exponents_that_made_the_losses_and_its_interva
     assert!((0.4..1.2).contains(&error), "{error}");
 }
 
+/// The law of sines gives sines their own loss; its parameters are those of the sines alone.
+#[test]
+fn cycles_of_sines_have_their_loss_by_igse_and_triangles_change_no_parameter() {
+    let energy = |peak: f64, frequency: f64| 40.0 * powf(frequency, 0.3) * powf(peak, 1.9);
+    let sines = losses(&grid(energy));
+    let time: Vec<f64> = (0..=1200).map(|row| f64::from(row) / 400.0 / 50.0).collect();
+    let wave = |shift: f64| {
+        let triangle = |t: &f64| 4.0 * ((50.0 * t - shift) - (50.0 * t - shift + 0.5).floor()).abs() - 1.0;
+        time.iter().map(triangle).collect::<Vec<f64>>()
+    };
+    let triangle =
+        Record::new("triangle", vec![wave(0.0).iter().map(|h| 900.0 * h).collect()], wave(0.02)).unwrap();
+    let records =
+        sines.records().iter().cloned().chain([triangle.with_time(time.clone()).unwrap()]).collect();
+    let table = table_of(&Dataset::new(sines.names().clone(), records).unwrap(), Field::Magnet);
+    assert_relative_eq!(value(&table, "", "steinmetz_frequency_exponent"), 1.3, max_relative = 2e-3);
+    for row in table.complete().filter(|row| row.record != "triangle") {
+        assert_relative_eq!(row.igse_energy.unwrap(), row.energy.unwrap(), max_relative = 0.01);
+    }
+    // k_i (4 B f)^α (2 B)^(β-α) / f of a triangle.
+    let cosines: f64 =
+        (0..40_000).map(|k| powf(cos(TAU * f64::from(k) / 4e4).abs(), 1.3)).sum::<f64>() * TAU / 4e4;
+    let expected =
+        40.0 / (powf(TAU, 0.3) * powf(2.0, 0.6) * cosines) * powf(200.0, 1.3) * powf(2.0, 0.6) / 50.0;
+    let triangle = table.complete().filter(|row| row.record == "triangle").nth(1).unwrap();
+    assert_relative_eq!(triangle.igse_energy.unwrap(), expected, max_relative = 0.01);
+}
+
 #[test]
 fn a_loss_that_is_absent_is_at_its_bound_and_few_frequencies_give_no_separation() {
     let table = table_of(
