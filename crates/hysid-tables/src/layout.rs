@@ -17,8 +17,9 @@ use hysid_document::{Problem, Result};
 use lines::TextLine;
 use run::LineRun;
 
-pub use cells::{bare, split};
-pub use lines::is_comment;
+pub use cells::{CellKind, LineCell, bare, split};
+pub use header::{ColumnGroups, is_name};
+pub use lines::{first_line, is_comment};
 pub use run::is_row;
 
 /// Lines that a layout is found from.
@@ -52,6 +53,8 @@ pub struct Layout {
     pub start: usize,
     /// The line of the first row.
     pub line: u64,
+    /// Columns that are several tables side by side.
+    pub groups: Option<ColumnGroups>,
 }
 
 /// Largest number of bytes of a column's name, which models and reports repeat.
@@ -93,6 +96,7 @@ impl Layout {
             units_line: header.units_line,
             start: first.start,
             line: first.number,
+            groups: header.groups,
         };
         layout.name_units();
         if let Some(name) = layout.names.iter().find(|name| name.len() > LONGEST_NAME) {
@@ -131,11 +135,12 @@ impl Layout {
             stamps: vec![false; width],
             start: line.end,
             line: line.number + 1,
+            groups: None,
         })
     }
 
     /// Adds units to names that have none: those in the cells, and the seconds that dates and clocks become.
-    fn name_units(&mut self) {
+    pub fn name_units(&mut self) {
         for (place, name) in self.names.iter_mut().enumerate() {
             // Records have names, such as those of frequencies.
             if is_record(name) {

@@ -30,6 +30,18 @@ pub struct Header {
     pub units_line: Option<u64>,
     /// The last column has a name of its own.
     pub names_last: bool,
+    pub groups: Option<ColumnGroups>,
+}
+
+/// Columns whose names come again and again, as of loops side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnGroups {
+    /// Columns before the groups, which belong to each of them.
+    pub shared: usize,
+    /// Names of the shared columns and of a group.
+    pub names: Vec<String>,
+    /// A name for each group.
+    pub labels: Vec<String>,
 }
 
 /// A line above the rows.
@@ -92,16 +104,21 @@ impl Header {
         }
         let lines = rows.iter().map(|row| row.line).collect();
         let mut names = rows.pop().map_or_else(|| vec![String::new(); width], |row| row.cells);
-        if !are_distinct(&names)
-            && let Some(above) = rows.pop()
-        {
-            names = joined(&above.cells, &names);
+        let with_units = |mut names: Vec<String>| {
+            let units = units.iter().flat_map(|(.., cells)| cells);
+            names.iter_mut().zip(units).for_each(|(name, unit)| add_unit(name, unit));
+            names
+        };
+        let mut groups = None;
+        if !are_distinct(&names) {
+            let above = rows.pop().map(|row| row.cells);
+            groups = column_groups(&with_units(names.clone()), above.as_deref());
+            names = above.map_or(names.clone(), |above| joined(&above, &names));
         }
-        if let Some((.., cells)) = &units {
-            names.iter_mut().zip(cells).for_each(|(name, unit)| add_unit(name, unit));
-        }
+        names = with_units(names);
         let names_last = names.last().is_some_and(|last| !is_remark(last));
-        Self { names: distinct(names), lines, units_line: units.map(|(_, line, _)| line), names_last }
+        let units_line = units.map(|(_, line, _)| line);
+        Self { names: distinct(names), lines, units_line, names_last, groups }
     }
 }
 
@@ -155,7 +172,7 @@ fn is_number(text: &str) -> bool {
     )
 }
 
-fn is_name(text: &str) -> bool {
+pub fn is_name(text: &str) -> bool {
     !text.is_empty() && !is_number(text)
 }
 
@@ -226,6 +243,45 @@ pub fn add_unit(name: &mut String, unit: &str) {
     if !unit.is_empty() && !is_missing(unit) && unit::of_column(name).is_none() {
         name.push_str(&format!(" [{unit}]"));
     }
+}
+
+/// Most columns before groups of columns: an index and a time.
+const MOST_SHARED: usize = 2;
+
+/// Labels of stages of one measurement, which are no records.
+const STAGES: [&str; 12] = [
+    "raw", "adjusted", "corrected", "filtered", "calibrated", "command", "feedback", "reference", "target", "actual",
+    "measured", "model",
+];
+
+/// Groups of columns with equal names, at least two besides time in each; the line above may have their labels.
+fn column_groups(names: &[String], above: Option<&[String]>) -> Option<ColumnGroups> {
+    for shared in 0..=MOST_SHARED.min(names.len()) {
+        let own = &names[shared..];
+        let Some(width) = own.iter().skip(1).position(|name| *name == own[0]).map(|place| place + 1) else {
+            continue;
+        };
+        let group = &own[..width];
+        let others = group.iter().filter(|name| !unit::may_be_time(name)).count();
+        let is_repeated = own.len().is_multiple_of(width) && own.chunks(width).all(|other| other == group);
+        if !is_repeated || others < 2 || !are_distinct(&names[..shared + width]) {
+            continue;
+        }
+        let count = own.len() / width;
+        let labels: Vec<String> = match above {
+            Some(above) => above[shared..].iter().step_by(width).cloned().collect(),
+            None => Vec::new(),
+        };
+        let is_stage = |label: &String| STAGES.contains(&label.to_lowercase().as_str());
+        if labels.iter().any(is_stage) {
+            return None;
+        }
+        let is_labelled = !labels.is_empty() && are_distinct(&labels) && labels.iter().all(|label| is_name(label));
+        let numbered = || (1..=count).map(|number| number.to_string()).collect();
+        let labels = if is_labelled { labels } else { numbered() };
+        return Some(ColumnGroups { shared, names: distinct(names[..shared + width].to_vec()), labels });
+    }
+    None
 }
 
 fn are_distinct(names: &[String]) -> bool {
