@@ -34,7 +34,12 @@ pub struct DecodedText {
     pub content: TextContent,
     /// How it is stored, in words, such as `text, UTF-8`.
     pub stored: String,
+    /// All of it may be read beforehand: it is a small file, and no pipe.
+    pub is_short: bool,
 }
+
+/// Bytes of a text that is looked through for several tables.
+pub const LONGEST_TEXT: usize = 1 << 24;
 
 pub enum TextContent {
     Stream(Box<dyn Read>),
@@ -55,15 +60,17 @@ impl DecodedText {
     /// Opens a file; standard input for `-`.
     pub fn open(path: &Path, reading: &Reading) -> Result<Self> {
         if path == Path::new("-") {
-            return Self::new("standard input".into(), Box::new(io::stdin()), reading);
+            return Self::new("standard input".into(), Box::new(io::stdin()), false, reading);
         }
         let file = path.display().to_string();
+        let is_short =
+            path.metadata().is_ok_and(|stored| stored.is_file() && stored.len() <= LONGEST_TEXT as u64);
         let reader = hysid_files::open(path).map_err(Problem::from)?;
-        Self::new(file, Box::new(reader), reading)
+        Self::new(file, Box::new(reader), is_short, reading)
     }
 
     /// The text that a reader gives, of a file of this name.
-    pub fn new(file: String, reader: Box<dyn Read>, reading: &Reading) -> Result<Self> {
+    pub fn new(file: String, reader: Box<dyn Read>, is_short: bool, reading: &Reading) -> Result<Self> {
         let (mut reader, mut first) = peeked(&file, reader)?;
         let mut packed = "";
         if first.starts_with(b"\x1f\x8b") {
@@ -77,7 +84,7 @@ impl DecodedText {
                 |words| Problem::in_file(&file, Words::from(format!("is {kind} that cannot be read: ")) + words);
             let (sheets, stored) = budget(all(&file, reader)?).map_err(failed)?;
             let stored = format!("{stored}{packed}");
-            Ok(Self { file: file.clone(), content: TextContent::Sheets(sheets), stored })
+            Ok(Self { file: file.clone(), content: TextContent::Sheets(sheets), stored, is_short })
         };
         if numpy::is_array(&first) || numpy::is_archive(&first) {
             return sheets(reader, "a NumPy file", |bytes, chosen| {
@@ -105,7 +112,8 @@ impl DecodedText {
             });
         }
         let (reader, encoding) = encoding::decoded(reader, &first, reading.encoding);
-        Ok(Self { file, content: TextContent::Stream(reader), stored: format!("text, {encoding}{packed}") })
+        let stored = format!("text, {encoding}{packed}");
+        Ok(Self { file, content: TextContent::Stream(reader), stored, is_short })
     }
 }
 
@@ -219,7 +227,7 @@ mod tests {
 
     fn text(bytes: &[u8]) -> Result<(String, String)> {
         let bytes = bytes.to_vec();
-        let text = DecodedText::new("f".into(), Box::new(Cursor::new(bytes)), &Reading::default())?;
+        let text = DecodedText::new("f".into(), Box::new(Cursor::new(bytes)), true, &Reading::default())?;
         let mut all = String::new();
         let TextContent::Stream(mut reader) = text.content else { panic!("sheets") };
         reader.read_to_string(&mut all).unwrap();

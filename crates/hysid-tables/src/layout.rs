@@ -18,7 +18,7 @@ use lines::TextLine;
 use run::LineRun;
 
 pub use cells::{CellKind, LineCell, bare, split};
-pub use header::{ColumnGroups, is_name};
+pub use header::{ColumnGroups, distinct, is_name};
 pub use lines::{first_line, is_comment};
 pub use run::is_row;
 

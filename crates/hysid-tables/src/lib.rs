@@ -16,6 +16,7 @@ mod blanks;
 mod column;
 mod container;
 mod head;
+mod join;
 mod layout;
 mod line_counter;
 mod number;

@@ -7,7 +7,7 @@ use csv_core::ReadRecordResult;
 use hysid_core::words::{Hint, Words};
 
 use crate::blanks::TabsForBlanks;
-use crate::container::{BINARY, DecodedText, TextContent, TextSheet};
+use crate::container::{BINARY, DecodedText, LONGEST_TEXT, TextContent, TextSheet};
 use hysid_document::visible::listed;
 use hysid_files::unreadable;
 
@@ -15,7 +15,7 @@ use crate::head::{Head, counted};
 use crate::layout::{Layout, is_comment, is_row, split, width_problem};
 use crate::line_counter::LineCounter;
 use crate::reading::{Delimiter, Reading};
-use crate::several::{Found, GatheredTables, LONGEST_TEXT, gather};
+use crate::several::{Found, GatheredTables, gather};
 use hysid_document::{Problem, Result};
 
 /// Bytes that are read at a time.
@@ -123,11 +123,11 @@ impl Rows {
     /// Finds the layout of the table that a file with this content has.
     pub fn from_bytes(path: &Path, bytes: Vec<u8>, reading: &Reading) -> Result<Self> {
         let reader = Box::new(Cursor::new(bytes));
-        Self::of(DecodedText::new(path.display().to_string(), reader, reading)?, reading)
+        Self::of(DecodedText::new(path.display().to_string(), reader, true, reading)?, reading)
     }
 
     fn of(text: DecodedText, reading: &Reading) -> Result<Self> {
-        let DecodedText { file, content, stored } = text;
+        let DecodedText { file, content, stored, is_short } = text;
         let mut reader = match content {
             TextContent::Stream(reader) => reader,
             TextContent::Sheets(mut sheets) => {
@@ -142,7 +142,7 @@ impl Rows {
             }
         };
         let (mut first, mut is_all) = beginning(&file, &mut reader)?;
-        if !is_all {
+        if is_short && !is_all {
             let more = LONGEST_TEXT.saturating_sub(first.len());
             let read = reader.by_ref().take(more as u64).read_to_end(&mut first);
             is_all = read.map_err(|error| unreadable(&file, &error))? < more;
@@ -470,7 +470,7 @@ mod tests {
     }
 
     fn rows(text: &[u8], piece: usize, reading: &Reading) -> Result<Rows> {
-        Rows::of(DecodedText::new("f".into(), Box::new(Dripping(text.to_vec(), piece)), reading)?, reading)
+        Rows::of(DecodedText::new("f".into(), Box::new(Dripping(text.to_vec(), piece)), false, reading)?, reading)
     }
 
     fn read(text: &[u8], piece: usize) -> Result<Vec<(u64, Vec<String>)>> {

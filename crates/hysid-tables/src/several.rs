@@ -10,9 +10,6 @@ use crate::layout::{CellKind, LineCell, Layout, first_line, is_comment, is_name,
 use crate::number::is_missing;
 use crate::reading::{Delimiter, Reading};
 
-/// Bytes of a text that is looked through for several tables.
-pub const LONGEST_TEXT: usize = 1 << 24;
-
 const MOST_TABLES: usize = 2_000;
 
 /// Rows without names that are a table, and no text behind one.
@@ -49,6 +46,8 @@ struct TablePart<'t> {
     columns: Vec<usize>,
     /// Columns before the first of its own.
     shared: usize,
+    /// It is a group of columns.
+    is_group: bool,
     delimiter: Delimiter,
     rows: Vec<(u64, &'t str)>,
 }
@@ -158,14 +157,18 @@ fn joined(parts: &[TablePart<'_>], left_out: Vec<String>) -> GatheredTables {
             lines.push(line);
         }
     }
-    let names: Vec<String> = match parts {
-        [part] if !part.sheet.described.is_empty() && part.name.is_empty() => vec![part.sheet.described.clone()],
-        parts if parts.iter().all(|part| part.shared < part.columns.len() && part.name.parse::<u32>().is_ok()) => {
-            vec![format!("{} groups of columns", parts.len())]
-        }
-        parts => parts.iter().map(|part| part.name.clone()).collect(),
-    };
-    GatheredTables { layout, text, lines, described: listed(&names), left_out }
+    GatheredTables { layout, text, lines, described: described(parts), left_out }
+}
+
+/// Which tables are read.
+fn described(parts: &[TablePart<'_>]) -> String {
+    let names: Vec<&String> = parts.iter().map(|part| &part.name).collect();
+    match parts {
+        [part] if !part.sheet.described.is_empty() => part.sheet.described.clone(),
+        [_, ..] if parts.iter().all(|part| part.is_group) => format!("{} groups of columns", parts.len()),
+        [part, ..] if part.sheet.described.starts_with("sheet ") => format!("sheets {}", listed(&names)),
+        _ => listed(&names),
+    }
 }
 
 /// The tables of a sheet; `None` for one that must be read row by row, because something in it is no table.
@@ -193,7 +196,8 @@ fn tables<'t>(file: &str, sheet: &'t TextSheet, reading: &Reading) -> Option<Vec
         layout.preamble += line as usize;
         let columns = (0..layout.names.len()).collect();
         let delimiter = layout.delimiter;
-        found.push(TablePart { name: String::new(), sheet, layout, columns, shared: 0, delimiter, rows: lines });
+        let name = String::new();
+        found.push(TablePart { name, sheet, layout, columns, shared: 0, is_group: false, delimiter, rows: lines });
         at += scanned.end;
         line += scanned.lines;
         if at >= text.len() {
@@ -297,7 +301,7 @@ impl<'t> TablePart<'t> {
             layout.name_units();
             let name = if name.is_empty() { label.clone() } else { format!("{name}/{label}") };
             let (sheet, delimiter, rows) = (self.sheet, self.delimiter, self.rows.clone());
-            Self { name, sheet, layout, columns, shared, delimiter, rows }
+            Self { name, sheet, layout, columns, shared, is_group: true, delimiter, rows }
         };
         groups.labels.iter().enumerate().map(part).collect()
     }

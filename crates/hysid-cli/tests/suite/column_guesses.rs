@@ -79,7 +79,7 @@ fn columns_that_only_grow_are_refused_where_others_are_left() {
         growing("position,x,y"),
         "",
         "error: data.csv: column \"position\" grows from row to row: name it with --time position, or name input and \
-         output with --input and --output, for instance --input position (columns: position, x, y)",
+         output with --input and --output, for instance --input x --output y (columns: position, x, y)",
     );
     told(growing("position,x,y"), "--time position", &["time     position"]);
     told(growing("position,x,y"), "--input position --input x", &["input    position: "]);
@@ -100,7 +100,7 @@ fn command_and_measurement_are_not_both_inputs() {
         data.clone(),
         "",
         "error: data.csv: columns \"command\" and \"measured\" are nearly the same signal (correlation 0.9999), such as a \
-         command and its measurement: name the input with --input command or --input measured",
+         command and its measurement: name the input with --input measured or --input command",
     );
     told(data, "--input measured", &["input    measured: "]);
     let data = table("t,x,temperature,y", |_, [t, x, y]| texts(&[&t, &x, &sin(1.3 * t), &y]));
@@ -116,10 +116,11 @@ fn many_columns_are_not_all_inputs() {
         std::iter::once(t.to_string()).chain(gauges).chain([y.to_string()]).collect()
     });
     let names = "gauge_1, gauge_2, gauge_3, gauge_4, gauge_5, gauge_6 and 54 more";
+    let instance = "for instance --input gauge_1 --output force_kN";
     refused(
         data.clone(),
         "",
-        &format!("error: data.csv: 60 columns could be inputs: name them with --input ({names})"),
+        &format!("error: data.csv: 60 columns could be inputs: name them with --input, {instance} (columns: {names})"),
     );
     told(data, "--input gauge_7", &["input    gauge_7: ", "output   force_kN: "]);
 }

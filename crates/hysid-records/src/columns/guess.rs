@@ -184,7 +184,11 @@ impl<'t> Guess<'t> {
             let is_time = unit::may_be_time(name) && self.time.is_none() && !self.no_time;
             return doubt(
                 Rank::Text,
-                if is_time { "text, and no time stamp that Hysid reads" } else { "text" },
+                match is_time {
+                    true => "text, and no time stamp that Hysid reads",
+                    false if self.is_empty(name) => "empty",
+                    false => "text",
+                },
             );
         };
         if unit::may_be_time(name) && seen.running == TimeCheck::No && kind == ColumnKind::Unknown {
@@ -232,6 +236,12 @@ impl<'t> Guess<'t> {
             {
                 doubt(Rank::Kept, "few values, each kept for many rows: a condition")
             }
+            ColumnKind::Drives(Domain::Mechanics) | ColumnKind::Follows(Domain::Mechanics)
+                if self.has(ColumnKind::Drives(Domain::Magnetism))
+                    && self.free.iter().any(|name| kind::is_moment(name)) =>
+            {
+                doubt(Rank::Derived, "about the magnetometer, beside field and moment")
+            }
             // Resistance is calculated where voltage and current are there.
             ColumnKind::Unknown if kind::words(name).iter().any(|word| word == "resistance") => {
                 let drives =
@@ -247,6 +257,11 @@ impl<'t> Guess<'t> {
             | ColumnKind::Unknown
             | ColumnKind::Counter => None,
         }
+    }
+
+    fn is_empty(&self, name: &str) -> bool {
+        let place = self.table.column(name).unwrap_or_default();
+        (0..self.table.rows()).all(|row| self.table.cell(row, place).trim().is_empty())
     }
 
     fn has(&self, kind: ColumnKind) -> bool {
@@ -268,7 +283,7 @@ impl<'t> Guess<'t> {
         };
         let words = Words::from(format!("column \"{}\" grows from row to row: ", clipped(name))) + time;
         let words = words + "name input and output with " + Hint::Option("input") + " and ";
-        Err(Problem::in_file(&self.table.file, words + Hint::Option("output") + self.columns()))
+        Err(Problem::in_file(&self.table.file, words + Hint::Option("output") + self.columns(Some(name))))
     }
 
     /// Refuses more than two columns that have no more than numbers for names.
@@ -283,8 +298,7 @@ impl<'t> Guess<'t> {
     /// Takes the last column; names that say otherwise are a question, or a note where the table is in the documented order.
     fn guess_output(&mut self, follows_the_order: bool) -> Result<()> {
         let Some(last) = self.free.last().copied() else { return Ok(()) };
-        let follows: Vec<&'t String> =
-            self.free.iter().filter(|name| ColumnKind::of(name).follows()).copied().collect();
+        let follows = self.follows();
         let mut output = last;
         if self.free.len() > 1 {
             match (follows.as_slice(), ColumnKind::of(last)) {
@@ -306,6 +320,10 @@ impl<'t> Guess<'t> {
                     if !follows_the_order {
                         return Err(self.against_the_order(one, last));
                     }
+                    self.note = Some(self.order_believed(one, last));
+                }
+                // The other column may be anything.
+                ([one], ColumnKind::Unknown) if *one != last && !kind::are_documented(&self.free) => {
                     self.note = Some(self.order_believed(one, last));
                 }
                 ([], kind) if !self.has_inputs() => {
@@ -332,14 +350,48 @@ impl<'t> Guess<'t> {
         Ok(())
     }
 
+    /// Columns that are outputs by their names. A pressure beside field and moment is none: nothing of its branch of physics
+    /// drives it.
+    fn follows(&self) -> Vec<&'t String> {
+        let all = self.free.iter().copied().filter(|name| ColumnKind::of(name).follows());
+        let is_driven = |name: &&&String| match ColumnKind::of(name) {
+            ColumnKind::Follows(domain) => self.has(ColumnKind::Drives(domain)),
+            _ => false,
+        };
+        let all: Vec<&'t String> = all.collect();
+        let driven: Vec<&'t String> = all.iter().filter(is_driven).copied().collect();
+        if driven.is_empty() { all } else { driven }
+    }
+
     fn against_the_order(&self, one: &str, last: &str) -> Problem {
         let words = Words::from(format!(
             "\"{}\" is the last column, but \"{}\" looks more like the output: choose with ",
             clipped(last),
             clipped(one),
         ));
-        let output = |name: &str| Hint::Value("output", name.into());
-        Problem::in_file(&self.table.file, words + output(one) + " or " + output(last))
+        // Of more than two columns, the input must be named too.
+        let choice = |output: &str| match self.input_of(output, None).filter(|_| self.free.len() > 2) {
+            Some(input) => {
+                Words::from(Hint::Value("input", input.clone())) + " " + Hint::Value("output", output.into())
+            }
+            None => Hint::Value("output", output.into()).into(),
+        };
+        Problem::in_file(&self.table.file, words + choice(one) + " or " + choice(last))
+    }
+
+    /// The likeliest input of an output: what drives its branch of physics, or anything, or another column.
+    fn input_of(&self, output: &str, avoided: Option<&str>) -> Option<&String> {
+        let others = || self.free.iter().copied().filter(|name| *name != output && avoided != Some(name.as_str()));
+        let of_domain = |name: &&String| match ColumnKind::of(output) {
+            ColumnKind::Follows(domain) => ColumnKind::of(name) == ColumnKind::Drives(domain),
+            _ => false,
+        };
+        self.inputs
+            .first()
+            .or_else(|| others().find(of_domain))
+            .or_else(|| others().find(|name| ColumnKind::of(name).drives()))
+            .or_else(|| others().find(|name| !ColumnKind::of(name).follows()))
+            .or_else(|| others().next())
     }
 
     fn order_believed(&self, one: &str, last: &str) -> Words {
@@ -402,8 +454,7 @@ impl<'t> Guess<'t> {
             return Ok(());
         }
         let words = Words::from(format!("{} columns could be inputs: name them with ", self.free.len()));
-        let words = (words + Hint::Option("input")).advised(listed(&self.free));
-        Err(Problem::in_file(&self.table.file, words))
+        Err(Problem::in_file(&self.table.file, words + Hint::Option("input") + self.columns(None)))
     }
 
     fn refuse_alike(&self) -> Result<()> {
@@ -419,7 +470,8 @@ impl<'t> Guess<'t> {
                         clipped(name),
                     ));
                     let input = |name: &str| Hint::Value("input", name.into());
-                    let words = words + input(other) + " or " + input(name);
+                    let (first, second) = if kind::is_command(other) { (name, other) } else { (other, name) };
+                    let words = words + input(first) + " or " + input(second);
                     return Err(Problem::in_file(&self.table.file, words));
                 }
             }
@@ -515,26 +567,25 @@ impl<'t> Guess<'t> {
 
     /// A question, with the options that decide it.
     fn question(&self, words: &str) -> Problem {
-        let words = Words::from(format!("{words}: name input and output")) + self.columns();
+        let words = Words::from(format!("{words}: name input and output")) + self.columns(None);
         Problem::in_file(&self.table.file, words)
     }
 
-    /// Options that name likely columns, ready to be pasted, or all columns.
-    fn columns(&self) -> Words {
-        let free = || self.free.iter().copied();
-        let input = self.inputs.first().or(free().find(|name| ColumnKind::of(name).drives()));
-        let output = self.output.as_ref().or(free().rfind(|name| ColumnKind::of(name).follows()));
-        match (input, output) {
-            (Some(input), Some(output)) if input != output => {
-                let (input, output) =
-                    (Hint::Value("input", input.clone()), Hint::Value("output", output.clone()));
-                Words::from(", for instance ") + input + " " + output
-            }
-            _ => {
-                let first = free().next().map(|name| Hint::Value("input", name.clone()).into());
-                let words = Words::from(", for instance ") + first.unwrap_or(Words::default());
-                words.advised(format!("columns: {}", listed(&self.table.header)))
-            }
+    /// Options that name the likeliest columns, ready to be pasted, and the others that may be meant.
+    fn columns(&self, avoided: Option<&str>) -> Words {
+        let mut free = self.free.clone();
+        let of_follows = self.follows().last().copied();
+        let output = self.output.as_ref().or(of_follows).or(free.last().copied());
+        let Some((input, output)) = output.and_then(|output| Some((self.input_of(output, avoided)?, output)))
+        else {
+            return Words::default();
+        };
+        let pair = Words::from(", for instance ") + Hint::Value("input", input.clone()) + " ";
+        let pair = pair + Hint::Value("output", output.clone());
+        if ColumnKind::of(input).drives() && ColumnKind::of(output).follows() {
+            return pair;
         }
+        free.sort_by_key(|name| !ColumnKind::of(name).drives());
+        pair.advised(format!("columns: {}", listed(&free)))
     }
 }

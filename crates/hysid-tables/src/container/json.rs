@@ -139,7 +139,7 @@ impl Search {
                     Value::Array(cells) => cells.as_slice(),
                     _ => &[],
                 });
-                let name = if name.is_empty() { "c" } else { name };
+                let name = if name.is_empty() { "array" } else { name };
                 self.add(name.to_string(), columns, cells.map(Value::number).collect())?;
             }
             Value::Array(values) => {
@@ -224,7 +224,7 @@ mod tests {
             assert!(is_json(json.as_bytes()));
             assert_eq!(text(json), expected, "{json}");
         }
-        assert_eq!(text("[[0, 1.5], [1, -2]]"), "c_1 c_2\n0 1.5\n1 -2\n");
+        assert_eq!(text("[[0, 1.5], [1, -2]]"), "0 1.5\n1 -2\n");
     }
 
     #[test]

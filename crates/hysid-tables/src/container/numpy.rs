@@ -28,7 +28,7 @@ pub fn is_archive(first: &[u8]) -> bool {
 pub fn variables(bytes: &[u8], budget: Budget) -> Result<(Vec<Variable>, &'static str), String> {
     let mut left = budget.numbers();
     if is_array(bytes) {
-        return Ok((array("c", bytes, &mut left)?, "NumPy array"));
+        return Ok((array("array", bytes, &mut left)?, "NumPy array"));
     }
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|_| DAMAGED)?;
     if archive.len() > MOST_ARRAYS {
@@ -154,11 +154,11 @@ mod tests {
     fn arrays_of_any_type_and_order_are_read() {
         let floats: Vec<u8> = [0.5, -1.5, 2.5, 3.0].iter().flat_map(|x: &f64| x.to_le_bytes()).collect();
         let by_rows = "'descr': '<f8', 'fortran_order': False, 'shape': (2, 2)";
-        assert_eq!(text(&file(by_rows, &floats)), "c_1 c_2\n0.5 -1.5\n2.5 3\n");
+        assert_eq!(text(&file(by_rows, &floats)), "0.5 -1.5\n2.5 3\n");
         let by_columns = by_rows.replace("False", "True");
-        assert_eq!(text(&file(&by_columns, &floats)), "c_1 c_2\n0.5 2.5\n-1.5 3\n");
+        assert_eq!(text(&file(&by_columns, &floats)), "0.5 2.5\n-1.5 3\n");
         let big = "'descr': '>i2', 'fortran_order': False, 'shape': (3,)";
-        assert_eq!(text(&file(big, &[255, 254, 0, 3, 1, 0])), "c\n-2\n3\n256\n");
+        assert_eq!(text(&file(big, &[255, 254, 0, 3, 1, 0])), "array\n-2\n3\n256\n");
         let fields = "'descr': [('x', '<i1'), ('y', '|u1')], 'fortran_order': False, 'shape': (2,)";
         assert_eq!(text(&file(fields, &[255, 255, 2, 3])), "x y\n-1 255\n2 3\n");
     }

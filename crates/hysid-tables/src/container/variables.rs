@@ -48,7 +48,7 @@ impl Variable {
         self.name.rsplit_once('.').map_or("", |(structure, _)| structure)
     }
 
-    /// The last part of the name is the column's; a matrix has numbered columns.
+    /// The last part of the name is the column's; a matrix has numbered columns, and none if it is alone.
     fn named_columns(&self) -> Vec<(String, &Vec<f64>)> {
         let name = self.name.rsplit('.').next().unwrap_or_default();
         match self.columns.as_slice() {
@@ -132,21 +132,21 @@ fn lines(variables: &[&Variable]) -> String {
     let mut text = String::new();
     let columns: Vec<(String, &Vec<f64>)> =
         variables.iter().flat_map(|variable| variable.named_columns()).collect();
-    let plain = |name: &str| name.replace(['\t', '\n', '\r', '"'], " ");
-    for (place, (name, _)) in columns.iter().enumerate() {
-        text.push_str(if place == 0 { "" } else { "\t" });
-        text.push_str(&plain(name));
+    let is_named = variables.len() > 1 || columns.len() == 1;
+    if is_named {
+        let names = columns.iter().map(|(name, _)| name.replace(['\t', '\n', '\r', '"'], " "));
+        text.push_str(&names.collect::<Vec<_>>().join("\t"));
+        text.push('\n');
     }
     for row in 0..variables[0].rows() {
-        text.push('\n');
         for (place, (_, values)) in columns.iter().enumerate() {
             text.push_str(if place == 0 { "" } else { "\t" });
             if values[row].is_finite() {
                 text.push_str(&shortest(values[row]));
             }
         }
+        text.push('\n');
     }
-    text.push('\n');
     text
 }
 

@@ -143,6 +143,11 @@ fn row(line: &TextLine<'_>, cells: &[LineCell<'_>], run: &LineRun, is_first: boo
     if texts.len() + 1 == width && width > 2 && texts.iter().all(|text| is_name(text)) && run.counts {
         texts.insert(0, String::new());
     }
+    // Keys and values of a preamble, such as `Averages: 3` or `NCrv = 40`.
+    let is_key = |text: &String| text.ends_with([':', '=']);
+    if texts.iter().any(|text| text.starts_with('=')) || is_key(&texts[0]) && !texts.iter().all(is_key) {
+        return HeaderFit::Nothing;
+    }
     let names = texts.iter().filter(|text| is_name(text)).count();
     if texts.len() != width {
         let is_like_names = 2 * names > texts.len() && texts.len() > 1;
