@@ -184,9 +184,11 @@ impl Roles {
             }
             output => {
                 let output = output.unwrap_or_default();
-                let words = format!("no column is left for the input besides output \"{}\"", clipped(&output));
+                let words =
+                    format!("no column is left for the input besides output \"{}\"", clipped(&output));
                 let columns = format!("columns: {}", listed(&table.header));
-                let join = "; input and output in two files? hysid look FILE FILE --join -o both.csv joins them";
+                let join =
+                    "; input and output in two files? hysid look FILE FILE --join -o both.csv joins them";
                 Err(Problem::in_file(&table.file, Words::from(words).advised(columns + join)))
             }
         }

@@ -285,7 +285,8 @@ fn refuse_parts_of_a_test(tables: &[Table], roles: &Roles) -> Result<()> {
     if !grows || values != numbers(second, input) {
         return Ok(());
     }
-    let words = format!("has the same growing column \"{}\" as {}: time?", clipped(input), clipped(&first.file));
+    let words =
+        format!("has the same growing column \"{}\" as {}: time?", clipped(input), clipped(&first.file));
     let join = format!(
         "hysid look {} {} --join -o both.csv joins input and output of two files",
         quoted(&first.file),
@@ -462,6 +463,9 @@ impl CellNeed {
         Self::Required { if_blank: ("every row needs a wanted output", None), if_no_number: None };
 }
 
+/// Rows at the end of a table that may be a summary.
+const MOST_AT_END: usize = 5;
+
 /// The numbers of a column; a cell that is blank and may be is NaN.
 pub fn column_of(table: &Table, name: &str, kind: CellNeed, cells: &mut CellReader) -> Result<Vec<f64>> {
     let place = place_of(table, name)?;
@@ -470,8 +474,13 @@ pub fn column_of(table: &Table, name: &str, kind: CellNeed, cells: &mut CellRead
     let mut numbers = Vec::with_capacity(table.rows());
     for (row, &line) in table.lines.iter().enumerate() {
         let number = column.number(table, cells, table.cell(row, place), line);
-        numbers
-            .push(checked(number, table.cell(row, place), kind, row == 0).map_err(|words| at(line, words))?);
+        let number = checked(number, table.cell(row, place), kind, row == 0).map_err(|words| {
+            let is_at_end = row > 0 && table.rows() - row <= MOST_AT_END && table.reading.rows.is_all();
+            let before =
+                || Words::from("use the rows before it with ") + Hint::Value("rows", format!("1:{row}"));
+            at(line, if is_at_end && !words.helps() { words.advised(before()) } else { words })
+        });
+        numbers.push(number?);
     }
     column.problem(cells).map_or(Ok(numbers), |(line, problem)| Err(at(line, problem)))
 }

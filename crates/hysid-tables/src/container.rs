@@ -20,9 +20,9 @@ use hysid_files::unreadable;
 use crate::reading::Reading;
 pub use budget::THREAD;
 use budget::{Budget, UnpackingReader};
-pub use variables::is_lying;
 use hysid_document::{Problem, Result};
 use variables::Variable;
+pub use variables::is_lying;
 
 /// Bytes that identify the format of a file.
 const FIRST: usize = 1 << 16;
@@ -80,8 +80,9 @@ impl DecodedText {
         let chosen = reading.sheet.clone();
         let sheets = |reader, kind: &str, of: fn(Vec<u8>, Option<String>) -> Result<BookOfSheets, Words>| {
             let budget = |bytes: Vec<u8>| Budget::of(bytes.len()).run(move || of(bytes, chosen));
-            let failed =
-                |words| Problem::in_file(&file, Words::from(format!("is {kind} that cannot be read: ")) + words);
+            let failed = |words| {
+                Problem::in_file(&file, Words::from(format!("is {kind} that cannot be read: ")) + words)
+            };
             let (sheets, stored) = budget(all(&file, reader)?).map_err(failed)?;
             let stored = format!("{stored}{packed}");
             Ok(Self { file: file.clone(), content: TextContent::Sheets(sheets), stored, is_short })
@@ -176,7 +177,10 @@ pub const BINARY: &str = "is a binary file, not a table of numbers";
 
 /// Beginnings of files that are clearly no tables, and what they are.
 const OTHER_KINDS: [(&[u8], &str); 17] = [
-    (b"PAR1", "is a Parquet file (read it in Python with pandas or polars, which hysid.fit takes, or save it as CSV)"),
+    (
+        b"PAR1",
+        "is a Parquet file (read it in Python with pandas or polars, which hysid.fit takes, or save it as CSV)",
+    ),
     (b"ARROW1", FEATHER),
     (b"FEA1", FEATHER),
     (b"TDSm", "is a TDMS file of LabVIEW (save it as .lvm or .csv)"),
@@ -195,12 +199,9 @@ const OTHER_KINDS: [(&[u8], &str); 17] = [
     (b"<html", PAGE),
 ];
 
-const FEATHER: &str =
-    "is a Feather or Arrow file (read it in Python with pandas or polars, which hysid.fit takes, or save it as CSV)";
-const PICTURE: &str =
-    "is a picture (get the numbers that were drawn, or digitise its curves with a program such as WebPlotDigitizer)";
-const PAGE: &str =
-    "is a web page, perhaps one that asks for a login (download the file itself, such as the raw file of GitHub)";
+const FEATHER: &str = "is a Feather or Arrow file (read it in Python with pandas or polars, which hysid.fit takes, or save it as CSV)";
+const PICTURE: &str = "is a picture (get the numbers that were drawn, or digitise its curves with a program such as WebPlotDigitizer)";
+const PAGE: &str = "is a web page, perhaps one that asks for a login (download the file itself, such as the raw file of GitHub)";
 
 /// Refuses what is clearly no table.
 fn check_kind(bytes: &[u8]) -> Result<(), &'static str> {
@@ -208,7 +209,9 @@ fn check_kind(bytes: &[u8]) -> Result<(), &'static str> {
     if let Some((_, kind)) = OTHER_KINDS.iter().find(begins) {
         Err(kind)
     } else if is_model(bytes) {
-        Err("is a model of Hysid, or a like JSON file, in the place of data (name the file with the measurement)")
+        Err(
+            "is a model of Hysid, or a like JSON file, in the place of data (name the file with the measurement)",
+        )
     } else if bytes.contains(&0) && encoding::of_marked_text(bytes).is_none() {
         Err(BINARY)
     } else {
@@ -249,7 +252,10 @@ mod tests {
         for (bytes, problem) in [
             (b"PAR1\x15\x04".as_slice(), "f: is a Parquet file"),
             (b"  {\"format\": 1}", "f: is a model of Hysid"),
-            (b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 9\n", "f: is a pointer of Git LFS"),
+            (
+                b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 9\n",
+                "f: is a pointer of Git LFS",
+            ),
             (b"\x89PNG\r\n\x1a\n", "f: is a picture"),
             (b"\n<!DOCTYPE html>", "f: is a web page"),
             (b"[[1, 2], [3]]", "f: is a JSON file that cannot be read: its rows have different lengths"),

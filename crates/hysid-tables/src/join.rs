@@ -28,22 +28,25 @@ impl Table {
         for other in others {
             if other.rows() != first.rows() {
                 let words = format!("has {} rows where {} has {}", other.rows(), first.file, first.rows());
-                let advice = Words::from("only equal rows can be joined: choose them with ") + Hint::Option("rows");
+                let advice =
+                    Words::from("only equal rows can be joined: choose them with ") + Hint::Option("rows");
                 return Err(Problem::in_file(&other.file, Words::from(words).advised(advice)));
             }
             let signs = [first, other].map(|table| table.numbers().decimal);
             if let [Some(sign), Some(another)] = signs
                 && sign != another
             {
-                let words = format!("has another decimal sign than {}: save both alike", clipped(&first.file));
+                let words =
+                    format!("has another decimal sign than {}: save both alike", clipped(&first.file));
                 return Err(Problem::in_file(&other.file, words));
             }
         }
         let mut columns: Vec<JoinedColumn> = Vec::new();
         for (number, table) in tables.iter().enumerate() {
             for place in 0..table.header.len() {
-                let is_known =
-                    |known: &JoinedColumn| known.table < number && equal(&tables[known.table], known.place, table, place);
+                let is_known = |known: &JoinedColumn| {
+                    known.table < number && equal(&tables[known.table], known.place, table, place)
+                };
                 if !columns.iter().any(is_known) {
                     columns.push(JoinedColumn { table: number, place, name: String::new() });
                 }
@@ -60,7 +63,8 @@ impl Table {
         let file = tables.iter().map(|table| table.file.as_str()).collect::<Vec<_>>().join(" + ");
         let of = |column: &JoinedColumn| (&tables[column.table].layout, column.place);
         let mut layout = tables[0].layout.clone();
-        layout.cell_units = columns.iter().map(of).map(|(layout, place)| layout.cell_units[place].clone()).collect();
+        layout.cell_units =
+            columns.iter().map(of).map(|(layout, place)| layout.cell_units[place].clone()).collect();
         layout.stamps = columns.iter().map(of).map(|(layout, place)| layout.stamps[place]).collect();
         layout.names = names;
         layout.numbers.decimal = tables.iter().find_map(|table| table.numbers().decimal);
@@ -121,7 +125,8 @@ mod tests {
         let joined = joined.unwrap();
         assert_eq!(joined.header, ["t", "Disp", "RFrc"]);
         assert_eq!([joined.cell(1, 0), joined.cell(1, 1), joined.cell(1, 2)], ["0.1", "2.5", "-5"]);
-        let named = Table::joined(&[table("x.csv", "t,x\n0,1\n1,2\n"), table("y.csv", "t,y\n0,3\n1,4\n")]).unwrap();
+        let named =
+            Table::joined(&[table("x.csv", "t,x\n0,1\n1,2\n"), table("y.csv", "t,y\n0,3\n1,4\n")]).unwrap();
         assert_eq!(named.header, ["t", "x", "y"]);
         let short = Table::joined(&[table("x.csv", "t,x\n0,1\n1,2\n"), table("y.csv", "t,y\n0,3\n")]);
         assert!(short.unwrap_err().to_string().ends_with("choose them with --rows)"));

@@ -305,6 +305,46 @@ mod tests {
     }
 
     #[test]
+    fn text_between_names_and_rows_does_not_hide_the_names() {
+        let rows = "0,1.5,2\n1,2.5,3\n2,3.5,4\n";
+        for (header, expected) in [
+            ("t,x,y\n# a remark\n", ["t", "x", "y"]),
+            ("t,x,y\n#one\n! two\n\n", ["t", "x", "y"]),
+            ("t,x,y\n// three, words, here\n", ["t", "x", "y"]),
+            ("t,x,y\n# s, mm, kN\n", ["t [s]", "x [mm]", "y [kN]"]),
+            ("t,x,y\ns,mm,kN\n,,\n", ["t [s]", "x [mm]", "y [kN]"]),
+            ("t,x,y\nremark: none\n", ["t", "x", "y"]),
+            ("t,x,y\nfloat,float,float\n", ["t", "x", "y"]),
+            ("Data,Data,Data\nt,x,y\nMean,Mean,Mean\n", ["t", "x", "y"]),
+            (
+                "Time,Disp,Force\n,Actuator 1,Cell 2\ns,mm,kN\n",
+                ["Time [s]", "Actuator 1 [mm]", "Cell 2 [kN]"],
+            ),
+            ("% t,x,y\n% s,mm,kN\n", ["t [s]", "x [mm]", "y [kN]"]),
+            ("Averages: ,3,4\nt,x,y\n", ["t", "x", "y"]),
+        ] {
+            assert_eq!(names(&format!("{header}{rows}")), expected, "{header}");
+        }
+        assert_eq!(names("Units: cgs\nNCrv     = 40\n\n+1.5,2.5\n+2.5,3.5\n"), ["c1", "c2"]);
+    }
+
+    #[test]
+    fn names_that_come_again_are_groups() {
+        let groups = |header: &str| {
+            let row = |k: usize| vec![format!("{k}.5"); header.split(',').count()].join(",");
+            let found = layout(&format!("{header}\n{}\n{}\n{}\n", row(0), row(1), row(2))).groups;
+            found.map(|groups| (groups.shared, groups.names.join(" "), groups.labels.join(" ")))
+        };
+        let text = |shared, names: &str, labels: &str| Some((shared, names.to_string(), labels.to_string()));
+        assert_eq!(groups("H,M,H,M,H,M"), text(0, "H M", "1 2 3"));
+        assert_eq!(groups("t,x,F,x,F"), text(1, "t x F", "1 2"));
+        assert_eq!(groups("H1 (Oe),M1 (emu),H2 (Oe),M2 (emu)"), text(0, "H (Oe) M (emu)", "1 2"));
+        for other in ["t,x,x", "t,x,t,F", "x1,x2,y", "H,M,H,B", "t,x1,x2,x3"] {
+            assert_eq!(groups(other), None, "{other}");
+        }
+    }
+
+    #[test]
     fn equal_names_are_numbered_or_told_by_the_line_above() {
         assert_eq!(names("t,x,x\n0,1,2\n1,2,3\n"), ["t", "x", "x (2)"]);
         assert_eq!(names("Left,Left,Right\nx,F,x\n0,1,2\n1,2,3\n"), ["Left x", "Left F", "Right x"]);

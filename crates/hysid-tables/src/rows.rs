@@ -136,7 +136,14 @@ impl Rows {
                     Found::Alone(place) => {
                         let sheet = sheets.swap_remove(place);
                         let stored = format!("{stored}, {}", sheet.described);
-                        Self::of_one(file, stored, sheet.text.into_bytes(), true, Box::new(io::empty()), reading)
+                        Self::of_one(
+                            file,
+                            stored,
+                            sheet.text.into_bytes(),
+                            true,
+                            Box::new(io::empty()),
+                            reading,
+                        )
                     }
                 };
             }
@@ -169,7 +176,11 @@ impl Rows {
         let stored = format!("{stored}, {described}");
         let head = Head::new(file, stored, layout, reading.clone());
         let left_out = LeftOut { tables: left_out, ..LeftOut::default() };
-        Self { origin: lines, left_out, ..Self::new(head, Box::new(Cursor::new(text)), b'\t', LineCounter::new()) }
+        Self {
+            origin: lines,
+            left_out,
+            ..Self::new(head, Box::new(Cursor::new(text)), b'\t', LineCounter::new())
+        }
     }
 
     /// The only table of a text, of which the first bytes were read.
@@ -470,7 +481,10 @@ mod tests {
     }
 
     fn rows(text: &[u8], piece: usize, reading: &Reading) -> Result<Rows> {
-        Rows::of(DecodedText::new("f".into(), Box::new(Dripping(text.to_vec(), piece)), false, reading)?, reading)
+        Rows::of(
+            DecodedText::new("f".into(), Box::new(Dripping(text.to_vec(), piece)), false, reading)?,
+            reading,
+        )
     }
 
     fn read(text: &[u8], piece: usize) -> Result<Vec<(u64, Vec<String>)>> {

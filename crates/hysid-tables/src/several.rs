@@ -1,14 +1,17 @@
 //! Several tables of one file as one table: tables one below the other in a text, sheets of a spreadsheet, and loops
 //! side by side. Those with equal columns are records, which a column tells apart; others are left out and listed.
 
+mod branches;
+
 use hysid_core::words::{Hint, Words};
 use hysid_document::visible::{clipped, listed};
 use hysid_document::{Problem, Result};
 
 use crate::container::{TextSheet, is_lying, push_words};
-use crate::layout::{CellKind, LineCell, Layout, first_line, is_comment, is_name, is_record, split};
-use crate::number::is_missing;
+use crate::layout::{CellKind, Layout, LineCell, first_line, is_comment, is_name, is_record, split};
+use crate::number::{is_missing, parsed};
 use crate::reading::{Delimiter, Reading};
+use branches::LoopBranches;
 
 const MOST_TABLES: usize = 2_000;
 
@@ -75,8 +78,8 @@ pub fn gather(file: &str, sheets: &[TextSheet], reading: &Reading) -> Result<Fou
         }
     }
     let is_plain = parts.len() == 1 && sheets.len() == 1 && parts[0].columns.len() == parts[0].width();
-    if is_plain && let Some(standing) = parts[0].standing() {
-        return Ok(Found::Gathered(Box::new(standing)));
+    if is_plain && let Some(changed) = parts[0].standing().or_else(|| parts[0].loop_of_branches()) {
+        return Ok(Found::Gathered(Box::new(changed)));
     }
     if is_plain || undivided.is_some() || parts.is_empty() && sheets.len() == 1 {
         return Ok(Found::Alone(undivided.unwrap_or(0)));
@@ -107,7 +110,8 @@ fn by_name(file: &str, parts: &[TablePart<'_>], chosen: &str) -> Result<Vec<bool
         return Ok(found);
     }
     let names: Vec<&String> = parts.iter().map(|part| &part.name).collect();
-    let words = Words::from(format!("there is no table \"{}\" for ", clipped(chosen))) + Hint::Option("sheet");
+    let words =
+        Words::from(format!("there is no table \"{}\" for ", clipped(chosen))) + Hint::Option("sheet");
     Err(Problem::in_file(file, words.advised(format!("tables: {}", listed(&names)))))
 }
 
@@ -197,7 +201,16 @@ fn tables<'t>(file: &str, sheet: &'t TextSheet, reading: &Reading) -> Option<Vec
         let columns = (0..layout.names.len()).collect();
         let delimiter = layout.delimiter;
         let name = String::new();
-        found.push(TablePart { name, sheet, layout, columns, shared: 0, is_group: false, delimiter, rows: lines });
+        found.push(TablePart {
+            name,
+            sheet,
+            layout,
+            columns,
+            shared: 0,
+            is_group: false,
+            delimiter,
+            rows: lines,
+        });
         at += scanned.end;
         line += scanned.lines;
         if at >= text.len() {
@@ -240,7 +253,9 @@ fn rows<'t>(text: &'t str, layout: &Layout) -> Option<ScannedRows<'t>> {
                     rows.push((number, line));
                     is_after_blank = false;
                 }
-                (true, false) if !rows.is_empty() && !is_after_blank && header != Some(line.trim()) => return None,
+                (true, false) if !rows.is_empty() && !is_after_blank && header != Some(line.trim()) => {
+                    return None;
+                }
                 (false, true) if !is_after_blank && begins_with_number(line) => return None,
                 _ => break,
             }
@@ -304,6 +319,44 @@ impl<'t> TablePart<'t> {
             Self { name, sheet, layout, columns, shared, is_group: true, delimiter, rows }
         };
         groups.labels.iter().enumerate().map(part).collect()
+    }
+
+    /// The two branches of a loop one behind the other, if the columns are that.
+    fn loop_of_branches(&self) -> Option<GatheredTables> {
+        let branches = LoopBranches::of(&self.layout.names)?;
+        // Rows of a branch: the line, and the cells of input and output.
+        let branch = |[input, output]: [usize; 2]| -> Option<(Vec<f64>, Vec<(u64, [String; 2])>)> {
+            let (mut inputs, mut rows) = (Vec::new(), Vec::new());
+            for (line, row) in &self.rows {
+                let cells = split(row, self.delimiter);
+                let cell = |place: usize| cells.get(place).map_or("", |cell| cell.text.trim()).to_string();
+                let (input, output) = (cell(input), cell(output));
+                if !is_missing(&output) {
+                    inputs.push(parsed(&input, self.layout.numbers.decimal).ok()?.0);
+                    rows.push((*line, [input, output]));
+                }
+            }
+            Some((inputs, rows))
+        };
+        let ((out, mut rows), (back, mut returning)) = (branch(branches.out)?, branch(branches.back)?);
+        if LoopBranches::is_turned(&out, &back)? {
+            returning.reverse();
+        }
+        rows.append(&mut returning);
+        let mut layout = self.layout.clone();
+        layout.cell_units = branches.out.map(|place| self.layout.cell_units[place].clone()).to_vec();
+        layout.stamps = vec![false; 2];
+        layout.names = branches.names.to_vec();
+        let mut text = String::new();
+        for (_, [input, output]) in &rows {
+            push_words(&mut text, input);
+            text.push('\t');
+            push_words(&mut text, output);
+            text.push('\n');
+        }
+        let lines = rows.iter().map(|(line, _)| *line).collect();
+        let described = "two branches as one loop".to_string();
+        Some(GatheredTables { layout, text, lines, described, left_out: Vec::new() })
     }
 
     /// The same with rows and columns interchanged, of a table with few long rows and no names above.

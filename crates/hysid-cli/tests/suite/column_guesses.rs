@@ -78,8 +78,8 @@ fn columns_that_only_grow_are_refused_where_others_are_left() {
     refused(
         growing("position,x,y"),
         "",
-        "error: data.csv: column \"position\" grows from row to row: name it with --time position, or name input and \
-         output with --input and --output, for instance --input x --output y (columns: position, x, y)",
+        "error: data.csv: column \"position\" grows from row to row: if it is time, --time position --input x --output y \
+         (columns: position, x, y); otherwise name input and output",
     );
     told(growing("position,x,y"), "--time position", &["time     position"]);
     told(growing("position,x,y"), "--input position --input x", &["input    position: "]);
@@ -100,7 +100,7 @@ fn command_and_measurement_are_not_both_inputs() {
         data.clone(),
         "",
         "error: data.csv: columns \"command\" and \"measured\" are nearly the same signal (correlation 0.9999), such as a \
-         command and its measurement: name the input with --input measured or --input command",
+         command and its measurement: name the input with --input measured --output y or --input command --output y",
     );
     told(data, "--input measured", &["input    measured: "]);
     let data = table("t,x,temperature,y", |_, [t, x, y]| texts(&[&t, &x, &sin(1.3 * t), &y]));
@@ -120,7 +120,9 @@ fn many_columns_are_not_all_inputs() {
     refused(
         data.clone(),
         "",
-        &format!("error: data.csv: 60 columns could be inputs: name them with --input, {instance} (columns: {names})"),
+        &format!(
+            "error: data.csv: 60 columns could be inputs: name them with --input, {instance} (columns: {names})"
+        ),
     );
     told(data, "--input gauge_7", &["input    gauge_7: ", "output   force_kN: "]);
 }

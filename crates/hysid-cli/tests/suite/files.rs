@@ -103,7 +103,7 @@ const IN_OTHER_UNITS: [(&str, [&str; 3], [f64; 3]); 5] = [
 const HINTED: [(&str, &str, &str, [&str; 3]); 5] = [
     ("colons.txt", "name it with --delimiter", "--delimiter :", ["t", "x", "y"]),
     ("command-and-measured.csv", "with --input", "--input measured", ["t", "measured", "y"]),
-    ("growing-column.csv", "with --time", "--time position", ["position", "x", "y"]),
+    ("growing-column.csv", "if it is time, --time position", "--time position", ["position", "x", "y"]),
     ("many-columns.csv", "name them with --input", "--input x", ["t", "x", "y"]),
     ("missing-word.csv", "--missing overflow", "--missing overflow", ["t", "x", "y"]),
 ];
@@ -356,13 +356,23 @@ fn input_and_output_in_two_files_are_joined() {
 fn several_tables_of_a_file_are_records() {
     let bench = Workbench::new();
     let ran = bench.succeeds(&format!("look {}", path("two-tables.csv")));
-    must_contain(&ran.stdout, &["text, UTF-8, table 1, table 2;", "51, all scored, in 2 records: table 1, table 2"]);
+    must_contain(
+        &ran.stdout,
+        &["text, UTF-8, table 1, table 2;", "51, all scored, in 2 records: table 1, table 2"],
+    );
     check(&bench, &look(&bench, "two-tables.csv", "--sheet 1"), "two-tables.csv", &["t", "x", "y"], [1.0; 3]);
     let refused = look(&bench, "two-tables.csv", "--sheet 3");
-    assert!(refused.last_line().ends_with("no table \"3\" for --sheet (tables: table 1, table 2)"), "{refused}");
+    assert!(
+        refused.last_line().ends_with("no table \"3\" for --sheet (tables: table 1, table 2)"),
+        "{refused}"
+    );
     // A loop with names of its own is more than a summary; an error names the line of the file.
     let rows = |scale: f64| -> String {
-        (0..40).map(|k| format!("{:.3}\t{:.3}\n", sin(0.3 * f64::from(k)), scale * sin(0.3 * f64::from(k) - 0.2))).collect()
+        (0..40)
+            .map(|k| {
+                format!("{:.3}\t{:.3}\n", sin(0.3 * f64::from(k)), scale * sin(0.3 * f64::from(k) - 0.2))
+            })
+            .collect()
     };
     let text = format!(
         "Results\nNo\tVc [V]\tPr [C/m2]\n1\t0.5\t2\n2\t0.6\t3\n3\t0.7\t4\n\nSample A\nV [V]\tP [C/m2]\n{}\nSample B\n\
@@ -372,10 +382,19 @@ fn several_tables_of_a_file_are_records() {
     );
     bench.put("tester.dat", &text);
     let ran = bench.succeeds("look tester.dat");
-    must_contain(&ran.stdout, &["left out table 1 (3 rows)", "80, all scored, in 2 records: table 2, table 3"]);
-    bench.put("tester.dat", text.replacen("Sample B\nV [V]\tP [C/m2]\n0.000", "Sample B\nV [V]\tP [C/m2]\n?", 1));
+    must_contain(
+        &ran.stdout,
+        &["left out table 1 (3 rows)", "80, all scored, in 2 records: table 2, table 3"],
+    );
+    bench.put(
+        "tester.dat",
+        text.replacen("Sample B\nV [V]\tP [C/m2]\n0.000", "Sample B\nV [V]\tP [C/m2]\n?", 1),
+    );
     let refused = bench.run("look tester.dat");
-    assert!(refused.last_line().starts_with("error: tester.dat, line 52, column \"V [V]\": \"?\""), "{refused}");
+    assert!(
+        refused.last_line().starts_with("error: tester.dat, line 52, column \"V [V]\": \"?\""),
+        "{refused}"
+    );
 }
 
 #[test]
@@ -394,7 +413,8 @@ fn loops_side_by_side_and_lying_tables_are_read() {
     }
     bench.put("stages.csv", format!("Raw,Raw,Adjusted,Adjusted\nField,Moment,Field,Moment\n{loops}"));
     must_contain(&bench.succeeds("look stages.csv").stdout, &["Adjusted Field    input", "in 1 record"]);
-    let row = |of: &dyn Fn(usize) -> f64| (0..60).map(|k| format!("{:.3}", of(k))).collect::<Vec<_>>().join(",");
+    let row =
+        |of: &dyn Fn(usize) -> f64| (0..60).map(|k| format!("{:.3}", of(k))).collect::<Vec<_>>().join(",");
     bench.put("lying.csv", format!("x,{}\ny,{}\n", row(&x), row(&|k| 2.0 * x(k))));
     let ran = bench.succeeds("look lying.csv");
     must_contain(&ran.stdout, &["its rows as columns", "rows     60", "x        input", "y       output"]);

@@ -238,9 +238,10 @@ pub fn first_hint(error: &str) -> Option<String> {
     let mut rest = &error[error.find("--")?..];
     let mut options = Vec::new();
     while rest.starts_with("--") {
-        let (mut is_quoted, mut words) = (false, 0);
+        let (mut is_quoted, mut is_escaped, mut words) = (false, false, 0);
         let end = rest.char_indices().find(|&(_, letter)| {
-            is_quoted ^= letter == '\'';
+            is_quoted ^= letter == '\'' && !is_escaped;
+            is_escaped = letter == '\\' && !is_escaped && !is_quoted;
             words += usize::from(letter == ' ' && !is_quoted);
             !is_quoted && (words == 2 || matches!(letter, ',' | ')' | ';'))
         });
@@ -380,4 +381,84 @@ fn usual_pairs_of_names_give_their_cycles_without_an_option() {
         }
     }
     assert!(problems.is_empty(), "{problems}");
+}
+
+/// Names of columns, of which many are no input and no output.
+const NAMES: [&str; 30] = [
+    "Time (s)",
+    "x",
+    "y",
+    "Displacement (mm)",
+    "Force (kN)",
+    "Load 2 (kN)",
+    "Field (Oe)",
+    "Moment (emu)",
+    "Voltage (V)",
+    "Current (A)",
+    "Temperature (K)",
+    "Cycle",
+    "ch1",
+    "ch2",
+    "ch3",
+    "command",
+    "measured",
+    "Strain (%)",
+    "Stress (MPa)",
+    "Energy (J)",
+    "Pressure (kPa)",
+    "B (T)",
+    "u",
+    "Position (mm)",
+    "it's; \"$a\"",
+    "-speed (mm/s)",
+    "Status",
+    "P (uC/cm2)",
+    "RH (%)",
+    "Angle (deg)",
+];
+
+#[test]
+fn no_hint_leads_to_the_next_error() {
+    let bench = Workbench::new();
+    let (mut problems, mut hints) = (String::new(), 0);
+    let mut state = 1_u64;
+    let mut next = |count: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % count
+    };
+    for _ in 0..120 {
+        let mut names: Vec<&str> = Vec::new();
+        while names.len() < 2 + names.len() % 2 + next(5) || names.len() < 2 {
+            let name = NAMES[next(NAMES.len())];
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let phases: Vec<f64> = names.iter().map(|_| 0.3 * next(8) as f64).collect();
+        let grows: Vec<bool> = names.iter().map(|name| name.starts_with("Time") || next(12) == 0).collect();
+        let header: Vec<String> =
+            names.iter().map(|name| format!("\"{}\"", name.replace('"', "\"\""))).collect();
+        let mut text = header.join(",") + "\n";
+        for row in 0..60 {
+            let time = 0.2 * f64::from(row);
+            let value = |place: usize| {
+                if grows[place] { time } else { sin(time + phases[place]) * (1.0 + 0.1 * time) }
+            };
+            let cells: Vec<String> = (0..names.len()).map(|place| format!("{:.4}", value(place))).collect();
+            writeln!(text, "{}", cells.join(",")).unwrap();
+        }
+        bench.put("data.csv", text);
+        let refused = bench.shell("hysid look data.csv");
+        if refused.status == Some(0) || refused.last_line().contains("no column is left") {
+            continue;
+        }
+        hints += 1;
+        let hint = first_hint(refused.last_line()).unwrap_or_default();
+        let ran = bench.shell(&format!("hysid look data.csv {hint}"));
+        if hint.is_empty() || ran.status != Some(0) {
+            writeln!(problems, "{names:?} {}\n  {hint} => {}", refused.last_line(), ran.last_line()).unwrap();
+        }
+    }
+    assert!(problems.is_empty(), "{problems}");
+    assert!(hints > 30, "only {hints} hints");
 }

@@ -277,13 +277,17 @@ impl<'t> Guess<'t> {
         let unclear =
             seen.iter().find(|(name, seen)| self.free.contains(name) && seen.as_ref().is_some_and(grows));
         let Some((name, _)) = unclear else { return Ok(()) };
-        let time = match self.time {
-            None => Words::from("name it with ") + Hint::Value("time", (*name).clone()) + ", or ",
-            Some(_) => Words::default(),
-        };
-        let words = Words::from(format!("column \"{}\" grows from row to row: ", clipped(name))) + time;
-        let words = words + "name input and output with " + Hint::Option("input") + " and ";
-        Err(Problem::in_file(&self.table.file, words + Hint::Option("output") + self.columns(Some(name))))
+        let pair = self.columns(Some(name));
+        let words = Words::from(format!("column \"{}\" grows from row to row: ", clipped(name)));
+        let words = words
+            + match self.time {
+                None if unit::of_column(name).is_none() => {
+                    let time = Words::from("if it is time, ") + Hint::Value("time", (*name).clone()) + " ";
+                    time + pair + "; otherwise name input and output"
+                }
+                _ => Words::from("name input and output, for instance ") + pair,
+            };
+        Err(Problem::in_file(&self.table.file, words))
     }
 
     /// Refuses more than two columns that have no more than numbers for names.
@@ -381,7 +385,8 @@ impl<'t> Guess<'t> {
 
     /// The likeliest input of an output: what drives its branch of physics, or anything, or another column.
     fn input_of(&self, output: &str, avoided: Option<&str>) -> Option<&String> {
-        let others = || self.free.iter().copied().filter(|name| *name != output && avoided != Some(name.as_str()));
+        let others =
+            || self.free.iter().copied().filter(|name| *name != output && avoided != Some(name.as_str()));
         let of_domain = |name: &&String| match ColumnKind::of(output) {
             ColumnKind::Follows(domain) => ColumnKind::of(name) == ColumnKind::Drives(domain),
             _ => false,
@@ -454,7 +459,10 @@ impl<'t> Guess<'t> {
             return Ok(());
         }
         let words = Words::from(format!("{} columns could be inputs: name them with ", self.free.len()));
-        Err(Problem::in_file(&self.table.file, words + Hint::Option("input") + self.columns(None)))
+        Err(Problem::in_file(
+            &self.table.file,
+            words + Hint::Option("input") + ", for instance " + self.columns(None),
+        ))
     }
 
     fn refuse_alike(&self) -> Result<()> {
@@ -469,7 +477,11 @@ impl<'t> Guess<'t> {
                         clipped(other),
                         clipped(name),
                     ));
-                    let input = |name: &str| Hint::Value("input", name.into());
+                    let output = self.output.iter().map(|output| Hint::Value("output", output.clone()));
+                    let input = |name: &str| {
+                        let input = Words::from(Hint::Value("input", name.into()));
+                        output.clone().fold(input, |words, output| words + " " + output)
+                    };
                     let (first, second) = if kind::is_command(other) { (name, other) } else { (other, name) };
                     let words = words + input(first) + " or " + input(second);
                     return Err(Problem::in_file(&self.table.file, words));
@@ -567,20 +579,22 @@ impl<'t> Guess<'t> {
 
     /// A question, with the options that decide it.
     fn question(&self, words: &str) -> Problem {
-        let words = Words::from(format!("{words}: name input and output")) + self.columns(None);
+        let words =
+            Words::from(format!("{words}: name input and output, for instance ")) + self.columns(None);
         Problem::in_file(&self.table.file, words)
     }
 
     /// Options that name the likeliest columns, ready to be pasted, and the others that may be meant.
     fn columns(&self, avoided: Option<&str>) -> Words {
         let mut free = self.free.clone();
-        let of_follows = self.follows().last().copied();
-        let output = self.output.as_ref().or(of_follows).or(free.last().copied());
+        let is_meant = |name: &&String| avoided != Some(name.as_str());
+        let of_follows = self.follows().into_iter().rfind(is_meant);
+        let output = self.output.as_ref().or(of_follows).or(free.iter().copied().rfind(is_meant));
         let Some((input, output)) = output.and_then(|output| Some((self.input_of(output, avoided)?, output)))
         else {
             return Words::default();
         };
-        let pair = Words::from(", for instance ") + Hint::Value("input", input.clone()) + " ";
+        let pair = Words::from(Hint::Value("input", input.clone())) + " ";
         let pair = pair + Hint::Value("output", output.clone());
         if ColumnKind::of(input).drives() && ColumnKind::of(output).follows() {
             return pair;

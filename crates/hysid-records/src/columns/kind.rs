@@ -74,7 +74,8 @@ const DRIVES: &[(Domain, &str)] = &[
 const FOLLOWS: &[(Domain, &str)] = &[
     (
         Domain::Mechanics,
-        "forces loads stresses shear axialforce standardkraft loadcell rf reaction vwc moisture saturation",
+        "forces loads stresses shear axialforce standardkraft loadcell rf reaction vwc moisture saturation adsorption \
+      adsorbed desorption uptake",
     ),
     (Domain::Magnetism, "magnetisation magnetization magnetic_moment emu kerr flux polarisation"),
     (Domain::Electricity, "polarization polarisation charge displacement_field"),
@@ -237,7 +238,8 @@ pub fn is_current(name: &str) -> bool {
 
 /// True for the moment that a magnetometer measures, beside which a position or a pressure is no input or output.
 pub fn is_moment(name: &str) -> bool {
-    let plain = |unit: String| unit.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
+    let plain =
+        |unit: String| unit.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
     let unit = unit::split(name).1.map(plain);
     unit.is_some_and(|unit| MAGNETIC_UNITS.contains(&unit.replace('μ', "u").as_str()))
 }

@@ -146,16 +146,19 @@ impl Search {
                 self.add(name.to_string(), 1, values.iter().map(Value::number).collect())?;
             }
             // A column of pandas is an object with a number for each row.
-            Value::Object(cells) if cells.iter().enumerate().all(|(row, (key, value))| {
-                *key == row.to_string() && matches!(value, Value::Number(_) | Value::Other)
-            }) =>
+            Value::Object(cells)
+                if cells.iter().enumerate().all(|(row, (key, value))| {
+                    *key == row.to_string() && matches!(value, Value::Number(_) | Value::Other)
+                }) =>
             {
                 self.add(name.to_string(), 1, cells.iter().map(|(_, value)| value.number()).collect())?;
             }
             Value::Object(values) if depth > 0 => {
-                let field = |name: &str| values.iter().find(|(field, _)| field == name).map(|(_, value)| value);
+                let field =
+                    |name: &str| values.iter().find(|(field, _)| field == name).map(|(_, value)| value);
                 // The form `split` of pandas has the names of a matrix beside it.
-                if let (Some(Value::Array(names)), Some(Value::Array(rows))) = (field("columns"), field("data"))
+                if let (Some(Value::Array(names)), Some(Value::Array(rows))) =
+                    (field("columns"), field("data"))
                     && names.iter().all(|name| matches!(name, Value::Text(_)))
                 {
                     return self.named(name, names, rows);
@@ -197,7 +200,8 @@ impl Search {
 /// Names of the fields of all rows, in the order in which they come.
 fn fields(rows: &[Value]) -> Vec<String> {
     let mut seen = BTreeSet::new();
-    let objects = rows.iter().filter_map(|row| if let Value::Object(cells) = row { Some(cells) } else { None });
+    let objects =
+        rows.iter().filter_map(|row| if let Value::Object(cells) = row { Some(cells) } else { None });
     let names = objects.flatten().map(|(name, _)| name);
     names.filter(|name| seen.insert(name.as_str().to_string())).cloned().collect()
 }

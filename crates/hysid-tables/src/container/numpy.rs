@@ -175,8 +175,12 @@ mod tests {
                 let _ = variables(&damaged, budget);
             }
         }
-        let claims = file("'descr': '<f8', 'fortran_order': False, 'shape': (9999999999, 9999999999)", &[0; 32]);
+        let claims =
+            file("'descr': '<f8', 'fortran_order': False, 'shape': (9999999999, 9999999999)", &[0; 32]);
         assert!(variables(&claims, budget).is_err());
-        assert!(variables(&file("'descr': '|O', 'fortran_order': False, 'shape': (1,)", &[0; 8]), budget).is_err());
+        assert!(
+            variables(&file("'descr': '|O', 'fortran_order': False, 'shape': (1,)", &[0; 8]), budget)
+                .is_err()
+        );
     }
 }

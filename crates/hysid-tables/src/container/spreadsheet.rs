@@ -9,8 +9,8 @@ use std::io::Cursor;
 
 use calamine::{Data, ExcelDateTime, Ods, OdsError, Range, Reader, Xls, XlsError, Xlsx, XlsxError};
 
-use super::{TextSheet, push_words};
 use super::budget::{Budget, DAMAGED};
+use super::{TextSheet, push_words};
 use crate::number::shortest;
 use hysid_document::visible::{clipped, listed};
 
@@ -31,7 +31,9 @@ pub fn sheets(bytes: Vec<u8>, chosen: Option<String>) -> Result<Vec<TextSheet>, 
             if bytes.windows(ENCRYPTED_PART.len()).any(|part| part == ENCRYPTED_PART) {
                 return Err(ENCRYPTED.into());
             }
-            return of_book::<Xls<_>, _>(bytes, chosen.as_deref(), |error| matches!(error, XlsError::Password));
+            return of_book::<Xls<_>, _>(bytes, chosen.as_deref(), |error| {
+                matches!(error, XlsError::Password)
+            });
         }
         let (bytes, kind) = archive::checked(&bytes)?;
         match kind {
@@ -70,7 +72,8 @@ where
     };
     let mut sheets = Vec::new();
     for name in names {
-        let range = book.worksheet_range(name).map_err(|error| format!("sheet {}: {error}", clipped(name)))?;
+        let range =
+            book.worksheet_range(name).map_err(|error| format!("sheet {}: {error}", clipped(name)))?;
         if !range.is_empty() || chosen.is_some() {
             let described = format!("sheet {}", clipped(name));
             sheets.push(TextSheet { name: name.clone(), described, text: lines(&range) });

@@ -77,8 +77,8 @@ pub fn sheets(mut variables: Vec<Variable>, chosen: Option<&str>) -> Result<Vec<
         }
     }
     let mut groups: Vec<Vec<&Variable>> = Vec::new();
-    let is_one = variables.iter().all(|variable| variable.rows() == variables[0].rows())
-        && !are_alike(&variables);
+    let is_one =
+        variables.iter().all(|variable| variable.rows() == variables[0].rows()) && !are_alike(&variables);
     for variable in &variables {
         let belongs = |group: &&mut Vec<&Variable>| {
             is_one || group[0].structure() == variable.structure() && group[0].rows() == variable.rows()
@@ -167,7 +167,8 @@ mod tests {
 
     #[test]
     fn a_lying_matrix_stands_up_whatever_its_order() {
-        let by_rows: Vec<f64> = (0..3).flat_map(|k| (0..30).map(move |row| f64::from(100 * k + row))).collect();
+        let by_rows: Vec<f64> =
+            (0..3).flat_map(|k| (0..30).map(move |row| f64::from(100 * k + row))).collect();
         let by_columns: Vec<f64> =
             (0..30).flat_map(|row| (0..3).map(move |k| f64::from(100 * k + row))).collect();
         for (values, is_by_rows) in [(&by_rows, true), (&by_columns, false)] {
