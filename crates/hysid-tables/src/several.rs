@@ -324,21 +324,22 @@ impl<'t> TablePart<'t> {
     /// The two branches of a loop one behind the other, if the columns are that.
     fn loop_of_branches(&self) -> Option<GatheredTables> {
         let branches = LoopBranches::of(&self.layout.names)?;
-        // Rows of a branch: the line, and the cells of input and output.
-        let branch = |[input, output]: [usize; 2]| -> Option<(Vec<f64>, Vec<(u64, [String; 2])>)> {
-            let (mut inputs, mut rows) = (Vec::new(), Vec::new());
-            for (line, row) in &self.rows {
+        // Line, input and output of each row of a branch.
+        let branch = |[input, output]: [usize; 2]| -> Vec<(u64, [String; 2])> {
+            let row = |&(line, row): &(u64, &str)| {
                 let cells = split(row, self.delimiter);
                 let cell = |place: usize| cells.get(place).map_or("", |cell| cell.text.trim()).to_string();
-                let (input, output) = (cell(input), cell(output));
-                if !is_missing(&output) {
-                    inputs.push(parsed(&input, self.layout.numbers.decimal).ok()?.0);
-                    rows.push((*line, [input, output]));
-                }
-            }
-            Some((inputs, rows))
+                (line, [cell(input), cell(output)])
+            };
+            self.rows.iter().map(row).filter(|(_, [_, output])| !is_missing(output)).collect()
         };
-        let ((out, mut rows), (back, mut returning)) = (branch(branches.out)?, branch(branches.back)?);
+        let inputs = |rows: &[(u64, [String; 2])]| -> Option<Vec<f64>> {
+            let input =
+                |(_, [input, _]): &(u64, [String; 2])| parsed(input, self.layout.numbers.decimal).ok();
+            rows.iter().map(|row| Some(input(row)?.0)).collect()
+        };
+        let (mut rows, mut returning) = (branch(branches.out), branch(branches.back));
+        let (out, back) = (inputs(&rows)?, inputs(&returning)?);
         if LoopBranches::is_turned(&out, &back)? {
             returning.reverse();
         }
