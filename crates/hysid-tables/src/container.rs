@@ -209,9 +209,7 @@ fn check_kind(bytes: &[u8]) -> Result<(), &'static str> {
     if let Some((_, kind)) = OTHER_KINDS.iter().find(begins) {
         Err(kind)
     } else if is_model(bytes) {
-        Err(
-            "is a model of Hysid, or a like JSON file, in the place of data (name the file with the measurement)",
-        )
+        Err("is a model of Hysid, not data (name the file with the measurement)")
     } else if bytes.contains(&0) && encoding::of_marked_text(bytes).is_none() {
         Err(BINARY)
     } else {

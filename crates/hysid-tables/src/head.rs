@@ -88,7 +88,10 @@ impl Head {
     pub fn require_columns(&self) -> Result<()> {
         if let [name] = self.header.as_slice() {
             let line = *self.layout.header_lines.first().unwrap_or(&self.layout.line);
-            let advice = Words::from("what separates the columns? name it with ") + Hint::Option("delimiter");
+            let advice = match self.stored.starts_with("text") {
+                true => Words::from("what separates the columns? name it with ") + Hint::Option("delimiter"),
+                false => Words::from("choose what has more columns with ") + Hint::Option("sheet"),
+            };
             let words = Words::from(format!("there is only one column, \"{}\"", clipped(name)));
             return Err(Problem::at(&self.file, line, words.advised(advice)));
         }

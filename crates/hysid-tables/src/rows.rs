@@ -132,7 +132,7 @@ impl Rows {
             TextContent::Stream(reader) => reader,
             TextContent::Sheets(mut sheets) => {
                 return match gather(&file, &sheets, reading)? {
-                    Found::Gathered(tables) => Ok(Self::of_gathered(file, &stored, *tables, reading)),
+                    Found::Gathered(tables) => Self::of_gathered(file, &stored, *tables, reading),
                     Found::Alone(place) => {
                         let sheet = sheets.swap_remove(place);
                         let stored = format!("{stored}, {}", sheet.described);
@@ -160,7 +160,7 @@ impl Rows {
                     let sheet = TextSheet { name: String::new(), described: String::new(), text };
                     let sheets = [sheet];
                     if let Found::Gathered(tables) = gather(&file, &sheets, reading)? {
-                        return Ok(Self::of_gathered(file, &stored, *tables, reading));
+                        return Self::of_gathered(file, &stored, *tables, reading);
                     }
                     let [sheet] = sheets;
                     first = sheet.text.into_bytes();
@@ -171,16 +171,14 @@ impl Rows {
         Self::of_one(file, stored, first, is_all, reader, reading)
     }
 
-    fn of_gathered(file: String, stored: &str, tables: GatheredTables, reading: &Reading) -> Self {
+    fn of_gathered(file: String, stored: &str, tables: GatheredTables, reading: &Reading) -> Result<Self> {
+        check_width(&file, &tables.layout)?;
         let GatheredTables { layout, text, lines, described, left_out } = tables;
         let stored = format!("{stored}, {described}");
         let head = Head::new(file, stored, layout, reading.clone());
         let left_out = LeftOut { tables: left_out, ..LeftOut::default() };
-        Self {
-            origin: lines,
-            left_out,
-            ..Self::new(head, Box::new(Cursor::new(text)), b'\t', LineCounter::new())
-        }
+        let rows = Self::new(head, Box::new(Cursor::new(text)), b'\t', LineCounter::new());
+        Ok(Self { origin: lines, left_out, ..rows })
     }
 
     /// The only table of a text, of which the first bytes were read.
@@ -198,11 +196,7 @@ impl Rows {
         };
         let is_cut = first.len() - valid.len() < 4 && !is_all;
         let layout = Layout::find(&file, valid, is_all || !is_cut && valid.len() < first.len(), reading)?;
-        let width = layout.names.len();
-        if width > MOST_COLUMNS {
-            let words = format!("has {width} columns: at most {MOST_COLUMNS} are read");
-            return Err(Problem::in_file(&file, words));
-        }
+        check_width(&file, &layout)?;
         let mut lines = LineCounter::new();
         lines.pass(&first[..layout.start]);
         let mut rest = Cursor::new(first);
@@ -434,6 +428,12 @@ fn beginning(file: &str, reader: &mut dyn Read) -> Result<(Vec<u8>, bool)> {
         }
         wanted *= 2;
     }
+}
+
+fn check_width(file: &str, layout: &Layout) -> Result<()> {
+    let width = layout.names.len();
+    let words = || format!("has {width} columns: at most {MOST_COLUMNS} are read");
+    if width > MOST_COLUMNS { Err(Problem::in_file(file, words())) } else { Ok(()) }
 }
 
 fn grow<T: Default + Clone>(room: &mut Vec<T>) {

@@ -13,7 +13,10 @@ use crate::number::{is_missing, parsed};
 use crate::reading::{Delimiter, Reading};
 use branches::LoopBranches;
 
-const MOST_TABLES: usize = 2_000;
+const MOST_TABLES: usize = 500;
+
+/// Longest row that may be a column.
+const LONGEST_COLUMN: usize = 1 << 20;
 
 /// Rows without names that are a table, and no text behind one.
 const FEWEST_ROWS: usize = 3;
@@ -168,7 +171,8 @@ fn joined(parts: &[TablePart<'_>], left_out: Vec<String>) -> GatheredTables {
 fn described(parts: &[TablePart<'_>]) -> String {
     let names: Vec<&String> = parts.iter().map(|part| &part.name).collect();
     match parts {
-        [part] if !part.sheet.described.is_empty() => part.sheet.described.clone(),
+        [part] if !part.sheet.described.is_empty() && !part.is_group => part.sheet.described.clone(),
+        [part] if part.is_group => format!("columns of {}", clipped(&part.name)),
         [_, ..] if parts.iter().all(|part| part.is_group) => format!("{} groups of columns", parts.len()),
         [part, ..] if part.sheet.described.starts_with("sheet ") => format!("sheets {}", listed(&names)),
         _ => listed(&names),
@@ -244,10 +248,16 @@ fn rows<'t>(text: &'t str, layout: &Layout) -> Option<ScannedRows<'t>> {
                 (at, number) = (at + next, number + 1);
                 continue;
             }
-            let kinds = || split(line, layout.delimiter).iter().map(LineCell::kind).collect::<Vec<_>>();
-            let has_number = begins_with_number(line)
-                || kinds().iter().any(|kind| matches!(kind, CellKind::Number(_) | CellKind::Stamp));
-            let is_row = has_number || kinds().iter().all(|kind| *kind == CellKind::Missing);
+            // Behind a blank line, names such as `2nd` may begin another table.
+            let has_number = match is_after_blank {
+                true => split(line, layout.delimiter)
+                    .iter()
+                    .any(|cell| matches!(cell.kind(), CellKind::Number(_) | CellKind::Stamp)),
+                false => begins_with_number(line) || has_cell_with_number(line, layout.delimiter),
+            };
+            let is_empty =
+                || split(line, layout.delimiter).iter().all(|cell| cell.kind() == CellKind::Missing);
+            let is_row = has_number || is_empty();
             match (fits, is_row) {
                 (true, true) => {
                     rows.push((number, line));
@@ -287,6 +297,14 @@ fn cells_of(line: &str, delimiter: Delimiter) -> usize {
 
 fn ends_empty(line: &str, delimiter: Delimiter) -> bool {
     split(line, delimiter).last().is_some_and(|cell| cell.text.trim().is_empty())
+}
+
+/// True for a line with a cell that begins with a number.
+fn has_cell_with_number(line: &str, delimiter: Delimiter) -> bool {
+    match delimiter {
+        Delimiter::Character(character) => line.split(char::from(character)).any(begins_with_number),
+        Delimiter::Blanks => line.split([' ', '\t']).any(begins_with_number),
+    }
 }
 
 fn begins_with_number(line: &str) -> bool {
@@ -362,7 +380,8 @@ impl<'t> TablePart<'t> {
 
     /// The same with rows and columns interchanged, of a table with few long rows and no names above.
     fn standing(&self) -> Option<GatheredTables> {
-        if !self.layout.header_lines.is_empty() || !is_lying(self.rows.len(), self.width()) {
+        let is_table = !is_lying(self.rows.len(), self.width()) || self.width() > LONGEST_COLUMN;
+        if is_table || !self.layout.header_lines.is_empty() {
             return None;
         }
         let rows: Vec<Vec<LineCell<'_>>> =

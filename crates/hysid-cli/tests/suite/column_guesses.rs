@@ -230,3 +230,12 @@ fn what_names_and_values_do_not_tell_is_asked() {
     told(unknown("t,a,b,c"), "", &[by_place, "input    a: ", "output   c: "]);
     told(unknown("t,x1,x2,y"), "--rate none", &["input    x1: ", "output   y: "]);
 }
+
+/// A temperature is measured, with noise, and kept.
+#[test]
+fn a_measured_column_of_records_is_divided_by_its_plateaus() {
+    let data = table("T_K,x,y", |k, [_, x, y]| {
+        texts(&[&(if k < 40 { 5.0 } else { 300.0 } + 0.01 * sin(40.0 * k as f64)), &x, &y])
+    });
+    told(data, "--record T_K", &["all scored, in 2 records: data (1), data (2)"]);
+}

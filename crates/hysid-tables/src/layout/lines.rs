@@ -49,7 +49,8 @@ pub fn is_comment(line: &str) -> bool {
 
 /// The first line of a text without its end, and where the next one begins.
 pub fn first_line(text: &str) -> (&str, usize) {
-    let length = text.find(['\n', '\r']).unwrap_or(text.len());
+    let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+    let length = text.as_bytes().iter().position(is_end).unwrap_or(text.len());
     let end = if text[length..].starts_with("\r\n") { 2 } else { usize::from(length < text.len()) };
     (&text[..length], length + end)
 }

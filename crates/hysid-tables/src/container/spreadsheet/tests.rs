@@ -55,6 +55,22 @@ fn open_document(table: &str) -> Vec<u8> {
     ])
 }
 
+#[test]
+fn every_sheet_that_is_not_empty_is_read() {
+    let cell =
+        |number: f64| format!("<table:table-cell office:value-type=\"float\" office:value=\"{number}\"/>");
+    let row = |number: f64| format!("<table:table-row>{}</table:table-row>", cell(number));
+    let others = format!(
+        "</table:table><table:table table:name=\"Empty\"></table:table><table:table table:name=\"T\">{}",
+        row(2.5)
+    );
+    let book = open_document(&format!("{}{others}", row(1.5)));
+    let read: Vec<(String, String)> =
+        sheets(book.clone(), None).unwrap().into_iter().map(|sheet| (sheet.name, sheet.text)).collect();
+    assert_eq!(read, [("S".into(), "1.5\n".into()), ("T".into(), "2.5\n".into())]);
+    assert_eq!(sheets(book, Some("3".into())).unwrap()[0].described, "sheet T");
+}
+
 fn problem(bytes: Vec<u8>) -> String {
     sheets(bytes, None).unwrap_err()
 }
