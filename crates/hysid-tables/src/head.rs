@@ -59,7 +59,11 @@ impl Head {
             words.push(counted(layout.preamble as u64, "line", "before the table"));
         }
         match layout.header_lines.as_slice() {
-            [] => words.push("no names of columns".into()),
+            [] if layout.names.first().is_some_and(|name| name == "c1") => {
+                words.push("no names of columns".into());
+            }
+            // Names of the instrument or of joined files.
+            [] => {}
             [line] => words.push(format!("names in line {line}")),
             [first, .., last] => words.push(format!("names in lines {first} to {last}")),
         }

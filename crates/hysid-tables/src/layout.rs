@@ -99,6 +99,7 @@ impl Layout {
             groups: header.groups,
         };
         layout.name_units();
+        layout.name_micromag(&lines);
         if let Some(name) = layout.names.iter().find(|name| name.len() > LONGEST_NAME) {
             let line = layout.header_lines.last().unwrap_or(&layout.line);
             let letters = name.chars().count();
@@ -137,6 +138,27 @@ impl Layout {
             line: line.number + 1,
             groups: None,
         })
+    }
+
+    /// Names and units of a MicroMag magnetometer, which writes the system of units before the table, and often no names.
+    fn name_micromag(&mut self, lines: &[TextLine<'_>]) {
+        if !lines.iter().find(|line| !line.is_blank()).is_some_and(|line| line.text.starts_with("MicroMag")) {
+            return;
+        }
+        let is_cgs = |line: &TextLine<'_>| {
+            line.text.starts_with("Units of measure") && line.text.to_lowercase().contains("cgs")
+        };
+        let [field, moment] = if lines.iter().any(is_cgs) { ["Oe", "emu"] } else { ["T", "A m2"] };
+        if self.header_lines.is_empty() && self.names.len() == 2 {
+            self.names = ["Field", "Moment"].map(String::from).to_vec();
+        }
+        for name in &mut self.names {
+            match name {
+                name if name.ends_with("Field") => header::add_unit(name, field),
+                name if name.ends_with("Moment") => header::add_unit(name, moment),
+                _ => {}
+            }
+        }
     }
 
     /// Adds units to names that have none: those in the cells, and the seconds that dates and clocks become.
@@ -325,6 +347,11 @@ mod tests {
         ] {
             assert_eq!(names(&format!("{header}{rows}")), expected, "{header}");
         }
+        let micromag = |units: &str| {
+            format!("MicroMag 2900 Data File\nUnits of measure: {units}\n\n+1.5,2.5\n+2.5,3.5\n")
+        };
+        assert_eq!(names(&micromag("cgs")), ["Field [Oe]", "Moment [emu]"]);
+        assert_eq!(names(&micromag("SI")), ["Field [T]", "Moment [A m2]"]);
         assert_eq!(names("Units: cgs\nNCrv     = 40\n\n+1.5,2.5\n+2.5,3.5\n"), ["c1", "c2"]);
     }
 

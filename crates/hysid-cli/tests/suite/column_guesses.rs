@@ -115,7 +115,7 @@ fn many_columns_are_not_all_inputs() {
         let gauges = (0..60).map(|gauge| (x + sin(0.1 * f64::from(gauge) * t)).to_string());
         std::iter::once(t.to_string()).chain(gauges).chain([y.to_string()]).collect()
     });
-    let names = "gauge_1, gauge_2, gauge_3, gauge_4, gauge_5, gauge_6 and 54 more";
+    let names = "gauge_1, gauge_2, gauge_3, gauge_4, gauge_5 and 55 more";
     let instance = "for instance --input gauge_1 --output force_kN";
     refused(
         data.clone(),

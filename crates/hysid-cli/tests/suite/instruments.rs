@@ -68,8 +68,8 @@ const LAYOUTS: [Layout; 28] = [
         "micromag.txt",
         "MicroMag 2900/3900 Data File (Series 0016)\nDirect moment vs. field; Hysteresis loop\n\nINSTRUMENT\nConfiguration   :  VSM\nUnits of measure:  cgs\n\nMEASUREMENT\nHCoerce         =  +1.0E+02\nSlope           =  N/A\n\n",
         "{x},{y}",
-        "c1",
-        "c2",
+        "Field [Oe]",
+        "Moment [emu]",
     ),
     layout(
         "lake-shore.txt",

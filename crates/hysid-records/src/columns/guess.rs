@@ -18,6 +18,9 @@ use super::values::{self, TimeCheck, ValueStatistics, numbers};
 /// More columns than this are not all inputs.
 const MOST_INPUTS: usize = 4;
 
+/// Most columns that a question lists.
+const MOST_CANDIDATES: usize = 5;
+
 /// Values are not looked at in a table with more free columns than this.
 const MOST_READ: usize = 200;
 
@@ -440,9 +443,7 @@ impl<'t> Guess<'t> {
     }
 
     fn is_first_nameless(&self, name: &str) -> bool {
-        self.table.layout.header_lines.is_empty()
-            && self.time.is_none()
-            && self.table.header.first().is_some_and(|first| first == name)
+        self.table.layout.header_lines.is_empty() && self.time.is_none() && name == "c1"
     }
 
     fn set_aside(&mut self, name: &str, reason: Words) -> bool {
@@ -600,6 +601,11 @@ impl<'t> Guess<'t> {
             return pair;
         }
         free.sort_by_key(|name| !ColumnKind::of(name).drives());
-        pair.advised(format!("columns: {}", listed(&free)))
+        let more = match free.len().saturating_sub(MOST_CANDIDATES) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        free.truncate(MOST_CANDIDATES);
+        pair.advised(format!("columns: {}{more}", listed(&free)))
     }
 }
