@@ -86,6 +86,12 @@ impl Data {
             source.tables.push(table.into_origin());
         }
         let (mut records, mut warnings) = (Vec::new(), Vec::from_iter(roles.note.clone()));
+        for table in source.tables.iter().filter(|table| table.left_out.is_doubtful) {
+            let others = listed(&table.left_out.tables);
+            let words = format!("{}: other tables of the file are left out: {others}", clipped(&table.file));
+            warnings
+                .push(Words::from(words).advised(Words::from("choose one with ") + Hint::Option("sheet")));
+        }
         for (mut columns, places) in of_tables {
             let places = &source.places[places];
             warnings.extend(columns.spread_equal_stamps(places, &source).map(Words::from));

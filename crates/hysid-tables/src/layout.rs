@@ -344,6 +344,8 @@ mod tests {
             ),
             ("% t,x,y\n% s,mm,kN\n", ["t [s]", "x [mm]", "y [kN]"]),
             ("Averages: ,3,4\nt,x,y\n", ["t", "x", "y"]),
+            ("A,A,A\nt,H,M\ns,Oe,emu\n", ["t [s]", "H [Oe]", "M [emu]"]),
+            ("H (Oe),5 K,300 K\n", ["H (Oe)", "5 K", "300 K"]),
         ] {
             assert_eq!(names(&format!("{header}{rows}")), expected, "{header}");
         }

@@ -66,6 +66,8 @@ pub struct LeftOut {
     pub end: Option<(u64, u64)>,
     /// Other tables of the file.
     pub tables: Vec<String>,
+    /// One of them may be meant.
+    pub is_doubtful: bool,
 }
 
 impl LeftOut {
@@ -173,10 +175,10 @@ impl Rows {
 
     fn of_gathered(file: String, stored: &str, tables: GatheredTables, reading: &Reading) -> Result<Self> {
         check_width(&file, &tables.layout)?;
-        let GatheredTables { layout, text, lines, described, left_out } = tables;
+        let GatheredTables { layout, text, lines, described, left_out, is_doubtful } = tables;
         let stored = format!("{stored}, {described}");
         let head = Head::new(file, stored, layout, reading.clone());
-        let left_out = LeftOut { tables: left_out, ..LeftOut::default() };
+        let left_out = LeftOut { tables: left_out, is_doubtful, ..LeftOut::default() };
         let rows = Self::new(head, Box::new(Cursor::new(text)), b'\t', LineCounter::new());
         Ok(Self { origin: lines, left_out, ..rows })
     }
@@ -546,7 +548,7 @@ mod tests {
             lines.push(row.line);
         }
         assert_eq!(lines, [2, 4]);
-        assert_eq!(rows.left_out, LeftOut { comments: 1, end: Some((6, 2)), tables: Vec::new() });
+        assert_eq!(rows.left_out, LeftOut { comments: 1, end: Some((6, 2)), ..LeftOut::default() });
         // Not if rows follow.
         let error = read(b"t,x\n0,1\n1,2\nPart two\n2,3\n", 1000).unwrap_err().to_string();
         assert!(error.starts_with("f, line 4: has 1 cell") && error.ends_with("--rows 1:2)"), "{error}");

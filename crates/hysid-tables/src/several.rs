@@ -18,6 +18,9 @@ const MOST_TABLES: usize = 500;
 /// Longest row that may be a column.
 const LONGEST_COLUMN: usize = 1 << 20;
 
+/// Rows of a table that is left out, per row that is read, from which on it may be meant.
+const DOUBTFUL: f64 = 0.1;
+
 /// Rows without names that are a table, and no text behind one.
 const FEWEST_ROWS: usize = 3;
 
@@ -41,6 +44,8 @@ pub struct GatheredTables {
     pub described: String,
     /// Those that are not read.
     pub left_out: Vec<String>,
+    /// One of these has so many rows that it may be meant, although no option chose.
+    pub is_doubtful: bool,
 }
 
 /// A table of a sheet, or a group of its columns.
@@ -99,9 +104,15 @@ pub fn gather(file: &str, sheets: &[TextSheet], reading: &Reading) -> Result<Fou
     let rest = parts.iter().zip(&chosen).filter(|(_, chosen)| !**chosen);
     let left_out = rest.map(|(part, _)| format!("{} ({} rows)", clipped(&part.name), part.rows.len()));
     let left_out = left_out.chain(empty).collect();
+    let rows = |is_read: bool| -> Vec<usize> {
+        let parts = parts.iter().zip(&chosen).filter(|(_, chosen)| **chosen == is_read);
+        parts.map(|(part, _)| part.rows.len()).collect()
+    };
+    let least = DOUBTFUL * rows(true).iter().sum::<usize>() as f64;
+    let is_doubtful = reading.sheet.is_none() && rows(false).iter().any(|&rows| rows as f64 >= least);
     let mut kept = chosen.iter();
     parts.retain(|_| kept.next() == Some(&true));
-    Ok(Found::Gathered(Box::new(joined(&parts, left_out))))
+    Ok(Found::Gathered(Box::new(GatheredTables { left_out, is_doubtful, ..joined(&parts) })))
 }
 
 /// The part of this name or number.
@@ -133,7 +144,7 @@ fn largest(parts: &[TablePart<'_>]) -> Vec<bool> {
 }
 
 /// Parts with equal columns one below the other, with a column of their names if there are several.
-fn joined(parts: &[TablePart<'_>], left_out: Vec<String>) -> GatheredTables {
+fn joined(parts: &[TablePart<'_>]) -> GatheredTables {
     let mut layout = parts[0].layout.clone();
     let known = layout.names.iter().position(|name| is_record(name));
     if parts.len() > 1 && known.is_none() {
@@ -164,7 +175,14 @@ fn joined(parts: &[TablePart<'_>], left_out: Vec<String>) -> GatheredTables {
             lines.push(line);
         }
     }
-    GatheredTables { layout, text, lines, described: described(parts), left_out }
+    GatheredTables {
+        layout,
+        text,
+        lines,
+        described: described(parts),
+        left_out: Vec::new(),
+        is_doubtful: false,
+    }
 }
 
 /// Which tables are read.
@@ -244,6 +262,10 @@ fn rows<'t>(text: &'t str, layout: &Layout) -> Option<ScannedRows<'t>> {
         } else {
             let cells = cells_of(line, layout.delimiter);
             let fits = cells == width || cells == width + 1 && ends_empty(line, layout.delimiter);
+            let is_header = header == Some(line.trim()) && !rows.is_empty();
+            if is_header {
+                break;
+            }
             if !fits && is_comment(line) {
                 (at, number) = (at + next, number + 1);
                 continue;
@@ -263,7 +285,7 @@ fn rows<'t>(text: &'t str, layout: &Layout) -> Option<ScannedRows<'t>> {
                     rows.push((number, line));
                     is_after_blank = false;
                 }
-                (true, false) if !rows.is_empty() && !is_after_blank && header != Some(line.trim()) => {
+                (true, false) if !rows.is_empty() && !is_after_blank => {
                     return None;
                 }
                 (false, true) if !is_after_blank && begins_with_number(line) => return None,
@@ -375,7 +397,7 @@ impl<'t> TablePart<'t> {
         }
         let lines = rows.iter().map(|(line, _)| *line).collect();
         let described = "two branches as one loop".to_string();
-        Some(GatheredTables { layout, text, lines, described, left_out: Vec::new() })
+        Some(GatheredTables { layout, text, lines, described, left_out: Vec::new(), is_doubtful: false })
     }
 
     /// The same with rows and columns interchanged, of a table with few long rows and no names above.
@@ -405,6 +427,6 @@ impl<'t> TablePart<'t> {
         }
         let lines = vec![self.rows[0].0; columns.len()];
         let described = "its rows as columns".to_string();
-        Some(GatheredTables { layout, text, lines, described, left_out: Vec::new() })
+        Some(GatheredTables { layout, text, lines, described, left_out: Vec::new(), is_doubtful: false })
     }
 }

@@ -239,3 +239,15 @@ fn a_measured_column_of_records_is_divided_by_its_plateaus() {
     });
     told(data, "--record T_K", &["all scored, in 2 records: data (1), data (2)"]);
 }
+
+#[test]
+fn a_hint_names_a_pair_that_belongs_together() {
+    let header = "Disp A (mm),Force A (kN),Disp B (mm),Force B (kN)";
+    let data = table(header, |_, [t, x, y]| texts(&[&x, &y, &sin(1.3 * t), &cos(1.7 * t)]));
+    refused(
+        data,
+        "",
+        "error: data.csv: \"Force A (kN)\" and \"Force B (kN)\" could both be the output: name input and output, for \
+         instance --input 'Disp B (mm)' --output 'Force B (kN)'",
+    );
+}

@@ -396,8 +396,8 @@ impl<'t> Guess<'t> {
         };
         self.inputs
             .first()
-            .or_else(|| others().find(of_domain))
-            .or_else(|| others().find(|name| ColumnKind::of(name).drives()))
+            .or_else(|| alike(output, others().filter(of_domain)))
+            .or_else(|| alike(output, others().filter(|name| ColumnKind::of(name).drives())))
             .or_else(|| others().find(|name| !ColumnKind::of(name).follows()))
             .or_else(|| others().next())
     }
@@ -608,4 +608,15 @@ impl<'t> Guess<'t> {
         free.truncate(MOST_CANDIDATES);
         pair.advised(format!("columns: {}{more}", listed(&free)))
     }
+}
+
+/// The name that has the most words in common with another, such as `Disp B` with `Force B`; the first of equals.
+fn alike<'n>(name: &str, others: impl Iterator<Item = &'n String>) -> Option<&'n String> {
+    let words = |name: &str| -> Vec<String> {
+        let words = name.split(|letter: char| !letter.is_alphanumeric());
+        words.filter(|word| !word.is_empty()).map(str::to_lowercase).collect()
+    };
+    let own = words(name);
+    let common = |other: &str| words(other).iter().filter(|word| own.contains(word)).count();
+    others.reduce(|best, other| if common(other) > common(best) { other } else { best })
 }

@@ -277,10 +277,18 @@ fn is_quoted_header(lines: &[TextLine<'_>], run: &LineRun) -> bool {
     first.iter().all(|cell| cell.is_quoted) && run.columns.iter().all(|column| !column.is_quoted)
 }
 
+/// Units that stand in lines of units and that no factor converts.
+const UNITS_IN_ROWS: [&str; 10] =
+    ["emu", "emu/g", "emu/cc", "emu/cm3", "µemu", "memu", "segments", "counts", "cycles", "a.u."];
+
 /// True for a line of units: in brackets, known, or none.
 fn are_units(cells: &[String]) -> bool {
     let filled: Vec<&String> = cells.iter().filter(|cell| !is_missing(cell)).collect();
-    let is_one = |cell: &&&String| in_brackets(cell).is_some() || unit::is_unit(cell);
+    let is_one = |cell: &&&String| {
+        in_brackets(cell).is_some()
+            || unit::is_unit(cell)
+            || UNITS_IN_ROWS.contains(&cell.to_lowercase().as_str())
+    };
     let units = filled.iter().filter(is_one).count();
     units > 0 && units == filled.len() || units > 1 && 2 * units > filled.len()
 }
