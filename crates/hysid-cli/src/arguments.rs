@@ -560,6 +560,9 @@ pub struct Look {
     /// Tables: text, spreadsheets, MATLAB files, compressed or not; - is standard input
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
+    /// Join the columns of the files, row by row, into one table: input and output of one test in two files
+    #[arg(long)]
+    pub join: bool,
     /// Write the columns that are used as a plain CSV table; - is standard output
     #[arg(short, long, value_name = "CLEAN.csv")]
     pub out: Option<PathBuf>,

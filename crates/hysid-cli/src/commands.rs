@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow, ensure};
 use hysid::model::Model;
 use hysid_document::Problem;
-use hysid_tables::{Table, is_json};
+use hysid_tables::{Table, is_model};
 
 use crate::arguments::ReadingOptions;
 use crate::files;
@@ -52,7 +52,7 @@ enum Given {
 impl Given {
     /// Of files with these contents; `alone` is what to do with a model that comes with further files.
     fn of(files: &[PathBuf], contents: Vec<Vec<u8>>, reading: &ReadingOptions, alone: &str) -> Result<Self> {
-        match contents.iter().position(|content| is_json(content)) {
+        match contents.iter().position(|content| is_model(content)) {
             Some(_) if contents.len() == 1 => {
                 Ok(Self::Model(contents.into_iter().next().unwrap_or_default()))
             }

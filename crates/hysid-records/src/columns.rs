@@ -15,7 +15,7 @@ use hysid_core::options::{FitSpec, ModelName};
 use hysid_core::words::{Hint, Words};
 
 use self::guess::Guess;
-use self::values::{TimeCheck, ValueStatistics, numbers};
+use self::values::{TimeCheck, ValueStatistics, numbers, plateaus};
 use hysid_core::data::unit::{self, Conversion};
 use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
@@ -182,14 +182,15 @@ impl Roles {
             Some(output) if !inputs.is_empty() => {
                 Ok(Self { record, time, inputs, rate, output, guessed, set_aside, condition, note })
             }
-            output => Err(Problem::in_file(
-                &table.file,
-                format!(
-                    "no column is left for the input besides output \"{}\" (columns: {})",
-                    clipped(&output.unwrap_or_default()),
-                    listed(&table.header)
-                ),
-            )),
+            output => {
+                let output = output.unwrap_or_default();
+                let words =
+                    format!("no column is left for the input besides output \"{}\"", clipped(&output));
+                let columns = format!("columns: {}", listed(&table.header));
+                let join =
+                    "; input and output in two files? hysid look FILE FILE --join -o both.csv joins them";
+                Err(Problem::in_file(&table.file, Words::from(words).advised(columns + join)))
+            }
         }
     }
 
@@ -354,11 +355,14 @@ fn time_by_name(table: &Table, free: &[&String], records: &[Range<usize>]) -> Re
     Ok(None)
 }
 
-/// Rows of each record of a table, where its name changes.
+/// Rows of each record of a table, where its name or the plateau of its condition changes.
 fn rows_of_records(table: &Table, record: Option<&str>) -> Vec<Range<usize>> {
     let Some(place) = record.and_then(|name| table.column(name)) else {
         return std::iter::once(0..table.rows()).collect();
     };
+    if let Some(plateaus) = record.and_then(|name| plateaus(table, name)) {
+        return plateaus;
+    }
     let name = |row: usize| table.cell(row, place).trim();
     let begins = (1..table.rows()).filter(|&row| name(row) != name(row - 1));
     let begins: Vec<usize> = std::iter::once(0).chain(begins).chain([table.rows()]).collect();

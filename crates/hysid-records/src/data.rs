@@ -15,10 +15,11 @@ use hysid_tables::{
     starts_again,
 };
 
-use crate::columns::values::{changes, numbers};
+use crate::columns::values::{changes, numbers, plateaus};
 use crate::columns::{ColumnChoice, Roles, time_or_no_rate};
 use crate::record_names::RecordNames;
 use crate::units::UnitFactors;
+use hysid_document::shell::quoted;
 use hysid_document::visible::{clipped, listed};
 
 /// Measured data and the tables they come from.
@@ -71,6 +72,7 @@ impl Data {
         for table in &tables[1..] {
             roles.check_against(table, &tables[0].file)?;
         }
+        refuse_parts_of_a_test(&tables, &roles)?;
         let stems = stems(&tables);
         let mut source = DataSource { places: Vec::new(), tables: Vec::new() };
         let mut of_tables = Vec::new();
@@ -84,6 +86,12 @@ impl Data {
             source.tables.push(table.into_origin());
         }
         let (mut records, mut warnings) = (Vec::new(), Vec::from_iter(roles.note.clone()));
+        for table in source.tables.iter().filter(|table| table.left_out.is_doubtful) {
+            let others = listed(&table.left_out.tables);
+            let words = format!("{}: other tables of the file are left out: {others}", clipped(&table.file));
+            warnings
+                .push(Words::from(words).advised(Words::from("choose one with ") + Hint::Option("sheet")));
+        }
         for (mut columns, places) in of_tables {
             let places = &source.places[places];
             warnings.extend(columns.spread_equal_stamps(places, &source).map(Words::from));
@@ -270,6 +278,29 @@ fn stems(tables: &[Table]) -> Vec<String> {
     all.iter().zip(tables).map(name).map(numbered).collect()
 }
 
+/// Refuses files without names that have one growing column in common: time, beside the input in one and the output in
+/// another.
+fn refuse_parts_of_a_test(tables: &[Table], roles: &Roles) -> Result<()> {
+    let ([first, second, ..], [input]) = (tables, roles.inputs.as_slice()) else { return Ok(()) };
+    let is_nameless = |table: &Table| table.layout.header_lines.is_empty() && table.header.len() == 2;
+    if roles.time.is_some() || !is_nameless(first) || !is_nameless(second) {
+        return Ok(());
+    }
+    let values = numbers(first, input);
+    let grows = values.as_ref().is_some_and(|values| values.windows(2).all(|pair| pair[0] < pair[1]));
+    if !grows || values != numbers(second, input) {
+        return Ok(());
+    }
+    let words =
+        format!("has the same growing column \"{}\" as {}: time?", clipped(input), clipped(&first.file));
+    let join = format!(
+        "hysid look {} {} --join -o both.csv joins input and output of two files",
+        quoted(&first.file),
+        quoted(&second.file)
+    );
+    Err(Problem::in_file(&second.file, Words::from(words).advised(join)))
+}
+
 /// The records of one table, by its time stamps if it has any.
 pub fn places_of(table: &Table, roles: &Roles, time: Option<&[f64]>) -> Result<Vec<RecordPlace>> {
     let stems = stems(std::slice::from_ref(table));
@@ -285,16 +316,19 @@ struct Naming<'n> {
 }
 
 /// The records of a table: runs of rows with the same name in the record column; without such a column, a record begins
-/// where time starts again or a condition of the test changes.
+/// where time starts again or a condition of the test takes another value, which a record column of measured numbers is too.
 fn places(
     table: &Table,
     roles: &Roles,
     naming: &Naming<'_>,
     time: Option<&[f64]>,
 ) -> Result<Vec<RecordPlace>> {
-    let Some(column) = &roles.record else {
+    let plateaus = roles.record.as_ref().and_then(|name| plateaus(table, name));
+    let column = roles.record.as_ref().filter(|_| plateaus.is_none());
+    let Some(column) = column else {
         let mut ends = ends_by_time(time.unwrap_or_default(), table.rows());
         ends.extend(ends_by_condition(table, roles));
+        ends.extend(plateaus.iter().flatten().map(|rows| rows.end));
         ends.sort_unstable();
         ends.dedup();
         let name = |number: usize| match ends.len() {
@@ -435,6 +469,9 @@ impl CellNeed {
         Self::Required { if_blank: ("every row needs a wanted output", None), if_no_number: None };
 }
 
+/// Rows at the end of a table that may be a summary.
+const MOST_AT_END: usize = 5;
+
 /// The numbers of a column; a cell that is blank and may be is NaN.
 pub fn column_of(table: &Table, name: &str, kind: CellNeed, cells: &mut CellReader) -> Result<Vec<f64>> {
     let place = place_of(table, name)?;
@@ -443,8 +480,13 @@ pub fn column_of(table: &Table, name: &str, kind: CellNeed, cells: &mut CellRead
     let mut numbers = Vec::with_capacity(table.rows());
     for (row, &line) in table.lines.iter().enumerate() {
         let number = column.number(table, cells, table.cell(row, place), line);
-        numbers
-            .push(checked(number, table.cell(row, place), kind, row == 0).map_err(|words| at(line, words))?);
+        let number = checked(number, table.cell(row, place), kind, row == 0).map_err(|words| {
+            let is_at_end = row > 0 && table.rows() - row <= MOST_AT_END && table.reading.rows.is_all();
+            let before =
+                || Words::from("use the rows before it with ") + Hint::Value("rows", format!("1:{row}"));
+            at(line, if is_at_end && !words.helps() { words.advised(before()) } else { words })
+        });
+        numbers.push(number?);
     }
     column.problem(cells).map_or(Ok(numbers), |(line, problem)| Err(at(line, problem)))
 }

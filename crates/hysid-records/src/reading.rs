@@ -45,7 +45,11 @@ pub const READING_OPTIONS: [ReadingOption; 11] = [
     option("units_row", "Treat the last line of the header as units, even if Hysid does not know them", Flag),
     option("missing", "A cell that stands for a missing value, such as -999", List),
     option("encoding", "Encoding of the text, such as utf-8, windows-1252 or shift_jis", Text),
-    option("sheet", "Sheet of a spreadsheet, by its name or number, or variable of a MATLAB file", Text),
+    option(
+        "sheet",
+        "Sheet of a spreadsheet or table of a text, by its name or number, or variable of a MATLAB, HDF5, NumPy or JSON file",
+        Text,
+    ),
     option(
         "rows",
         "Use these rows of each table, counted from 1 after the header: FROM:TO, FROM: or :TO",

@@ -130,7 +130,7 @@ impl ColumnSummary {
                 Err(_) => others += 1,
             }
         }
-        if others > 0 && column.note.is_none() {
+        if others > 0 && column.note.is_none() && column.role != Some("record") {
             column.note = Some(match others == table.rows() - column.missing {
                 true => "text".into(),
                 false if others == 1 => "1 cell is not a number".into(),

@@ -19,7 +19,6 @@ pub struct Head {
     pub file: String,
     /// How the file is stored, in words, such as `text, UTF-8`.
     pub stored: String,
-    pub other_sheets: Vec<String>,
     /// Names of the columns, without surrounding blanks.
     pub header: Vec<String>,
     /// Layout of the table.
@@ -33,13 +32,7 @@ impl Head {
     pub fn new(file: String, stored: String, layout: Layout, reading: Reading) -> Self {
         let header = layout.names.clone();
         let places = header.iter().enumerate().map(|(place, name)| (name.clone(), place)).collect();
-        Self { file, stored, other_sheets: Vec::new(), header, layout, reading, places }
-    }
-
-    /// With the names of the sheets that were not chosen.
-    pub fn with_other_sheets(mut self, names: Vec<String>) -> Self {
-        self.other_sheets = names;
-        self
+        Self { file, stored, header, layout, reading, places }
     }
 
     pub fn delimiter(&self) -> Delimiter {
@@ -54,7 +47,7 @@ impl Head {
     pub fn described(&self) -> String {
         let layout = &self.layout;
         let mut words = vec![self.stored.clone()];
-        if !self.stored.starts_with("MATLAB") && !self.stored.starts_with("spreadsheet") {
+        if self.stored.starts_with("text") {
             words.push(format!("columns separated by {}", layout.delimiter.plural()));
         }
         match layout.numbers.decimal {
@@ -66,7 +59,11 @@ impl Head {
             words.push(counted(layout.preamble as u64, "line", "before the table"));
         }
         match layout.header_lines.as_slice() {
-            [] => words.push("no names of columns".into()),
+            [] if layout.names.first().is_some_and(|name| name == "c1") => {
+                words.push("no names of columns".into());
+            }
+            // Names of the instrument or of joined files.
+            [] => {}
             [line] => words.push(format!("names in line {line}")),
             [first, .., last] => words.push(format!("names in lines {first} to {last}")),
         }
@@ -79,18 +76,14 @@ impl Head {
 
     /// The problem of a table without rows.
     pub fn no_rows(&self) -> Problem {
-        let words = match self.other_sheets.as_slice() {
-            _ if !self.reading.rows.is_all() => {
-                Words::from("has no row that ") + Hint::Option("rows") + " selects"
-            }
-            [] => "has a header but no rows".into(),
-            others => {
-                let stored = self.stored.rsplit(", ").next().unwrap_or_default();
-                let others = others.iter().map(|name| clipped(name)).collect::<Vec<_>>().join(", ");
-                let choice = Words::from("choose another sheet with ") + Hint::Option("sheet");
-                Words::from(format!("has no rows of numbers in {stored}"))
-                    .advised(choice + format!(": {others}"))
-            }
+        let words = if !self.reading.rows.is_all() {
+            Words::from("has no row that ") + Hint::Option("rows") + " selects"
+        } else if self.stored.starts_with("spreadsheet") {
+            let sheet = self.stored.rsplit(", ").next().unwrap_or_default();
+            let other = Words::from("choose another one with ") + Hint::Option("sheet");
+            Words::from(format!("has no rows of numbers in {sheet}")).advised(other)
+        } else {
+            "has a header but no rows".into()
         };
         Problem::in_file(&self.file, words)
     }
@@ -99,7 +92,10 @@ impl Head {
     pub fn require_columns(&self) -> Result<()> {
         if let [name] = self.header.as_slice() {
             let line = *self.layout.header_lines.first().unwrap_or(&self.layout.line);
-            let advice = Words::from("what separates the columns? name it with ") + Hint::Option("delimiter");
+            let advice = match self.stored.starts_with("text") {
+                true => Words::from("what separates the columns? name it with ") + Hint::Option("delimiter"),
+                false => Words::from("choose what has more columns with ") + Hint::Option("sheet"),
+            };
             let words = Words::from(format!("there is only one column, \"{}\"", clipped(name)));
             return Err(Problem::at(&self.file, line, words.advised(advice)));
         }

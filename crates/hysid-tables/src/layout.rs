@@ -17,8 +17,9 @@ use hysid_document::{Problem, Result};
 use lines::TextLine;
 use run::LineRun;
 
-pub use cells::{bare, split};
-pub use lines::is_comment;
+pub use cells::{CellKind, LineCell, bare, split};
+pub use header::{ColumnGroups, distinct, is_name};
+pub use lines::{first_line, is_comment};
 pub use run::is_row;
 
 /// Lines that a layout is found from.
@@ -52,6 +53,8 @@ pub struct Layout {
     pub start: usize,
     /// The line of the first row.
     pub line: u64,
+    /// Columns that are several tables side by side.
+    pub groups: Option<ColumnGroups>,
 }
 
 /// Largest number of bytes of a column's name, which models and reports repeat.
@@ -93,8 +96,10 @@ impl Layout {
             units_line: header.units_line,
             start: first.start,
             line: first.number,
+            groups: header.groups,
         };
         layout.name_units();
+        layout.name_micromag(&lines);
         if let Some(name) = layout.names.iter().find(|name| name.len() > LONGEST_NAME) {
             let line = layout.header_lines.last().unwrap_or(&layout.line);
             let letters = name.chars().count();
@@ -131,11 +136,33 @@ impl Layout {
             stamps: vec![false; width],
             start: line.end,
             line: line.number + 1,
+            groups: None,
         })
     }
 
+    /// Names and units of a MicroMag magnetometer, which writes the system of units before the table, and often no names.
+    fn name_micromag(&mut self, lines: &[TextLine<'_>]) {
+        if !lines.iter().find(|line| !line.is_blank()).is_some_and(|line| line.text.starts_with("MicroMag")) {
+            return;
+        }
+        let is_cgs = |line: &TextLine<'_>| {
+            line.text.starts_with("Units of measure") && line.text.to_lowercase().contains("cgs")
+        };
+        let [field, moment] = if lines.iter().any(is_cgs) { ["Oe", "emu"] } else { ["T", "A m2"] };
+        if self.header_lines.is_empty() && self.names.len() == 2 {
+            self.names = ["Field", "Moment"].map(String::from).to_vec();
+        }
+        for name in &mut self.names {
+            match name {
+                name if name.ends_with("Field") => header::add_unit(name, field),
+                name if name.ends_with("Moment") => header::add_unit(name, moment),
+                _ => {}
+            }
+        }
+    }
+
     /// Adds units to names that have none: those in the cells, and the seconds that dates and clocks become.
-    fn name_units(&mut self) {
+    pub fn name_units(&mut self) {
         for (place, name) in self.names.iter_mut().enumerate() {
             // Records have names, such as those of frequencies.
             if is_record(name) {
@@ -297,6 +324,53 @@ mod tests {
         assert_eq!(names("clock,y\n12:00:00.5,2\n12:00:01,4\n"), ["clock [s]", "y"]);
         // Names that are units too, over numbers.
         assert_eq!(names("s,N\n1,2\n3,4\n"), ["s", "N"]);
+    }
+
+    #[test]
+    fn text_between_names_and_rows_does_not_hide_the_names() {
+        let rows = "0,1.5,2\n1,2.5,3\n2,3.5,4\n";
+        for (header, expected) in [
+            ("t,x,y\n# a remark\n", ["t", "x", "y"]),
+            ("t,x,y\n#one\n! two\n\n", ["t", "x", "y"]),
+            ("t,x,y\n// three, words, here\n", ["t", "x", "y"]),
+            ("t,x,y\n# s, mm, kN\n", ["t [s]", "x [mm]", "y [kN]"]),
+            ("t,x,y\ns,mm,kN\n,,\n", ["t [s]", "x [mm]", "y [kN]"]),
+            ("t,x,y\nremark: none\n", ["t", "x", "y"]),
+            ("t,x,y\nfloat,float,float\n", ["t", "x", "y"]),
+            ("Data,Data,Data\nt,x,y\nMean,Mean,Mean\n", ["t", "x", "y"]),
+            (
+                "Time,Disp,Force\n,Actuator 1,Cell 2\ns,mm,kN\n",
+                ["Time [s]", "Actuator 1 [mm]", "Cell 2 [kN]"],
+            ),
+            ("% t,x,y\n% s,mm,kN\n", ["t [s]", "x [mm]", "y [kN]"]),
+            ("Averages: ,3,4\nt,x,y\n", ["t", "x", "y"]),
+            ("A,A,A\nt,H,M\ns,Oe,emu\n", ["t [s]", "H [Oe]", "M [emu]"]),
+            ("H (Oe),5 K,300 K\n", ["H (Oe)", "5 K", "300 K"]),
+        ] {
+            assert_eq!(names(&format!("{header}{rows}")), expected, "{header}");
+        }
+        let micromag = |units: &str| {
+            format!("MicroMag 2900 Data File\nUnits of measure: {units}\n\n+1.5,2.5\n+2.5,3.5\n")
+        };
+        assert_eq!(names(&micromag("cgs")), ["Field [Oe]", "Moment [emu]"]);
+        assert_eq!(names(&micromag("SI")), ["Field [T]", "Moment [A m2]"]);
+        assert_eq!(names("Units: cgs\nNCrv     = 40\n\n+1.5,2.5\n+2.5,3.5\n"), ["c1", "c2"]);
+    }
+
+    #[test]
+    fn names_that_come_again_are_groups() {
+        let groups = |header: &str| {
+            let row = |k: usize| vec![format!("{k}.5"); header.split(',').count()].join(",");
+            let found = layout(&format!("{header}\n{}\n{}\n{}\n", row(0), row(1), row(2))).groups;
+            found.map(|groups| (groups.shared, groups.names.join(" "), groups.labels.join(" ")))
+        };
+        let text = |shared, names: &str, labels: &str| Some((shared, names.to_string(), labels.to_string()));
+        assert_eq!(groups("H,M,H,M,H,M"), text(0, "H M", "1 2 3"));
+        assert_eq!(groups("t,x,F,x,F"), text(1, "t x F", "1 2"));
+        assert_eq!(groups("H1 (Oe),M1 (emu),H2 (Oe),M2 (emu)"), text(0, "H (Oe) M (emu)", "1 2"));
+        for other in ["t,x,x", "t,x,t,F", "x1,x2,y", "H,M,H,B", "t,x1,x2,x3"] {
+            assert_eq!(groups(other), None, "{other}");
+        }
     }
 
     #[test]

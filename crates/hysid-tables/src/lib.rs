@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! file, standard input ─► container ─► layout ─► rows ─► numbers
-//!                         gzip, encoding, spreadsheet, MATLAB
+//!                         gzip, encoding, spreadsheet, MATLAB, HDF5, NumPy, JSON
 //! ```
 //!
 //! A container gives text in UTF-8, whatever a file is. The layout of its first lines gives the delimiter, the names and
@@ -16,18 +16,20 @@ mod blanks;
 mod column;
 mod container;
 mod head;
+mod join;
 mod layout;
 mod line_counter;
 mod number;
 mod problem;
 mod reading;
 mod rows;
+mod several;
 mod stamp;
 mod table;
 mod time;
 
 pub use column::ColumnReader;
-pub use container::{THREAD as CONTAINER_THREAD, is_json};
+pub use container::{THREAD as CONTAINER_THREAD, is_model};
 pub use head::Head;
 pub use hysid_document::{Problem, Result};
 pub use layout::{Layout, is_record};

@@ -18,7 +18,7 @@ pub struct Reading {
     /// Cells that stand for a missing value.
     pub missing: Vec<String>,
     pub encoding: Option<TextEncoding>,
-    /// Sheet of a spreadsheet or variable of a MATLAB file: its name, or its number from 1.
+    /// Sheet of a spreadsheet or table of a text, by its name or its number from 1, or variable of a file that has them.
     pub sheet: Option<String>,
     pub rows: RowSelection,
 }

@@ -1,19 +1,21 @@
 //! The rows of a table one after another: memory does not grow with the file.
 
-use std::io::{Cursor, ErrorKind, Read};
+use std::io::{self, Cursor, ErrorKind, Read};
 use std::path::Path;
 
 use csv_core::ReadRecordResult;
 use hysid_core::words::{Hint, Words};
 
 use crate::blanks::TabsForBlanks;
-use crate::container::{BINARY, DecodedText};
+use crate::container::{BINARY, DecodedText, LONGEST_TEXT, TextContent, TextSheet};
+use hysid_document::visible::listed;
 use hysid_files::unreadable;
 
 use crate::head::{Head, counted};
 use crate::layout::{Layout, is_comment, is_row, split, width_problem};
 use crate::line_counter::LineCounter;
 use crate::reading::{Delimiter, Reading};
+use crate::several::{Found, GatheredTables, gather};
 use hysid_document::{Problem, Result};
 
 /// Bytes that are read at a time.
@@ -43,6 +45,8 @@ pub struct Rows {
     is_all_read: bool,
     /// The place before the present row.
     lines: LineCounter,
+    /// Line in the file of each line that is read, if these differ.
+    origin: Vec<u64>,
     /// The cells of the present row without quotation marks, one after the other, and where they end.
     text: Vec<u8>,
     ends: Vec<usize>,
@@ -54,12 +58,16 @@ pub struct Rows {
 }
 
 /// Lines that are no rows.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LeftOut {
     /// Comments among the rows.
     pub comments: u64,
     /// Lines of text behind the table, and the first of them.
     pub end: Option<(u64, u64)>,
+    /// Other tables of the file.
+    pub tables: Vec<String>,
+    /// One of them may be meant.
+    pub is_doubtful: bool,
 }
 
 impl LeftOut {
@@ -69,7 +77,8 @@ impl LeftOut {
         let end = self
             .end
             .map(|(line, lines)| format!("{} (from line {line})", counted(lines, "line", "after the table")));
-        let all: Vec<String> = comments.into_iter().chain(end).collect();
+        let tables = (!self.tables.is_empty()).then(|| listed(&self.tables));
+        let all: Vec<String> = comments.into_iter().chain(end).chain(tables).collect();
         (!all.is_empty()).then(|| all.join(", "))
     }
 }
@@ -116,23 +125,80 @@ impl Rows {
     /// Finds the layout of the table that a file with this content has.
     pub fn from_bytes(path: &Path, bytes: Vec<u8>, reading: &Reading) -> Result<Self> {
         let reader = Box::new(Cursor::new(bytes));
-        Self::of(DecodedText::new(path.display().to_string(), reader, reading)?, reading)
+        Self::of(DecodedText::new(path.display().to_string(), reader, true, reading)?, reading)
     }
 
     fn of(text: DecodedText, reading: &Reading) -> Result<Self> {
-        let DecodedText { file, mut reader, stored, other_sheets } = text;
-        let (first, is_all) = beginning(&file, &mut reader)?;
+        let DecodedText { file, content, stored, is_short } = text;
+        let mut reader = match content {
+            TextContent::Stream(reader) => reader,
+            TextContent::Sheets(mut sheets) => {
+                return match gather(&file, &sheets, reading)? {
+                    Found::Gathered(tables) => Self::of_gathered(file, &stored, *tables, reading),
+                    Found::Alone(place) => {
+                        let sheet = sheets.swap_remove(place);
+                        let stored = format!("{stored}, {}", sheet.described);
+                        Self::of_one(
+                            file,
+                            stored,
+                            sheet.text.into_bytes(),
+                            true,
+                            Box::new(io::empty()),
+                            reading,
+                        )
+                    }
+                };
+            }
+        };
+        let (mut first, mut is_all) = beginning(&file, &mut reader)?;
+        if is_short && !is_all {
+            let more = LONGEST_TEXT.saturating_sub(first.len());
+            let read = reader.by_ref().take(more as u64).read_to_end(&mut first);
+            is_all = read.map_err(|error| unreadable(&file, &error))? < more;
+        }
+        if is_all && !first.contains(&0) {
+            match String::from_utf8(first) {
+                Ok(text) => {
+                    let sheet = TextSheet { name: String::new(), described: String::new(), text };
+                    let sheets = [sheet];
+                    if let Found::Gathered(tables) = gather(&file, &sheets, reading)? {
+                        return Self::of_gathered(file, &stored, *tables, reading);
+                    }
+                    let [sheet] = sheets;
+                    first = sheet.text.into_bytes();
+                }
+                Err(error) => first = error.into_bytes(),
+            }
+        }
+        Self::of_one(file, stored, first, is_all, reader, reading)
+    }
+
+    fn of_gathered(file: String, stored: &str, tables: GatheredTables, reading: &Reading) -> Result<Self> {
+        check_width(&file, &tables.layout)?;
+        let GatheredTables { layout, text, lines, described, left_out, is_doubtful } = tables;
+        let stored = format!("{stored}, {described}");
+        let head = Head::new(file, stored, layout, reading.clone());
+        let left_out = LeftOut { tables: left_out, is_doubtful, ..LeftOut::default() };
+        let rows = Self::new(head, Box::new(Cursor::new(text)), b'\t', LineCounter::new());
+        Ok(Self { origin: lines, left_out, ..rows })
+    }
+
+    /// The only table of a text, of which the first bytes were read.
+    fn of_one(
+        file: String,
+        stored: String,
+        first: Vec<u8>,
+        is_all: bool,
+        reader: Box<dyn Read>,
+        reading: &Reading,
+    ) -> Result<Self> {
         let valid = match std::str::from_utf8(&first) {
             Ok(text) => text,
             Err(error) => std::str::from_utf8(&first[..error.valid_up_to()]).unwrap_or_default(),
         };
         let is_cut = first.len() - valid.len() < 4 && !is_all;
         let layout = Layout::find(&file, valid, is_all || !is_cut && valid.len() < first.len(), reading)?;
-        let width = layout.names.len();
-        if width > MOST_COLUMNS {
-            let words = format!("has {width} columns: at most {MOST_COLUMNS} are read");
-            return Err(Problem::in_file(&file, words));
-        }
+        check_width(&file, &layout)?;
         let mut lines = LineCounter::new();
         lines.pass(&first[..layout.start]);
         let mut rest = Cursor::new(first);
@@ -142,8 +208,13 @@ impl Rows {
             Delimiter::Character(delimiter) => (Box::new(rest), delimiter),
             Delimiter::Blanks => (Box::new(TabsForBlanks::new(rest)), b'\t'),
         };
-        Ok(Self {
-            head: Head::new(file, stored, layout, reading.clone()).with_other_sheets(other_sheets),
+        Ok(Self::new(Head::new(file, stored, layout, reading.clone()), reader, delimiter, lines))
+    }
+
+    /// From the first row on.
+    fn new(head: Head, reader: Box<dyn Read>, delimiter: u8, lines: LineCounter) -> Self {
+        Self {
+            head,
             reader,
             parser: csv_core::ReaderBuilder::new().delimiter(delimiter).build(),
             buffer: Vec::new(),
@@ -152,12 +223,19 @@ impl Rows {
             end: 0,
             is_all_read: false,
             lines,
+            origin: Vec::new(),
             text: Vec::new(),
             ends: Vec::new(),
             cells: 0,
             read: 0,
             left_out: LeftOut::default(),
-        })
+        }
+    }
+
+    /// The line in the file of one that is read.
+    fn line(&self, read: u64) -> u64 {
+        let place = usize::try_from(read).ok().and_then(|line| line.checked_sub(1));
+        place.and_then(|place| self.origin.get(place)).copied().unwrap_or(read)
     }
 
     /// The next row that is used; `None` at the end.
@@ -285,7 +363,7 @@ impl Rows {
         match std::str::from_utf8(&self.text[..ends.last().copied().unwrap_or(0)]) {
             // The end of one cell and the beginning of the next may make a letter that neither has.
             Ok(text) if ends.iter().all(|&end| text.is_char_boundary(end)) => {
-                Ok(Row { line: self.lines.line_of(raw), text, ends })
+                Ok(Row { line: self.line(self.lines.line_of(raw)), text, ends })
             }
             _ => {
                 let valid = std::str::from_utf8(raw).map_or_else(|error| error.valid_up_to(), str::len);
@@ -354,6 +432,12 @@ fn beginning(file: &str, reader: &mut dyn Read) -> Result<(Vec<u8>, bool)> {
     }
 }
 
+fn check_width(file: &str, layout: &Layout) -> Result<()> {
+    let width = layout.names.len();
+    let words = || format!("has {width} columns: at most {MOST_COLUMNS} are read");
+    if width > MOST_COLUMNS { Err(Problem::in_file(file, words())) } else { Ok(()) }
+}
+
 fn grow<T: Default + Clone>(room: &mut Vec<T>) {
     room.resize((2 * room.len()).max(256), T::default());
 }
@@ -399,7 +483,10 @@ mod tests {
     }
 
     fn rows(text: &[u8], piece: usize, reading: &Reading) -> Result<Rows> {
-        Rows::of(DecodedText::new("f".into(), Box::new(Dripping(text.to_vec(), piece)), reading)?, reading)
+        Rows::of(
+            DecodedText::new("f".into(), Box::new(Dripping(text.to_vec(), piece)), false, reading)?,
+            reading,
+        )
     }
 
     fn read(text: &[u8], piece: usize) -> Result<Vec<(u64, Vec<String>)>> {
@@ -461,7 +548,7 @@ mod tests {
             lines.push(row.line);
         }
         assert_eq!(lines, [2, 4]);
-        assert_eq!(rows.left_out, LeftOut { comments: 1, end: Some((6, 2)) });
+        assert_eq!(rows.left_out, LeftOut { comments: 1, end: Some((6, 2)), ..LeftOut::default() });
         // Not if rows follow.
         let error = read(b"t,x\n0,1\n1,2\nPart two\n2,3\n", 1000).unwrap_err().to_string();
         assert!(error.starts_with("f, line 4: has 1 cell") && error.ends_with("--rows 1:2)"), "{error}");

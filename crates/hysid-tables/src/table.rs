@@ -4,6 +4,7 @@ use std::ops::Deref;
 use std::path::Path;
 
 use crate::head::Head;
+use crate::layout::Layout;
 use crate::reading::Reading;
 use crate::rows::{LeftOut, Rows};
 use hysid_document::Result;
@@ -70,6 +71,13 @@ impl Table {
     /// The table without its cells, which need several times the memory of their numbers.
     pub fn into_origin(self) -> TableOrigin {
         self.origin
+    }
+
+    /// The same rows with other cells.
+    pub(crate) fn with_cells(&self, file: String, layout: Layout, text: String, ends: Vec<usize>) -> Self {
+        let head = Head::new(file, self.stored.clone(), layout, self.reading.clone());
+        let origin = TableOrigin { head, lines: self.lines.clone(), left_out: self.left_out.clone() };
+        Self { origin, text, ends }
     }
 
     pub fn rows(&self) -> usize {

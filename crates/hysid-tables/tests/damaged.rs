@@ -65,3 +65,36 @@ fn damaged_text_is_read_or_refused() {
         }
     }
 }
+
+/// Content in which something stands for every kind of file that has several tables.
+fn several() -> Vec<Vec<u8>> {
+    let row = |k: usize| format!("{k}.5,{},{k},{}", k * k % 7, k % 5);
+    let rows: String = (0..30).map(|k| row(k) + "\n").collect();
+    let numbers =
+        |of: &dyn Fn(usize) -> usize| (0..30).map(|k| of(k).to_string()).collect::<Vec<_>>().join(",");
+    let (line, other) = (numbers(&|k| k), numbers(&|k| k * k % 7));
+    vec![
+        format!("H,M,H,M\n{rows}").into_bytes(),
+        format!("Test 1\na,b,c,d\n{rows}\nTest 2\na,b,c,d\n{rows}e,f\n1,2\n3,4\n5,6\n").into_bytes(),
+        format!("x,{line}\ny,{other}\n").into_bytes(),
+        format!("H,M_up,M_down\n{}", rows.replace(",0\n", "\n").replace(",1\n", "\n")).into_bytes(),
+        format!("{{\"a\": {{\"t\": [{line}], \"x\": [{other}]}}, \"b\": [[1, 2], [3, 4]]}}").into_bytes(),
+        format!("[{{\"t\": 1, \"x\": 2}}, {{\"t\": 3}}, [{line}]]").into_bytes(),
+    ]
+}
+
+#[test]
+fn damaged_files_with_several_tables_are_read_or_refused() {
+    for whole in several() {
+        let mut state = 1;
+        for _ in 0..150 {
+            let mut damaged = whole.clone();
+            for _ in 0..1 + next(&mut state) % 6 {
+                let place = next(&mut state) % damaged.len();
+                damaged[place] = b"\"\n\t,[]{}:#e1 "[next(&mut state) % 13];
+            }
+            damaged.truncate(1 + next(&mut state) % (2 * whole.len()));
+            read(&damaged);
+        }
+    }
+}

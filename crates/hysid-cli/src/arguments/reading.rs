@@ -31,7 +31,7 @@ pub struct ReadingOptions {
     /// Encoding of the text, such as utf-8, windows-1252 or shift_jis [default: detected]
     #[arg(long, value_name = "NAME", hide_short_help = true)]
     pub encoding: Option<TextEncoding>,
-    /// Sheet of a spreadsheet, by its name or number, or variable of a MATLAB file [default: the first sheet that is not empty; all variables]
+    /// Sheet of a spreadsheet or table of a text, by its name or number, or variable of a MATLAB, HDF5, NumPy or JSON file [default: those with equal columns that have the most data]
     #[arg(long, value_name = "NAME", hide_short_help = true)]
     pub sheet: Option<String>,
     /// Use these rows of each table, counted from 1 after the header: FROM:TO, FROM: or :TO

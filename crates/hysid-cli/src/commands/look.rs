@@ -9,6 +9,7 @@ use hysid_document::{Face, object};
 use hysid_files::{Destination, Kind};
 use hysid_records::csv_text;
 use hysid_records::{Data, Roles, TableOverview, understanding};
+use hysid_tables::Table;
 use serde::Serialize;
 
 use crate::Outcome;
@@ -26,6 +27,7 @@ pub fn run(arguments: &Look) -> Result<Outcome> {
         return Err(Usage("--json prints to stdout: name a file for the table with -o".into()).into());
     }
     let tables = read_tables(&arguments.files, &arguments.columns.reading)?;
+    let tables = if arguments.join { vec![Table::joined(&tables)?] } else { tables };
     let roles = Roles::detect(&tables[0], &arguments.columns.choice());
     let looked: Vec<TableOverview> =
         tables.iter().map(|table| TableOverview::of(table, roles.as_ref().ok(), Face::Terminal)).collect();

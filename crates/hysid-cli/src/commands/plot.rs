@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use hysid::model::Model;
 use hysid_files::{Destination, Kind};
 use hysid_records::{Roles, explained};
-use hysid_tables::{Rows, is_json};
+use hysid_tables::{Rows, is_model};
 
 use crate::Outcome;
 use crate::arguments::Plot;
@@ -56,7 +56,7 @@ fn given(arguments: &Plot) -> Result<(Option<Model>, &[PathBuf])> {
         return Ok((None, &arguments.files));
     }
     let content = files::read(first)?;
-    if !is_json(&content) {
+    if !is_model(&content) {
         return Ok((None, &arguments.files));
     }
     let model = arguments.beginning.of(model_from_bytes(first, content)?)?;

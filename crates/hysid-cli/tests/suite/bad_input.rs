@@ -41,7 +41,7 @@ fn files_that_are_no_table() {
         truncated gzip => : cannot be read: incomplete deflate stream
         spreadsheet => : is a spreadsheet or an archive that cannot be read: it is damaged or cut off
         binary => : is a binary file, not a table of numbers
-        JSON => : is JSON, not CSV (a model file in the place of data?)
+        JSON => : is a JSON file that cannot be read: there is no numeric variable with more than one row (save columns of numbers)
         header only => : has a header but no rows
     "#,
     );
@@ -56,7 +56,7 @@ fn headers() {
         ],
         r#"
         wrong delimiter => , line 1: there is only one column, "t:x:y" (what separates the columns? name it with --delimiter)
-        output alone => : no column is left for the input besides output "y" (columns: t, y)
+        output alone => : no column is left for the input besides output "y" (columns: t, y; input and output in two files? hysid look FILE FILE --join -o both.csv joins them)
     "#,
     );
 }

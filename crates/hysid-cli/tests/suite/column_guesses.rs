@@ -78,8 +78,8 @@ fn columns_that_only_grow_are_refused_where_others_are_left() {
     refused(
         growing("position,x,y"),
         "",
-        "error: data.csv: column \"position\" grows from row to row: name it with --time position, or name input and \
-         output with --input and --output, for instance --input position (columns: position, x, y)",
+        "error: data.csv: column \"position\" grows from row to row: if it is time, --time position --input x --output y \
+         (columns: position, x, y); otherwise name input and output",
     );
     told(growing("position,x,y"), "--time position", &["time     position"]);
     told(growing("position,x,y"), "--input position --input x", &["input    position: "]);
@@ -100,7 +100,7 @@ fn command_and_measurement_are_not_both_inputs() {
         data.clone(),
         "",
         "error: data.csv: columns \"command\" and \"measured\" are nearly the same signal (correlation 0.9999), such as a \
-         command and its measurement: name the input with --input command or --input measured",
+         command and its measurement: name the input with --input measured --output y or --input command --output y",
     );
     told(data, "--input measured", &["input    measured: "]);
     let data = table("t,x,temperature,y", |_, [t, x, y]| texts(&[&t, &x, &sin(1.3 * t), &y]));
@@ -115,11 +115,14 @@ fn many_columns_are_not_all_inputs() {
         let gauges = (0..60).map(|gauge| (x + sin(0.1 * f64::from(gauge) * t)).to_string());
         std::iter::once(t.to_string()).chain(gauges).chain([y.to_string()]).collect()
     });
-    let names = "gauge_1, gauge_2, gauge_3, gauge_4, gauge_5, gauge_6 and 54 more";
+    let names = "gauge_1, gauge_2, gauge_3, gauge_4, gauge_5 and 55 more";
+    let instance = "for instance --input gauge_1 --output force_kN";
     refused(
         data.clone(),
         "",
-        &format!("error: data.csv: 60 columns could be inputs: name them with --input ({names})"),
+        &format!(
+            "error: data.csv: 60 columns could be inputs: name them with --input, {instance} (columns: {names})"
+        ),
     );
     told(data, "--input gauge_7", &["input    gauge_7: ", "output   force_kN: "]);
 }
@@ -226,4 +229,25 @@ fn what_names_and_values_do_not_tell_is_asked() {
     let by_place = "warning: data.csv: the names do not tell input and output: \"c\" is taken for the output";
     told(unknown("t,a,b,c"), "", &[by_place, "input    a: ", "output   c: "]);
     told(unknown("t,x1,x2,y"), "--rate none", &["input    x1: ", "output   y: "]);
+}
+
+/// A temperature is measured, with noise, and kept.
+#[test]
+fn a_measured_column_of_records_is_divided_by_its_plateaus() {
+    let data = table("T_K,x,y", |k, [_, x, y]| {
+        texts(&[&(if k < 40 { 5.0 } else { 300.0 } + 0.01 * sin(40.0 * k as f64)), &x, &y])
+    });
+    told(data, "--record T_K", &["all scored, in 2 records: data (1), data (2)"]);
+}
+
+#[test]
+fn a_hint_names_a_pair_that_belongs_together() {
+    let header = "Disp A (mm),Force A (kN),Disp B (mm),Force B (kN)";
+    let data = table(header, |_, [t, x, y]| texts(&[&x, &y, &sin(1.3 * t), &cos(1.7 * t)]));
+    refused(
+        data,
+        "",
+        "error: data.csv: \"Force A (kN)\" and \"Force B (kN)\" could both be the output: name input and output, for \
+         instance --input 'Disp B (mm)' --output 'Force B (kN)'",
+    );
 }

@@ -62,7 +62,7 @@ index-unnamed.csv index-without-name.txt matlab-5.mat matlab-7.3.mat matlab-stru
 missing-dash.csv missing-empty.csv missing-na.csv missing-nan.csv missing-null.csv plain.csv: t | x | y
 plus-signs.csv quoted-decimal-comma.csv quoted.csv record-column.csv status-column.csv text-behind.csv: t | x | y
 time-restarting.csv trailing-delimiter.csv windows-lines.csv: t | x | y
-blanks-comma.dat excel.xlsx semicolon-comma.csv semicolon-point.csv tab-comma.txt tab.txt: Time (s) | Displacement (mm) | Force (kN)
+blanks-comma.dat excel-second-sheet.xlsx excel.xlsx semicolon-comma.csv semicolon-point.csv tab-comma.txt tab.txt: Time (s) | Displacement (mm) | Force (kN)
 chinese.csv gbk.csv: 时间(s) | 位移(mm) | 荷载(kN)
 cp1251.csv russian.csv: Время, с | Перемещение, мм | Сила, кН
 duplicate-names.csv: t | Channel | Channel (2)
@@ -100,19 +100,12 @@ const IN_OTHER_UNITS: [(&str, [&str; 3], [f64; 3]); 5] = [
 ];
 
 /// Files that are refused with a hint, and read with the option that it names.
-const HINTED: [(&str, &str, &str, [&str; 3]); 7] = [
+const HINTED: [(&str, &str, &str, [&str; 3]); 5] = [
     ("colons.txt", "name it with --delimiter", "--delimiter :", ["t", "x", "y"]),
     ("command-and-measured.csv", "with --input", "--input measured", ["t", "measured", "y"]),
-    (
-        "excel-second-sheet.xlsx",
-        "choose another sheet with --sheet: Data",
-        "--sheet Data",
-        ["Time (s)", "Displacement (mm)", "Force (kN)"],
-    ),
-    ("growing-column.csv", "with --time", "--time position", ["position", "x", "y"]),
+    ("growing-column.csv", "if it is time, --time position", "--time position", ["position", "x", "y"]),
     ("many-columns.csv", "name them with --input", "--input x", ["t", "x", "y"]),
     ("missing-word.csv", "--missing overflow", "--missing overflow", ["t", "x", "y"]),
-    ("two-tables.csv", "with --rows 1:48", "--rows 1:48", ["t", "x", "y"]),
 ];
 
 #[test]
@@ -341,4 +334,88 @@ fn what_comes_from_standard_input_is_called_data() {
         assert_eq!(ran.status, Some(0), "{command}: {}", ran.stderr);
         assert!(bench.path(file).exists(), "{command}: {}", ran.stderr);
     }
+}
+
+/// The output goes on where the input of the other file is.
+#[test]
+fn input_and_output_in_two_files_are_joined() {
+    let bench = Workbench::new();
+    let (_, truth) = columns(&fs::read_to_string(path("plain.csv")).unwrap());
+    let file = |place: usize| -> String {
+        truth[0].iter().zip(&truth[place]).map(|(t, value)| format!("{t} {value}\n")).collect()
+    };
+    bench.put("Disp.out", file(1));
+    bench.put("RFrc.out", file(2));
+    let refused = bench.run("look Disp.out RFrc.out");
+    must_contain(refused.last_line(), &["(hysid look Disp.out RFrc.out --join -o both.csv joins"]);
+    let ran = bench.run("look Disp.out RFrc.out --join -o clean.csv");
+    check(&bench, &ran, "Disp.out", &["t", "Disp", "RFrc"], [1.0; 3]);
+}
+
+#[test]
+fn several_tables_of_a_file_are_records() {
+    let bench = Workbench::new();
+    let ran = bench.succeeds(&format!("look {}", path("two-tables.csv")));
+    must_contain(
+        &ran.stdout,
+        &["text, UTF-8, table 1, table 2;", "51, all scored, in 2 records: table 1, table 2"],
+    );
+    check(&bench, &look(&bench, "two-tables.csv", "--sheet 1"), "two-tables.csv", &["t", "x", "y"], [1.0; 3]);
+    let refused = look(&bench, "two-tables.csv", "--sheet 3");
+    assert!(
+        refused.last_line().ends_with("no table \"3\" for --sheet (tables: table 1, table 2)"),
+        "{refused}"
+    );
+    // A loop with names of its own is more than a summary; an error names the line of the file.
+    let rows = |scale: f64| -> String {
+        (0..40)
+            .map(|k| {
+                format!("{:.3}\t{:.3}\n", sin(0.3 * f64::from(k)), scale * sin(0.3 * f64::from(k) - 0.2))
+            })
+            .collect()
+    };
+    let text = format!(
+        "Results\nNo\tVc [V]\tPr [C/m2]\n1\t0.5\t2\n2\t0.6\t3\n3\t0.7\t4\n\nSample A\nV [V]\tP [C/m2]\n{}\nSample B\n\
+         V [V]\tP [C/m2]\n{}",
+        rows(1.0),
+        rows(2.0)
+    );
+    bench.put("tester.dat", &text);
+    let ran = bench.succeeds("look tester.dat");
+    must_contain(
+        &ran.stdout,
+        &["left out table 1 (3 rows)", "80, all scored, in 2 records: table 2, table 3"],
+    );
+    bench.put(
+        "tester.dat",
+        text.replacen("Sample B\nV [V]\tP [C/m2]\n0.000", "Sample B\nV [V]\tP [C/m2]\n?", 1),
+    );
+    let refused = bench.run("look tester.dat");
+    assert!(
+        refused.last_line().starts_with("error: tester.dat, line 52, column \"V [V]\": \"?\""),
+        "{refused}"
+    );
+}
+
+#[test]
+fn loops_side_by_side_and_lying_tables_are_read() {
+    let bench = Workbench::new();
+    let x = |k: usize| sin(0.3 * k as f64);
+    let loops: String =
+        (0..40).map(|k| format!("{:.3},{:.3},{:.3},{:.3}\n", x(k), x(k + 1), 2.0 * x(k), x(k + 2))).collect();
+    for (header, records) in [
+        ("H (Oe),M (emu),H (Oe),M (emu)", "2 records: 1, 2"),
+        ("up,,down,\nH (Oe),M (emu),H (Oe),M (emu)", "2 records: up, down"),
+    ] {
+        bench.put("pairs.csv", format!("{header}\n{loops}"));
+        let ran = bench.succeeds("look pairs.csv");
+        must_contain(&ran.stdout, &["text, UTF-8, 2 groups of columns;", records]);
+    }
+    bench.put("stages.csv", format!("Raw,Raw,Adjusted,Adjusted\nField,Moment,Field,Moment\n{loops}"));
+    must_contain(&bench.succeeds("look stages.csv").stdout, &["Adjusted Field    input", "in 1 record"]);
+    let row =
+        |of: &dyn Fn(usize) -> f64| (0..60).map(|k| format!("{:.3}", of(k))).collect::<Vec<_>>().join(",");
+    bench.put("lying.csv", format!("x,{}\ny,{}\n", row(&x), row(&|k| 2.0 * x(k))));
+    let ran = bench.succeeds("look lying.csv");
+    must_contain(&ran.stdout, &["its rows as columns", "rows     60", "x        input", "y       output"]);
 }

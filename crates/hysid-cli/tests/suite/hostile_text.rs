@@ -178,7 +178,7 @@ fn many_records_and_columns_are_read_quickly_and_told_briefly() {
     let refused = bench.run("diagnose columns.csv --no-report");
     assert_eq!(
         refused.stderr,
-        "error: columns.csv: 4999 columns could be inputs: name them with --input (c0, c1, c2, c3, c4, c5 and 4993 more)\n"
+        "error: columns.csv: 4999 columns could be inputs: name them with --input, for instance --input c0 --output c4999 (columns: c0, c1, c2, c3, c4 and 4994 more)\n"
     );
     quickly(
         "fit columns.csv --input c5 --input c7 -o c.json --model xpnn+ --starts 1 --epochs 1 --no-report",

@@ -19,6 +19,7 @@ mod hostile_text;
 mod how_to;
 mod ignored_options;
 mod initial_state;
+mod instruments;
 mod invert;
 mod long_tables;
 #[cfg(target_os = "linux")]

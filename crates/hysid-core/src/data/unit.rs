@@ -123,6 +123,10 @@ pub fn split(name: &str) -> (&str, Option<String>) {
         if let Some(inner) = name.strip_suffix(close)
             && let Some((quantity, unit)) = inner.rsplit_once(open)
         {
+            // The number of an equal name, such as `H (Oe) (2)`.
+            if !unit.is_empty() && unit.bytes().all(|byte| byte.is_ascii_digit()) {
+                return split(quantity);
+            }
             let unit = Some(unit.trim().to_string()).filter(|unit| !unit.is_empty() && unit != "-");
             return (quantity.trim_end_matches([' ', '_']), unit);
         }
@@ -200,10 +204,11 @@ mod tests {
             ("t_µs", "µs"),
             ("Force, kN", "kN"),
             ("Сила, кН", "кН"),
+            ("H (Oe) (2)", "Oe"),
         ] {
             assert_eq!(of_column(name).as_deref(), Some(unit), "{name}");
         }
-        for name in ["V", "x", "force", "V_in", "x_1", "ratio [-]", "_s"] {
+        for name in ["V", "x", "force", "V_in", "x_1", "ratio [-]", "_s", "x (2)"] {
             assert_eq!(of_column(name), None, "{name}");
         }
     }

@@ -18,6 +18,9 @@ use super::values::{self, TimeCheck, ValueStatistics, numbers};
 /// More columns than this are not all inputs.
 const MOST_INPUTS: usize = 4;
 
+/// Most columns that a question lists.
+const MOST_CANDIDATES: usize = 5;
+
 /// Values are not looked at in a table with more free columns than this.
 const MOST_READ: usize = 200;
 
@@ -184,7 +187,11 @@ impl<'t> Guess<'t> {
             let is_time = unit::may_be_time(name) && self.time.is_none() && !self.no_time;
             return doubt(
                 Rank::Text,
-                if is_time { "text, and no time stamp that Hysid reads" } else { "text" },
+                match is_time {
+                    true => "text, and no time stamp that Hysid reads",
+                    false if self.is_empty(name) => "empty",
+                    false => "text",
+                },
             );
         };
         if unit::may_be_time(name) && seen.running == TimeCheck::No && kind == ColumnKind::Unknown {
@@ -232,6 +239,12 @@ impl<'t> Guess<'t> {
             {
                 doubt(Rank::Kept, "few values, each kept for many rows: a condition")
             }
+            ColumnKind::Drives(Domain::Mechanics) | ColumnKind::Follows(Domain::Mechanics)
+                if self.has(ColumnKind::Drives(Domain::Magnetism))
+                    && self.free.iter().any(|name| kind::is_moment(name)) =>
+            {
+                doubt(Rank::Derived, "about the magnetometer, beside field and moment")
+            }
             // Resistance is calculated where voltage and current are there.
             ColumnKind::Unknown if kind::words(name).iter().any(|word| word == "resistance") => {
                 let drives =
@@ -249,6 +262,11 @@ impl<'t> Guess<'t> {
         }
     }
 
+    fn is_empty(&self, name: &str) -> bool {
+        let place = self.table.column(name).unwrap_or_default();
+        (0..self.table.rows()).all(|row| self.table.cell(row, place).trim().is_empty())
+    }
+
     fn has(&self, kind: ColumnKind) -> bool {
         self.free.iter().any(|name| ColumnKind::of(name) == kind)
     }
@@ -262,13 +280,17 @@ impl<'t> Guess<'t> {
         let unclear =
             seen.iter().find(|(name, seen)| self.free.contains(name) && seen.as_ref().is_some_and(grows));
         let Some((name, _)) = unclear else { return Ok(()) };
-        let time = match self.time {
-            None => Words::from("name it with ") + Hint::Value("time", (*name).clone()) + ", or ",
-            Some(_) => Words::default(),
-        };
-        let words = Words::from(format!("column \"{}\" grows from row to row: ", clipped(name))) + time;
-        let words = words + "name input and output with " + Hint::Option("input") + " and ";
-        Err(Problem::in_file(&self.table.file, words + Hint::Option("output") + self.columns()))
+        let pair = self.columns(Some(name));
+        let words = Words::from(format!("column \"{}\" grows from row to row: ", clipped(name)));
+        let words = words
+            + match self.time {
+                None if unit::of_column(name).is_none() => {
+                    let time = Words::from("if it is time, ") + Hint::Value("time", (*name).clone()) + " ";
+                    time + pair + "; otherwise name input and output"
+                }
+                _ => Words::from("name input and output, for instance ") + pair,
+            };
+        Err(Problem::in_file(&self.table.file, words))
     }
 
     /// Refuses more than two columns that have no more than numbers for names.
@@ -283,8 +305,7 @@ impl<'t> Guess<'t> {
     /// Takes the last column; names that say otherwise are a question, or a note where the table is in the documented order.
     fn guess_output(&mut self, follows_the_order: bool) -> Result<()> {
         let Some(last) = self.free.last().copied() else { return Ok(()) };
-        let follows: Vec<&'t String> =
-            self.free.iter().filter(|name| ColumnKind::of(name).follows()).copied().collect();
+        let follows = self.follows();
         let mut output = last;
         if self.free.len() > 1 {
             match (follows.as_slice(), ColumnKind::of(last)) {
@@ -306,6 +327,10 @@ impl<'t> Guess<'t> {
                     if !follows_the_order {
                         return Err(self.against_the_order(one, last));
                     }
+                    self.note = Some(self.order_believed(one, last));
+                }
+                // The other column may be anything.
+                ([one], ColumnKind::Unknown) if *one != last && !kind::are_documented(&self.free) => {
                     self.note = Some(self.order_believed(one, last));
                 }
                 ([], kind) if !self.has_inputs() => {
@@ -332,14 +357,49 @@ impl<'t> Guess<'t> {
         Ok(())
     }
 
+    /// Columns that are outputs by their names. A pressure beside field and moment is none: nothing of its branch of physics
+    /// drives it.
+    fn follows(&self) -> Vec<&'t String> {
+        let all = self.free.iter().copied().filter(|name| ColumnKind::of(name).follows());
+        let is_driven = |name: &&&String| match ColumnKind::of(name) {
+            ColumnKind::Follows(domain) => self.has(ColumnKind::Drives(domain)),
+            _ => false,
+        };
+        let all: Vec<&'t String> = all.collect();
+        let driven: Vec<&'t String> = all.iter().filter(is_driven).copied().collect();
+        if driven.is_empty() { all } else { driven }
+    }
+
     fn against_the_order(&self, one: &str, last: &str) -> Problem {
         let words = Words::from(format!(
             "\"{}\" is the last column, but \"{}\" looks more like the output: choose with ",
             clipped(last),
             clipped(one),
         ));
-        let output = |name: &str| Hint::Value("output", name.into());
-        Problem::in_file(&self.table.file, words + output(one) + " or " + output(last))
+        // Of more than two columns, the input must be named too.
+        let choice = |output: &str| match self.input_of(output, None).filter(|_| self.free.len() > 2) {
+            Some(input) => {
+                Words::from(Hint::Value("input", input.clone())) + " " + Hint::Value("output", output.into())
+            }
+            None => Hint::Value("output", output.into()).into(),
+        };
+        Problem::in_file(&self.table.file, words + choice(one) + " or " + choice(last))
+    }
+
+    /// The likeliest input of an output: what drives its branch of physics, or anything, or another column.
+    fn input_of(&self, output: &str, avoided: Option<&str>) -> Option<&String> {
+        let others =
+            || self.free.iter().copied().filter(|name| *name != output && avoided != Some(name.as_str()));
+        let of_domain = |name: &&String| match ColumnKind::of(output) {
+            ColumnKind::Follows(domain) => ColumnKind::of(name) == ColumnKind::Drives(domain),
+            _ => false,
+        };
+        self.inputs
+            .first()
+            .or_else(|| alike(output, others().filter(of_domain)))
+            .or_else(|| alike(output, others().filter(|name| ColumnKind::of(name).drives())))
+            .or_else(|| others().find(|name| !ColumnKind::of(name).follows()))
+            .or_else(|| others().next())
     }
 
     fn order_believed(&self, one: &str, last: &str) -> Words {
@@ -383,9 +443,7 @@ impl<'t> Guess<'t> {
     }
 
     fn is_first_nameless(&self, name: &str) -> bool {
-        self.table.layout.header_lines.is_empty()
-            && self.time.is_none()
-            && self.table.header.first().is_some_and(|first| first == name)
+        self.table.layout.header_lines.is_empty() && self.time.is_none() && name == "c1"
     }
 
     fn set_aside(&mut self, name: &str, reason: Words) -> bool {
@@ -402,8 +460,10 @@ impl<'t> Guess<'t> {
             return Ok(());
         }
         let words = Words::from(format!("{} columns could be inputs: name them with ", self.free.len()));
-        let words = (words + Hint::Option("input")).advised(listed(&self.free));
-        Err(Problem::in_file(&self.table.file, words))
+        Err(Problem::in_file(
+            &self.table.file,
+            words + Hint::Option("input") + ", for instance " + self.columns(None),
+        ))
     }
 
     fn refuse_alike(&self) -> Result<()> {
@@ -418,8 +478,13 @@ impl<'t> Guess<'t> {
                         clipped(other),
                         clipped(name),
                     ));
-                    let input = |name: &str| Hint::Value("input", name.into());
-                    let words = words + input(other) + " or " + input(name);
+                    let output = self.output.iter().map(|output| Hint::Value("output", output.clone()));
+                    let input = |name: &str| {
+                        let input = Words::from(Hint::Value("input", name.into()));
+                        output.clone().fold(input, |words, output| words + " " + output)
+                    };
+                    let (first, second) = if kind::is_command(other) { (name, other) } else { (other, name) };
+                    let words = words + input(first) + " or " + input(second);
                     return Err(Problem::in_file(&self.table.file, words));
                 }
             }
@@ -515,26 +580,43 @@ impl<'t> Guess<'t> {
 
     /// A question, with the options that decide it.
     fn question(&self, words: &str) -> Problem {
-        let words = Words::from(format!("{words}: name input and output")) + self.columns();
+        let words =
+            Words::from(format!("{words}: name input and output, for instance ")) + self.columns(None);
         Problem::in_file(&self.table.file, words)
     }
 
-    /// Options that name likely columns, ready to be pasted, or all columns.
-    fn columns(&self) -> Words {
-        let free = || self.free.iter().copied();
-        let input = self.inputs.first().or(free().find(|name| ColumnKind::of(name).drives()));
-        let output = self.output.as_ref().or(free().rfind(|name| ColumnKind::of(name).follows()));
-        match (input, output) {
-            (Some(input), Some(output)) if input != output => {
-                let (input, output) =
-                    (Hint::Value("input", input.clone()), Hint::Value("output", output.clone()));
-                Words::from(", for instance ") + input + " " + output
-            }
-            _ => {
-                let first = free().next().map(|name| Hint::Value("input", name.clone()).into());
-                let words = Words::from(", for instance ") + first.unwrap_or(Words::default());
-                words.advised(format!("columns: {}", listed(&self.table.header)))
-            }
+    /// Options that name the likeliest columns, ready to be pasted, and the others that may be meant.
+    fn columns(&self, avoided: Option<&str>) -> Words {
+        let mut free = self.free.clone();
+        let is_meant = |name: &&String| avoided != Some(name.as_str());
+        let of_follows = self.follows().into_iter().rfind(is_meant);
+        let output = self.output.as_ref().or(of_follows).or(free.iter().copied().rfind(is_meant));
+        let Some((input, output)) = output.and_then(|output| Some((self.input_of(output, avoided)?, output)))
+        else {
+            return Words::default();
+        };
+        let pair = Words::from(Hint::Value("input", input.clone())) + " ";
+        let pair = pair + Hint::Value("output", output.clone());
+        if ColumnKind::of(input).drives() && ColumnKind::of(output).follows() {
+            return pair;
         }
+        free.sort_by_key(|name| !ColumnKind::of(name).drives());
+        let more = match free.len().saturating_sub(MOST_CANDIDATES) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        free.truncate(MOST_CANDIDATES);
+        pair.advised(format!("columns: {}{more}", listed(&free)))
     }
+}
+
+/// The name that has the most words in common with another, such as `Disp B` with `Force B`; the first of equals.
+fn alike<'n>(name: &str, others: impl Iterator<Item = &'n String>) -> Option<&'n String> {
+    let words = |name: &str| -> Vec<String> {
+        let words = name.split(|letter: char| !letter.is_alphanumeric());
+        words.filter(|word| !word.is_empty()).map(str::to_lowercase).collect()
+    };
+    let own = words(name);
+    let common = |other: &str| words(other).iter().filter(|word| own.contains(word)).count();
+    others.reduce(|best, other| if common(other) > common(best) { other } else { best })
 }

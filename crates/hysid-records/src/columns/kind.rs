@@ -42,7 +42,7 @@ const CONDITIONS: &str = "temperature temp temperatur température temperatura �
 
 /// Words of sums.
 const INTEGRALS: &str = "capacity capacité kapazität capacidad 容量 energy energie énergie energía энергия 能量 work \
-    dissipated dissipation cumulative cumulated accumulated damage ah mah wh mwh kwh";
+    dissipated dissipation cumulative cumulated accumulated damage ah mah wh mwh kwh qo";
 
 /// Units of sums, and of rates of change.
 const UNITS_OF_SUMS: [&str; 12] =
@@ -57,7 +57,7 @@ const DERIVED: &str = "power stiffness damping modulus permeability efficiency c
 
 /// Words about a measurement.
 const STATISTICS: &str = "std stdev stddev stderr err error sigma uncertainty deviation dev quality fit chi status state flag \
-    range gain harmonic overload valid averages averaging offset limit mode";
+    range gain harmonic overload valid averages averaging offset limit mode min max minimum maximum lag quad coil";
 
 /// Words of inputs, beside those of [`UsualRole::of`].
 const DRIVES: &[(Domain, &str)] = &[
@@ -74,7 +74,8 @@ const DRIVES: &[(Domain, &str)] = &[
 const FOLLOWS: &[(Domain, &str)] = &[
     (
         Domain::Mechanics,
-        "forces loads stresses shear axialforce standardkraft loadcell vwc moisture saturation",
+        "forces loads stresses shear axialforce standardkraft loadcell rf reaction vwc moisture saturation adsorption \
+      adsorbed desorption uptake",
     ),
     (Domain::Magnetism, "magnetisation magnetization magnetic_moment emu kerr flux polarisation"),
     (Domain::Electricity, "polarization polarisation charge displacement_field"),
@@ -83,6 +84,10 @@ const FOLLOWS: &[(Domain, &str)] = &[
 /// Units of magnetic moments and magnetizations, without blanks and signs.
 const MAGNETIC_UNITS: [&str; 10] =
     ["emu", "memu", "uemu", "emug", "emucc", "emucm3", "am2", "am2kg", "mam2", "μemu"];
+
+/// Words of commands.
+const COMMANDS: [&str; 9] =
+    ["command", "cmd", "control", "setpoint", "target", "demand", "desired", "reference", "soll"];
 
 /// Words of raw data, and of the data made of them.
 const RAW: [&str; 5] = ["raw", "uncorrected", "unfiltered", "uncalibrated", "roh"];
@@ -231,6 +236,19 @@ pub fn is_current(name: &str) -> bool {
     }
 }
 
+/// True for the moment that a magnetometer measures, beside which a position or a pressure is no input or output.
+pub fn is_moment(name: &str) -> bool {
+    let plain =
+        |unit: String| unit.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
+    let unit = unit::split(name).1.map(plain);
+    unit.is_some_and(|unit| MAGNETIC_UNITS.contains(&unit.replace('μ', "u").as_str()))
+}
+
+/// True for a command, beside which its measurement is the input.
+pub fn is_command(name: &str) -> bool {
+    words(name).iter().any(|word| COMMANDS.contains(&word.as_str()))
+}
+
 /// True for a name that is no more than the number of a channel.
 pub fn is_channel(name: &str) -> bool {
     let letters: String = name.chars().filter(|c| c.is_alphabetic()).collect::<String>().to_lowercase();
@@ -248,8 +266,10 @@ pub fn are_documented(names: &[&String]) -> bool {
     begins(output, &['y']) && inputs.iter().all(|input| begins(input, &['x', 'u']))
 }
 
-/// The column made of a raw one, by its name: `Adjusted Moment` of `Raw Moment`.
+/// The column made of a raw one, by its name: `Adjusted Moment` of `Raw Moment`, or `Moment` of `M. Raw`.
 pub fn made_of<'n>(raw: &str, names: &[&'n String]) -> Option<&'n String> {
+    let kind = ColumnKind::of(raw);
+    let is_raw = |words: &[String]| words.iter().any(|word| RAW.contains(&word.as_str()));
     let raw = words(raw);
     let rest = |words: &[String], qualifiers: &[&str]| -> Option<Vec<String>> {
         let rest: Vec<String> =
@@ -257,7 +277,9 @@ pub fn made_of<'n>(raw: &str, names: &[&'n String]) -> Option<&'n String> {
         (rest.len() < words.len()).then_some(rest)
     };
     let wanted = rest(&raw, &RAW)?;
-    names.iter().find(|name| rest(&words(name), &MADE).is_some_and(|rest| rest == wanted)).copied()
+    let adjusted = names.iter().find(|name| rest(&words(name), &MADE).is_some_and(|rest| rest == wanted));
+    let is_other = |name: &&&String| kind.follows() && ColumnKind::of(name) == kind && !is_raw(&words(name));
+    adjusted.or_else(|| names.iter().find(is_other)).copied()
 }
 
 /// The words of a name, lower case.

@@ -185,6 +185,18 @@ pub fn changes(values: &[f64]) -> Vec<usize> {
     std::iter::once(0).chain(levels.windows(2).filter(is_other).map(|pair| pair[0].end)).collect()
 }
 
+/// Rows of each plateau of a column of measured numbers that is to tell records apart, such as a temperature; `None` for
+/// names and whole numbers.
+pub fn plateaus(table: &Table, name: &str) -> Option<Vec<Range<usize>>> {
+    let values = numbers(table, name)?;
+    let seen = ValueStatistics::of(&values, std::slice::from_ref(&(0..values.len())));
+    if seen.is_whole || !seen.is_kept {
+        return None;
+    }
+    let begins: Vec<usize> = changes(&values).into_iter().chain([values.len()]).collect();
+    Some(begins.windows(2).map(|pair| pair[0]..pair[1]).collect())
+}
+
 fn is_held(values: &[f64]) -> bool {
     let (low, high) = range(values);
     if values.len() < LEAST_KEPT || high - low > HELD * low.abs().min(high.abs()) {

@@ -1,4 +1,4 @@
-//! A sheet of a spreadsheet as text: a line for each row, cells separated by tabs.
+//! The sheets of a spreadsheet as text: a line for each row, cells separated by tabs.
 
 mod archive;
 mod compound;
@@ -10,7 +10,9 @@ use std::io::Cursor;
 use calamine::{Data, ExcelDateTime, Ods, OdsError, Range, Reader, Xls, XlsError, Xlsx, XlsxError};
 
 use super::budget::{Budget, DAMAGED};
+use super::{TextSheet, push_words};
 use crate::number::shortest;
+use hysid_document::visible::{clipped, listed};
 
 /// How compound files begin, such as `.xls`.
 pub const COMPOUND: &[u8] = b"\xd0\xcf\x11\xe0";
@@ -20,8 +22,8 @@ const ENCRYPTED_PART: &[u8] = b"E\0n\0c\0r\0y\0p\0t\0e\0d\0P\0a\0c\0k\0a\0g\0e\0
 
 const ENCRYPTED: &str = "it is encrypted: save it without a password";
 
-/// The text of a sheet, its name, and the names of the others; the first that is not empty if none is chosen. Line `n` is row `n` of the sheet.
-pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<Sheet, String> {
+/// The sheets that are not empty, or the one that is chosen. Line `n` of a text is row `n` of the sheet.
+pub fn sheets(bytes: Vec<u8>, chosen: Option<String>) -> Result<Vec<TextSheet>, String> {
     let budget = Budget::of(bytes.len());
     budget.run(move || {
         if bytes.starts_with(COMPOUND) {
@@ -29,25 +31,28 @@ pub fn text(bytes: Vec<u8>, chosen: Option<String>) -> Result<Sheet, String> {
             if bytes.windows(ENCRYPTED_PART.len()).any(|part| part == ENCRYPTED_PART) {
                 return Err(ENCRYPTED.into());
             }
-            return sheet::<Xls<_>, _>(bytes, chosen.as_deref(), |error| matches!(error, XlsError::Password));
+            return of_book::<Xls<_>, _>(bytes, chosen.as_deref(), |error| {
+                matches!(error, XlsError::Password)
+            });
         }
         let (bytes, kind) = archive::checked(&bytes)?;
         match kind {
             archive::SpreadsheetKind::Excel => {
-                sheet::<Xlsx<_>, _>(bytes, chosen.as_deref(), |error| matches!(error, XlsxError::Password))
+                of_book::<Xlsx<_>, _>(bytes, chosen.as_deref(), |error| matches!(error, XlsxError::Password))
             }
             archive::SpreadsheetKind::OpenDocument => {
-                sheet::<Ods<_>, _>(bytes, chosen.as_deref(), |error| matches!(error, OdsError::Password))
+                of_book::<Ods<_>, _>(bytes, chosen.as_deref(), |error| matches!(error, OdsError::Password))
             }
         }
     })
 }
 
-/// The text of a sheet, its name, and the names of the others.
-pub type Sheet = (String, String, Vec<String>);
-
-/// As [`text`], of a file whose declared sizes do not exceed its content.
-fn sheet<R, E>(bytes: Vec<u8>, chosen: Option<&str>, is_encrypted: fn(&E) -> bool) -> Result<Sheet, String>
+/// As [`sheets`], of a file whose declared sizes do not exceed its content.
+fn of_book<R, E>(
+    bytes: Vec<u8>,
+    chosen: Option<&str>,
+    is_encrypted: fn(&E) -> bool,
+) -> Result<Vec<TextSheet>, String>
 where
     R: Reader<Cursor<Vec<u8>>, Error = E>,
     E: std::fmt::Debug + std::fmt::Display + From<std::io::Error>,
@@ -55,25 +60,26 @@ where
     let in_words = |error: E| if is_encrypted(&error) { ENCRYPTED } else { DAMAGED };
     let mut book = R::new(Cursor::new(bytes)).map_err(in_words)?;
     let names = book.sheet_names();
-    let listed = || names.join(", ");
-    let mut sheet = |name: &str| book.worksheet_range(name).map_err(|error| format!("sheet {name}: {error}"));
-    if let Some(chosen) = chosen {
-        let by_number = chosen.parse::<usize>().ok().and_then(|number| names.get(number.checked_sub(1)?));
-        let name = names.iter().find(|name| *name == chosen).or(by_number);
-        let name = name.ok_or_else(|| format!("there is no sheet \"{chosen}\" (sheets: {})", listed()))?;
-        return Ok((lines(&sheet(name)?), name.clone(), others(&names, name)));
-    }
-    for name in &names {
-        let range = sheet(name)?;
-        if !range.is_empty() {
-            return Ok((lines(&range), name.clone(), others(&names, name)));
+    let names = match chosen {
+        Some(chosen) => {
+            let by_number = chosen.parse::<usize>().ok().and_then(|number| names.get(number.checked_sub(1)?));
+            let name = names.iter().find(|name| *name == chosen).or(by_number);
+            vec![name.ok_or_else(|| {
+                format!("there is no sheet \"{}\" (sheets: {})", clipped(chosen), listed(&names))
+            })?]
+        }
+        None => names.iter().collect(),
+    };
+    let mut sheets = Vec::new();
+    for name in names {
+        let range =
+            book.worksheet_range(name).map_err(|error| format!("sheet {}: {error}", clipped(name)))?;
+        if !range.is_empty() || chosen.is_some() {
+            let described = format!("sheet {}", clipped(name));
+            sheets.push(TextSheet { name: name.clone(), described, text: lines(&range) });
         }
     }
-    Err("all its sheets are empty".into())
-}
-
-fn others(names: &[String], chosen: &str) -> Vec<String> {
-    names.iter().filter(|name| *name != chosen).cloned().collect()
+    if sheets.is_empty() { Err("all its sheets are empty".into()) } else { Ok(sheets) }
 }
 
 fn lines(range: &Range<Data>) -> String {
@@ -100,17 +106,6 @@ fn push(text: &mut String, cell: &Data) {
         Data::DateTime(date) => text.push_str(&stamp(date)),
         Data::Error(_) => text.push_str("#N/A"),
         Data::String(words) | Data::DateTimeIso(words) | Data::DurationIso(words) => push_words(text, words),
-    }
-}
-
-/// Words in quotation marks where they have a character that divides.
-fn push_words(text: &mut String, words: &str) {
-    if words.contains(['\t', '\n', '\r', '"']) {
-        text.push('"');
-        text.push_str(&words.replace('"', "\"\""));
-        text.push('"');
-    } else {
-        text.push_str(words);
     }
 }
 

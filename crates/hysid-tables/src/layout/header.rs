@@ -30,6 +30,18 @@ pub struct Header {
     pub units_line: Option<u64>,
     /// The last column has a name of its own.
     pub names_last: bool,
+    pub groups: Option<ColumnGroups>,
+}
+
+/// Columns whose names come again and again, as of loops side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnGroups {
+    /// Columns before the groups, which belong to each of them.
+    pub shared: usize,
+    /// Names of the shared columns and of a group.
+    pub names: Vec<String>,
+    /// A name for each group.
+    pub labels: Vec<String>,
 }
 
 /// A line above the rows.
@@ -50,17 +62,29 @@ impl Header {
     /// Names that do not fit the rows.
     pub fn above(file: &str, lines: &[TextLine<'_>], run: &LineRun, has_units: bool) -> Result<Self> {
         let mut rows: Vec<HeaderLine> = Vec::new();
+        let names = names_above_remarks(lines, run);
         for (place, line) in lines[..run.lines.start].iter().enumerate().rev() {
+            let is_remark = names.is_some_and(|names| place > names);
             if line.is_blank() && rows.is_empty() {
                 continue;
             }
-            let is_comment_above = line.is_comment && !rows.is_empty();
-            if line.is_blank() || is_comment_above || rows.len() == MOST_LINES {
+            if line.is_blank() || rows.len() == MOST_LINES {
                 break;
             }
             let cells = split(line.content(), run.delimiter);
-            match row(line, &cells, run, is_first(lines, place)) {
+            let fit = row(line, &cells, run, is_first(lines, place));
+            match fit {
+                // Between the names and the rows, only units count.
+                HeaderFit::Row(row) if is_remark && !are_units(&row.cells) => {}
+                // Of a comment above others, only names above units.
+                HeaderFit::Row(row)
+                    if line.is_comment && rows.last().is_some_and(|below| !are_units(&below.cells)) =>
+                {
+                    drop(row);
+                    break;
+                }
                 HeaderFit::Row(row) => rows.push(row),
+                _ if is_remark => {}
                 HeaderFit::Nothing => break,
                 HeaderFit::OtherWidth if rows.is_empty() && !line.is_comment && is_first(lines, place) => {
                     return Err(other_width(file, line, &cells, run, &lines[run.lines.start]));
@@ -90,19 +114,60 @@ impl Header {
             // What stands below the units is a remark.
             rows.truncate(place);
         }
+        // A line with one text over all columns, such as a type, has no names.
+        let is_uniform = |row: &HeaderLine| row.cells.iter().all(|cell| *cell == row.cells[0]);
+        while width > 1 && rows.len() > 1 && rows.last().is_some_and(is_uniform) {
+            rows.pop();
+        }
         let lines = rows.iter().map(|row| row.line).collect();
         let mut names = rows.pop().map_or_else(|| vec![String::new(); width], |row| row.cells);
-        if !are_distinct(&names)
-            && let Some(above) = rows.pop()
-        {
-            names = joined(&above.cells, &names);
+        if let Some(above) = rows.last() {
+            let empty = names.iter_mut().zip(&above.cells).filter(|(name, _)| name.is_empty());
+            empty.for_each(|(name, above)| name.clone_from(above));
         }
-        if let Some((.., cells)) = &units {
-            names.iter_mut().zip(cells).for_each(|(name, unit)| add_unit(name, unit));
+        let with_units = |mut names: Vec<String>| {
+            let units = units.iter().flat_map(|(.., cells)| cells);
+            names.iter_mut().zip(units).for_each(|(name, unit)| add_unit(name, unit));
+            names
+        };
+        let mut groups = numbered_groups(&with_units(names.clone()));
+        if !are_distinct(&names) {
+            let above = rows.pop().map(|row| row.cells);
+            groups = column_groups(&with_units(names.clone()), above.as_deref());
+            names = above.map_or(names.clone(), |above| joined(&above, &names));
         }
+        names = with_units(names);
         let names_last = names.last().is_some_and(|last| !is_remark(last));
-        Self { names: distinct(names), lines, units_line: units.map(|(_, line, _)| line), names_last }
+        let units_line = units.map(|(_, line, _)| line);
+        Self { names: distinct(names), lines, units_line, names_last, groups }
     }
+}
+
+/// Most lines of text between names and rows.
+const MOST_REMARKS: usize = 3;
+
+/// The line of the names, if comments or other text that is no names stand between it and the rows.
+fn names_above_remarks(lines: &[TextLine<'_>], run: &LineRun) -> Option<usize> {
+    let mut others = 0;
+    for (place, line) in lines[..run.lines.start].iter().enumerate().rev() {
+        if line.is_blank() || line.is_comment {
+            continue;
+        }
+        let cells = split(line.content(), run.delimiter);
+        let is_empty = cells.iter().all(|cell| cell.text.trim().is_empty());
+        match row(line, &cells, run, is_first(lines, place)) {
+            HeaderFit::Row(_) if place + 1 < run.lines.start => return Some(place),
+            HeaderFit::Nothing
+                if run.delimiter != Delimiter::Blanks
+                    && others < MOST_REMARKS
+                    && (is_empty || cells.len() == 1 && run.width > 1) =>
+            {
+                others += 1;
+            }
+            _ => return None,
+        }
+    }
+    None
 }
 
 /// Whether a line belongs to the header.
@@ -125,6 +190,11 @@ fn row(line: &TextLine<'_>, cells: &[LineCell<'_>], run: &LineRun, is_first: boo
     // Tools for statistics leave out the name of the index.
     if texts.len() + 1 == width && width > 2 && texts.iter().all(|text| is_name(text)) && run.counts {
         texts.insert(0, String::new());
+    }
+    // Keys and values of a preamble, such as `Averages: 3` or `NCrv = 40`.
+    let is_key = |text: &String| text.ends_with([':', '=']);
+    if texts.iter().any(|text| text.starts_with('=')) || is_key(&texts[0]) && !texts.iter().all(is_key) {
+        return HeaderFit::Nothing;
     }
     let names = texts.iter().filter(|text| is_name(text)).count();
     if texts.len() != width {
@@ -155,7 +225,7 @@ fn is_number(text: &str) -> bool {
     )
 }
 
-fn is_name(text: &str) -> bool {
+pub fn is_name(text: &str) -> bool {
     !text.is_empty() && !is_number(text)
 }
 
@@ -207,10 +277,18 @@ fn is_quoted_header(lines: &[TextLine<'_>], run: &LineRun) -> bool {
     first.iter().all(|cell| cell.is_quoted) && run.columns.iter().all(|column| !column.is_quoted)
 }
 
+/// Units that stand in lines of units and that no factor converts.
+const UNITS_IN_ROWS: [&str; 10] =
+    ["emu", "emu/g", "emu/cc", "emu/cm3", "µemu", "memu", "segments", "counts", "cycles", "a.u."];
+
 /// True for a line of units: in brackets, known, or none.
 fn are_units(cells: &[String]) -> bool {
     let filled: Vec<&String> = cells.iter().filter(|cell| !is_missing(cell)).collect();
-    let is_one = |cell: &&&String| in_brackets(cell).is_some() || unit::is_unit(cell);
+    let is_one = |cell: &&&String| {
+        in_brackets(cell).is_some()
+            || unit::is_unit(cell)
+            || UNITS_IN_ROWS.contains(&cell.to_lowercase().as_str())
+    };
     let units = filled.iter().filter(is_one).count();
     units > 0 && units == filled.len() || units > 1 && 2 * units > filled.len()
 }
@@ -226,6 +304,82 @@ pub fn add_unit(name: &mut String, unit: &str) {
     if !unit.is_empty() && !is_missing(unit) && unit::of_column(name).is_none() {
         name.push_str(&format!(" [{unit}]"));
     }
+}
+
+/// Most columns before groups of columns: an index and a time.
+const MOST_SHARED: usize = 2;
+
+/// Labels of stages of one measurement, which are no records.
+const STAGES: [&str; 12] = [
+    "raw",
+    "adjusted",
+    "corrected",
+    "filtered",
+    "calibrated",
+    "command",
+    "feedback",
+    "reference",
+    "target",
+    "actual",
+    "measured",
+    "model",
+];
+
+/// Groups of columns whose names have the number of the group: `H1 (Oe)`, `M1 (emu)`, `H2 (Oe)`, `M2 (emu)`.
+fn numbered_groups(names: &[String]) -> Option<ColumnGroups> {
+    let parts: Vec<(String, Option<usize>)> = names.iter().map(|name| without_number(name)).collect();
+    let shared = parts.iter().take_while(|(_, number)| number.is_none()).count();
+    let width = parts[shared..].iter().take_while(|(_, number)| *number == Some(1)).count();
+    let is_of_group =
+        |(place, (_, number)): (usize, &(String, Option<usize>))| *number == Some(1 + place / width.max(1));
+    if shared > MOST_SHARED || width < 2 || !parts[shared..].iter().enumerate().all(is_of_group) {
+        return None;
+    }
+    let bare: Vec<String> = parts.into_iter().map(|(name, _)| name).collect();
+    column_groups(&bare, None)
+}
+
+/// A name without the number at the end of its quantity, and that number.
+fn without_number(name: &str) -> (String, Option<usize>) {
+    let quantity = unit::split(name).0;
+    let bare = quantity.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    let number = quantity[bare.len()..].parse().ok();
+    let bare = bare.trim_end_matches(['_', '-', ' ', '#']);
+    match number {
+        Some(_) if !bare.is_empty() => (format!("{bare}{}", &name.trim()[quantity.len()..]), number),
+        _ => (name.to_string(), None),
+    }
+}
+
+/// Groups of columns with equal names, at least two besides time in each; the line above may have their labels.
+fn column_groups(names: &[String], above: Option<&[String]>) -> Option<ColumnGroups> {
+    for shared in 0..=MOST_SHARED.min(names.len()) {
+        let own = &names[shared..];
+        let Some(width) = own.iter().skip(1).position(|name| *name == own[0]).map(|place| place + 1) else {
+            continue;
+        };
+        let group = &own[..width];
+        let others = group.iter().filter(|name| !unit::may_be_time(name)).count();
+        let is_repeated = own.len().is_multiple_of(width) && own.chunks(width).all(|other| other == group);
+        if !is_repeated || others < 2 || !are_distinct(&names[..shared + width]) {
+            continue;
+        }
+        let count = own.len() / width;
+        let labels: Vec<String> = match above {
+            Some(above) => above[shared..].iter().step_by(width).cloned().collect(),
+            None => Vec::new(),
+        };
+        let is_stage = |label: &String| STAGES.contains(&label.to_lowercase().as_str());
+        if labels.iter().any(is_stage) {
+            return None;
+        }
+        let is_labelled =
+            !labels.is_empty() && are_distinct(&labels) && labels.iter().all(|label| is_name(label));
+        let numbered = || (1..=count).map(|number| number.to_string()).collect();
+        let labels = if is_labelled { labels } else { numbered() };
+        return Some(ColumnGroups { shared, names: distinct(names[..shared + width].to_vec()), labels });
+    }
+    None
 }
 
 fn are_distinct(names: &[String]) -> bool {

@@ -47,6 +47,14 @@ pub fn is_comment(line: &str) -> bool {
     COMMENTS.iter().any(|mark| text.starts_with(mark))
 }
 
+/// The first line of a text without its end, and where the next one begins.
+pub fn first_line(text: &str) -> (&str, usize) {
+    let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+    let length = text.as_bytes().iter().position(is_end).unwrap_or(text.len());
+    let end = if text[length..].starts_with("\r\n") { 2 } else { usize::from(length < text.len()) };
+    (&text[..length], length + end)
+}
+
 /// The first lines of a text behind those that are skipped. A last line that may go on is left out unless the text is
 /// all there is.
 pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<TextLine<'_>> {
@@ -55,14 +63,12 @@ pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<TextLine<'_>> {
     let (mut start, mut number, mut others, mut comments) = (0, 1, 0, 0);
     while start < text.len() && others < skip.saturating_add(MOST_LINES + LONGEST_QUOTE) {
         let rest = &text[start..];
-        let end = rest.find(['\n', '\r']);
-        if end.is_none() && !is_all {
+        let (line, behind) = first_line(rest);
+        if line.len() == rest.len() && !is_all {
             break;
         }
-        let length = end.unwrap_or(rest.len());
-        let both = usize::from(rest[length..].starts_with("\r\n"));
-        let next = start + length + both + usize::from(end.is_some());
-        let is_other = !is_comment(&rest[..length]);
+        let (length, next) = (line.len(), start + behind);
+        let is_other = !is_comment(line);
         others += usize::from(is_other);
         comments += usize::from(!is_other);
         // What is behind the first comments is not looked at, so that they need no memory.

@@ -68,7 +68,9 @@ impl LineRun {
         let mut runs = Vec::new();
         let mut place = 0;
         while place < lines.len() {
-            if !is_row(place) {
+            let next = (place + 1..lines.len()).find(|&next| !lines[next].is_blank());
+            let is_names = next.is_some_and(|next| are_labels(&kinds[place], &kinds[next]));
+            if !is_row(place) || is_names {
                 place += 1;
                 continue;
             }
@@ -166,6 +168,14 @@ impl LineRun {
 pub fn is_row(cells: &[&str]) -> bool {
     let kind = |cell: &&str| LineCell { text: (*cell).into(), is_quoted: false }.kind();
     is_data(&cells.iter().map(kind).collect::<Vec<_>>())
+}
+
+/// True for a line of names such as `5 K`, `50 K` over a row of numbers without units: one of them is a text.
+fn are_labels(line: &[CellKind], row: &[CellKind]) -> bool {
+    let is_label = |(above, below): (&CellKind, &CellKind)| {
+        *below == CellKind::Number(None) && !matches!(above, CellKind::Number(None) | CellKind::Stamp)
+    };
+    line.len() == row.len() && line.contains(&CellKind::Text) && line.iter().zip(row).all(is_label)
 }
 
 fn is_data(kinds: &[CellKind]) -> bool {

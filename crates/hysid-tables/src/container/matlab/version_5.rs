@@ -7,7 +7,8 @@
 use flate2::read::ZlibDecoder;
 
 use super::super::budget::{Budget, DAMAGED, too_much};
-use super::{DEEPEST, MatVariable};
+use super::super::variables::Variable;
+use super::DEEPEST;
 
 const HEADER: usize = 128;
 
@@ -24,7 +25,7 @@ const NUMBERS: std::ops::RangeInclusive<u32> = 6..=15;
 const COMPLEX: u32 = 1 << 11;
 
 /// All numeric variables of a file.
-pub fn variables(bytes: &[u8], budget: Budget) -> Result<Vec<MatVariable>, String> {
+pub fn variables(bytes: &[u8], budget: Budget) -> Result<Vec<Variable>, String> {
     let order = match bytes.get(126..HEADER) {
         Some(b"IM") => Order::Little,
         Some(b"MI") => Order::Big,
@@ -120,7 +121,7 @@ fn collect(
     field: Option<&str>,
     depth: usize,
     left: &mut u64,
-    found: &mut Vec<MatVariable>,
+    found: &mut Vec<Variable>,
 ) -> Result<(), String> {
     if element.kind != MATRIX || element.bytes.is_empty() {
         return Ok(());
@@ -146,7 +147,7 @@ fn collect(
         let count = (stored.bytes.len() / size) as u64;
         *left = left.checked_sub(count).ok_or("it has more numbers than a file of its size should")?;
         let values = numbers(&stored, order)?;
-        found.extend(MatVariable::new(name, &sizes, values));
+        found.extend(Variable::new(name, &sizes, &values, false));
         return Ok(());
     }
     // An array of structures has no columns.

@@ -55,8 +55,24 @@ fn open_document(table: &str) -> Vec<u8> {
     ])
 }
 
+#[test]
+fn every_sheet_that_is_not_empty_is_read() {
+    let cell =
+        |number: f64| format!("<table:table-cell office:value-type=\"float\" office:value=\"{number}\"/>");
+    let row = |number: f64| format!("<table:table-row>{}</table:table-row>", cell(number));
+    let others = format!(
+        "</table:table><table:table table:name=\"Empty\"></table:table><table:table table:name=\"T\">{}",
+        row(2.5)
+    );
+    let book = open_document(&format!("{}{others}", row(1.5)));
+    let read: Vec<(String, String)> =
+        sheets(book.clone(), None).unwrap().into_iter().map(|sheet| (sheet.name, sheet.text)).collect();
+    assert_eq!(read, [("S".into(), "1.5\n".into()), ("T".into(), "2.5\n".into())]);
+    assert_eq!(sheets(book, Some("3".into())).unwrap()[0].described, "sheet T");
+}
+
 fn problem(bytes: Vec<u8>) -> String {
-    text(bytes, None).unwrap_err()
+    sheets(bytes, None).unwrap_err()
 }
 
 #[test]
@@ -64,13 +80,13 @@ fn sheets_are_read_as_before() {
     let strings = "<sst uniqueCount=\"2\"><si><t>t</t></si><si><t>x</t></si></sst>";
     let cells = "<row r=\"1\"><c r=\"A1\" t=\"s\"><v>0</v></c><c r=\"B1\" t=\"s\"><v>1</v></c></row>\
                  <row r=\"2\"><c r=\"A2\"><v>0.5</v></c><c><v>7</v></c></row>";
-    assert_eq!(text(excel(cells, strings), None).unwrap().0, "t\tx\n0.5\t7\n");
+    assert_eq!(sheets(excel(cells, strings), None).unwrap()[0].text, "t\tx\n0.5\t7\n");
     // Empty cells and rows up to the end of the sheet take no memory.
     let table = "<table:table-row><table:table-cell office:value=\"1.5\" table:number-columns-repeated=\"2\"/>\
                  <table:table-cell table:number-columns-repeated=\"16382\"/></table:table-row>\
                  <table:table-row table:number-rows-repeated=\"1048575\">\
                  <table:table-cell table:number-columns-repeated=\"16384\"/></table:table-row>";
-    assert_eq!(text(open_document(table), None).unwrap().0, "1.5\t1.5\n");
+    assert_eq!(sheets(open_document(table), None).unwrap()[0].text, "1.5\t1.5\n");
 }
 
 #[test]
@@ -191,7 +207,7 @@ fn workbook(extent: [u32; 4], cells: &[[u16; 2]]) -> Vec<u8> {
 
 #[test]
 fn compound_files_claim_no_more_than_they_hold() {
-    assert_eq!(text(workbook([0, 2, 0, 1], &[[0, 0], [1, 0]]), None).unwrap().0, "2.5\n2.5\n");
+    assert_eq!(sheets(workbook([0, 2, 0, 1], &[[0, 0], [1, 0]]), None).unwrap()[0].text, "2.5\n2.5\n");
     let problem_of = |extent, cells: &[[u16; 2]]| problem(workbook(extent, cells));
     assert!(problem_of([0, u32::MAX, 0, 256], &[[0, 0]]).contains("which it cannot hold"));
     assert_eq!(problem_of([5, 2, 0, 1], &[[0, 0]]), "it is damaged or cut off");
@@ -225,6 +241,6 @@ fn compound_files_claim_no_more_than_they_hold() {
     }
     let whole = workbook([0, 2, 0, 1], &[[0, 0], [1, 0]]);
     for end in (0..whole.len()).step_by(61) {
-        let _ = text(whole[..end].to_vec(), None);
+        let _ = sheets(whole[..end].to_vec(), None);
     }
 }
