@@ -245,6 +245,17 @@ impl<'t> Guess<'t> {
             {
                 doubt(Rank::Derived, "about the magnetometer, beside field and moment")
             }
+            // The current of a ferroelectric tester is the rate of the charge.
+            ColumnKind::Drives(Domain::Electricity)
+                if kind::is_current(name)
+                    && self.has(ColumnKind::Follows(Domain::Electricity))
+                    && self
+                        .free
+                        .iter()
+                        .any(|other| ColumnKind::of(other) == kind && !kind::is_current(other)) =>
+            {
+                doubt(Rank::Derived, "a current, the rate of the charge")
+            }
             // Resistance is calculated where voltage and current are there.
             ColumnKind::Unknown if kind::words(name).iter().any(|word| word == "resistance") => {
                 let drives =
