@@ -5,15 +5,12 @@ use hysid_document::chart::thin::Point;
 use hysid_document::{Axis, Chart, Colour, Curve, number, unit};
 
 use super::Cycles;
-use super::table::present;
+use super::table::{SEVERAL, at_several_frequencies, present};
 
 /// Records and reversal curves that are drawn at most.
 pub(super) const MOST_CURVES: usize = 60;
 
 const MOST_DOTS: usize = 600;
-
-/// Frequencies that differ by more than this factor are drawn.
-const SEVERAL: f64 = 1.05;
 
 /// Most amplitudes in a chart of losses over frequency: as many as there are colours.
 const MOST_AMPLITUDES: usize = hysid_document::chart::SERIES;
@@ -99,19 +96,6 @@ pub fn backbone(cycles: &Cycles, colour: Colour, sizes: (f64, f64)) -> Vec<Curve
         }
     }
     curves
-}
-
-/// Losses of the amplitudes that have several frequencies.
-pub fn at_several_frequencies<'a>(cycles: &'a Cycles) -> Vec<&'a [LossAtFrequency]> {
-    let amplitudes =
-        cycles.table.losses.chunk_by(|a, b| b.frequency > a.frequency && alike(a.amplitude, b.amplitude));
-    let has_several =
-        |losses: &&[LossAtFrequency]| losses[losses.len() - 1].frequency > SEVERAL * losses[0].frequency;
-    if cycles.table.field == Field::Actuator { Vec::new() } else { amplitudes.filter(has_several).collect() }
-}
-
-fn alike(a: f64, b: f64) -> bool {
-    a.max(b) <= SEVERAL * a.min(b)
 }
 
 /// Loss per cycle over frequency, a colour for each amplitude; `None` for a single frequency. Those of the last set are

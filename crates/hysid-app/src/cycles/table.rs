@@ -6,8 +6,9 @@ use hysid::diagnosis::cycles::{
 use hysid_document::{Cell, Table};
 
 use super::Cycles;
-use super::over_amplitude::at_several_frequencies;
-use super::text::both_ends;
+
+/// Frequencies that differ by more than this factor are drawn.
+pub(super) const SEVERAL: f64 = 1.05;
 
 /// True if the tables of the field mark the points of the backbone.
 pub fn has_backbone(field: Field) -> bool {
@@ -118,6 +119,19 @@ pub fn levels(cycles: &Cycles, names: &[&str], label: impl Fn(&str) -> String) -
     (rows.len() > 1).then_some(table)
 }
 
+/// Losses of the amplitudes that have several frequencies.
+pub fn at_several_frequencies<'a>(cycles: &'a Cycles) -> Vec<&'a [LossAtFrequency]> {
+    let amplitudes =
+        cycles.table.losses.chunk_by(|a, b| b.frequency > a.frequency && alike(a.amplitude, b.amplitude));
+    let has_several =
+        |losses: &&[LossAtFrequency]| losses[losses.len() - 1].frequency > SEVERAL * losses[0].frequency;
+    if cycles.table.field == Field::Actuator { Vec::new() } else { amplitudes.filter(has_several).collect() }
+}
+
+fn alike(a: f64, b: f64) -> bool {
+    a.max(b) <= SEVERAL * a.min(b)
+}
+
 /// Label, quantity and value of a column of losses.
 type LossColumn = (&'static str, FigureQuantity, fn(&LossAtFrequency) -> Option<f64>);
 
@@ -212,4 +226,12 @@ pub fn present(cycles: &Cycles, names: &[&str]) -> Vec<&'static Figure> {
     let has = |figure: &&Figure| cycles.table.cycles.iter().any(|row| (figure.of)(row).is_some());
     let find = |name: &&str| hysid::diagnosis::cycles::FIGURES.iter().find(|figure| figure.name == *name);
     names.iter().filter_map(find).filter(has).collect()
+}
+
+/// Places of a table's rows that are shown: all, or so many at each end of a long one.
+pub fn both_ends(rows: usize, at_each_end: usize) -> impl Iterator<Item = usize> {
+    // Leaving out a single one saves nothing.
+    (0..rows).filter(move |place| {
+        rows <= 2 * at_each_end + 2 || *place < at_each_end || *place + at_each_end >= rows
+    })
 }

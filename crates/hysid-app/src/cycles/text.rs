@@ -6,7 +6,7 @@ use hysid_document::plain::{WIDTH, indented, rendered, wrapped};
 use hysid_document::{Cell, Part, Table, count};
 
 use super::Cycles;
-use super::table::{notes, present, shown};
+use super::table::{both_ends, notes, present, shown};
 use crate::quantities::text_label;
 
 /// Rows shown at each end of a long table.
@@ -94,13 +94,6 @@ pub fn begin(cycles: &Cycles) -> &'static str {
         Division::Reversals => "at turning points",
         Division::Start => "where the input passes its first value",
     }
-}
-
-pub fn both_ends(rows: usize, at_each_end: usize) -> impl Iterator<Item = usize> {
-    // Leaving out a single one saves nothing.
-    (0..rows).filter(move |place| {
-        rows <= 2 * at_each_end + 2 || *place < at_each_end || *place + at_each_end >= rows
-    })
 }
 
 fn main_table(cycles: &Cycles) -> Table {

@@ -18,12 +18,26 @@ use super::row::CycleRow;
 /// Points of the integral of `|cos θ|^α`.
 const POINTS: u32 = 20_000;
 
-/// Steinmetz parameters `k`, `α` and `β` of a sine.
+/// The Steinmetz equation as it holds for any waveform.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Steinmetz {
-    pub coefficient: f64,
-    pub frequency: f64,
-    pub amplitude: f64,
+    /// `k_i`.
+    factor: f64,
+    /// `α`.
+    frequency: f64,
+    /// `β`.
+    amplitude: f64,
+}
+
+impl Steinmetz {
+    /// From the parameters `k`, `α` and `β` of a sine.
+    pub fn of_sine(coefficient: f64, frequency: f64, amplitude: f64) -> Self {
+        let angle = |k: u32| TAU * (f64::from(k) + 0.5) / f64::from(POINTS);
+        let powers: f64 = (0..POINTS).map(|k| powf(cos(angle(k)).abs(), frequency)).sum();
+        let integral = powers * TAU / f64::from(POINTS);
+        let factor = coefficient / (powf(TAU, frequency - 1.0) * powf(2.0, amplitude - frequency) * integral);
+        Self { factor, frequency, amplitude }
+    }
 }
 
 /// Time and output of a cycle, closed by the step from its last row to its first of the next period.
@@ -55,11 +69,7 @@ impl Waveform {
 
     /// The loss of the cycle.
     pub fn energy(&self, law: &Steinmetz) -> f64 {
-        let Steinmetz { coefficient, frequency: alpha, amplitude: beta } = *law;
-        let angle = |k: u32| TAU * (f64::from(k) + 0.5) / f64::from(POINTS);
-        let cosines: f64 =
-            (0..POINTS).map(|k| powf(cos(angle(k)).abs(), alpha)).sum::<f64>() * TAU / f64::from(POINTS);
-        let factor = coefficient / (powf(TAU, alpha - 1.0) * powf(2.0, beta - alpha) * cosines);
+        let Steinmetz { factor, frequency: alpha, amplitude: beta } = *law;
         let ranges = self.ranges();
         let step = |k: usize| {
             let (db, dt) = ((self.output[k + 1] - self.output[k]).abs(), self.time[k + 1] - self.time[k]);
@@ -111,7 +121,9 @@ mod tests {
 
     use super::*;
 
-    const LAW: Steinmetz = Steinmetz { coefficient: 3.0, frequency: 1.4, amplitude: 2.3 };
+    fn law() -> Steinmetz {
+        Steinmetz::of_sine(3.0, 1.4, 2.3)
+    }
 
     /// Straight lines between corners, in 400 steps each.
     fn lines(corners: &[(f64, f64)]) -> Waveform {
@@ -137,21 +149,21 @@ mod tests {
         for frequency in [1.0, 50.0] {
             let time: Vec<f64> = (0..=4000).map(|k| f64::from(k) / 4000.0 / frequency).collect();
             let output = time.iter().map(|t| 0.7 + 0.5 * sin(TAU * frequency * t + 0.4)).collect();
-            let energy = Waveform { time, output }.energy(&LAW);
+            let energy = Waveform { time, output }.energy(&law());
             assert_relative_eq!(energy, 3.0 * powf(frequency, 0.4) * powf(0.5, 2.3), max_relative = 1e-5);
         }
     }
 
     #[test]
     fn a_triangle_has_the_loss_of_its_two_slopes() {
-        let energy = lines(&[(0.0, 0.0), (0.3, 1.0), (1.0, -1.0), (1.3, 0.0)]).energy(&LAW);
+        let energy = lines(&[(0.0, 0.0), (0.3, 1.0), (1.0, -1.0), (1.3, 0.0)]).energy(&law());
         assert_relative_eq!(energy, of_lines(&[(2.0, 0.6, 2.0), (2.0, 0.7, 2.0)]), max_relative = 1e-6);
     }
 
     #[test]
     fn a_smaller_loop_on_the_way_has_its_own_range() {
         // Up to 1, down to 0, back to 0.5, and on down to -1.
-        let energy = lines(&[(0.0, -1.0), (1.0, 1.0), (1.5, 0.0), (1.7, 0.5), (2.5, -1.0)]).energy(&LAW);
+        let energy = lines(&[(0.0, -1.0), (1.0, 1.0), (1.5, 0.0), (1.7, 0.5), (2.5, -1.0)]).energy(&law());
         let outer = [(2.0, 1.0, 2.0), (1.0, 0.5, 2.0), (1.0, 0.8 / 1.5, 2.0)];
         let inner = [(0.5, 0.2, 0.5), (0.5, 0.8 / 3.0, 0.5)];
         assert_relative_eq!(energy, of_lines(&outer) + of_lines(&inner), max_relative = 1e-2);

@@ -185,7 +185,7 @@ fn steinmetz(losses: &[CycleLoss], amplitudes: usize) -> (Vec<RecordFigure>, Opt
         of(AMPLITUDE, amplitude, deviations[2]),
         RecordFigure::new(("", ""), STEINMETZ_ERROR, 100.0 * found.rms),
     ];
-    (figures, Some(Steinmetz { coefficient: exp(level), frequency: frequency + 1.0, amplitude }))
+    (figures, Some(Steinmetz::of_sine(exp(level), frequency + 1.0, amplitude)))
 }
 
 fn not_described(rms: f64) -> String {
