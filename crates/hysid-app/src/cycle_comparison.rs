@@ -58,8 +58,7 @@ pub fn section(set: &ReportSet) -> Option<Part> {
         measured.complete().filter_map(|row| Some((row, *others.get(&rows_of(row))?))).collect();
     let has = |figure: &&Figure| pairs.iter().any(|(row, _)| (figure.of)(row).is_some());
     let of_name = |name: &&str| FIGURES.iter().find(|figure| figure.name == *name);
-    let figures: Vec<&Figure> =
-        names(measured.field).iter().filter_map(|name| of_name(name)).filter(has).collect();
+    let figures: Vec<&Figure> = names(measured.field).iter().filter_map(of_name).filter(has).collect();
     if pairs.is_empty() || figures.is_empty() {
         return None;
     }

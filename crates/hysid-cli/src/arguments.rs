@@ -45,12 +45,7 @@ pub use studio::Studio;
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.
 #[derive(Debug, Parser)]
-#[command(
-    name = "hysid",
-    version,
-    arg_required_else_help = true,
-    max_term_width = 80
-)]
+#[command(name = "hysid", version, arg_required_else_help = true, max_term_width = 80)]
 pub struct Arguments {
     /// Say only warnings and errors on stderr
     ///

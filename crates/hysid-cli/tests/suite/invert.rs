@@ -306,7 +306,12 @@ fn refused(bench: &Workbench, arguments: &str, status: i32, text: &str) {
     let line = ran.last_line();
     assert!(line.starts_with("error: ") && line.contains(text), "{arguments}: {}", ran.stderr);
     // With --json, stdout has the error as an object.
-    assert_eq!(ran.stdout.contains("\"error\": "), arguments.contains("--json"), "{arguments}: {}", ran.stdout);
+    assert_eq!(
+        ran.stdout.contains("\"error\": "),
+        arguments.contains("--json"),
+        "{arguments}: {}",
+        ran.stdout
+    );
     assert!(ran.stdout.is_empty() || arguments.contains("--json"), "{arguments}: {}", ran.stdout);
     assert_eq!(bench.files(""), before, "{arguments}");
 }

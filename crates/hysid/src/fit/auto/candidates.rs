@@ -458,4 +458,19 @@ mod tests {
         assert!(none == 0 && some > 0 && with_free == all + some);
         assert_eq!(free(Some(KnownSpan::Rows(10)), Some(InitialState::Virgin)), (all, 0));
     }
+
+    #[test]
+    fn odd_candidates_with_free_states_are_tried_for_data_about_zero() {
+        let odd = |low: f64| {
+            let x: Vec<f64> = (0..100).map(|row| low + f64::from(row % 21)).collect();
+            let record = Record::new("r", vec![x.clone()], x).unwrap();
+            let data = Dataset::new(ColumnNames::of(None, &["x"], "y"), vec![record]).unwrap();
+            let options = AutoOptions { known: Some(KnownSpan::Rows(10)), ..AutoOptions::default() };
+            let free = candidates(&data, &options).into_iter().filter(Candidate::has_free_states);
+            let is_odd = |one: Candidate| matches!(one.asked(), FitSpec::Classical(options) if options.odd);
+            free.map(is_odd).collect::<Vec<bool>>()
+        };
+        assert_eq!(odd(-10.0), [true, false]);
+        assert_eq!(odd(0.0), [false]);
+    }
 }

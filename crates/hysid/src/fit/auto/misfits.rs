@@ -11,6 +11,7 @@ use super::{EnsembleSelection, Trial, ValidatedEnsemble, errors_held_out};
 use crate::fit::auto::combination::Combination;
 use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::are_by_record;
+use hysid_core::elementary::ln;
 
 /// Training error of an ensemble, relative to that of the candidate that fits best. Designed.
 const FITS: f64 = 1.3;
@@ -91,20 +92,20 @@ impl EnsembleSelection<'_, '_, '_> {
         }
     }
 
-    /// Keeps the starts of a candidate with free states alone where they predict held-out rows no worse than together with all
-    /// others.
+    /// Keeps the starts of a candidate with free states alone, unless they predict held-out rows clearly worse than together
+    /// with all others.
     pub(super) fn prefers_starts_with_free_states(&mut self) {
         let folds = self.bench.folds;
         let error = |trials: &[Trial]| -> Option<f64> {
             let all = Combination::of(trials, folds, self.evidence, |_| true)?;
             Some(all.first(self.options.members)?.score(trials, folds).sum())
         };
-        let is_alone =
-            |trial: &Trial| trial.candidate.has_free_states() && trial.starts.len() > self.options.starts;
+        let is_alone = |trial: &Trial| {
+            trial.candidate.has_free_states() && trial.starts.len() >= self.options.members.max(2)
+        };
         let alone: Vec<Trial> = self.trials.iter().filter(|trial| is_alone(trial)).cloned().collect();
-        if self.options.only.is_none()
-            && error(&alone).is_some_and(|alone| Some(alone) <= error(&self.trials))
-        {
+        let worse = error(&alone).zip(error(&self.trials)).map(|(alone, all)| alone - all);
+        if self.options.only.is_none() && worse.is_some_and(|worse| worse <= -2.0 * ln(CLEARLY_BETTER)) {
             self.keep(self.trials.iter().map(is_alone).collect());
         }
     }

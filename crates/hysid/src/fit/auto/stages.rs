@@ -25,6 +25,9 @@ const HOPEFUL_OF_KIND: usize = 6;
 /// Largest error, relative to the best, of a model with inertia that has fewer parts and is enough.
 const ABOUT_AS_GOOD: f64 = 1.2;
 
+/// Ratio of the errors of single starts with free states up to which they do not tell candidates apart. Designed.
+const ALIKE: f64 = 1.15;
+
 /// Number of folds up to which all are first folds.
 const FEW_FOLDS: usize = 3;
 
@@ -294,8 +297,8 @@ impl Stages<'_, '_, '_> {
         let Some(combination) = Combination::of(&self.trials, folds, self.evidence, |_| true) else { return };
         let is_random = |place: &usize| self.trials[*place].candidate.is_random();
         let places = combination.shares().into_iter().map(|(place, _)| place);
-        let (places, starts) = match self.best_has_free_states() {
-            Some(best) => (vec![best], self.options.members),
+        let (places, starts) = match self.best_with_free_states() {
+            Some(best) => (vec![best], self.options.starts.max(self.options.members)),
             None => (places.filter(is_random).collect::<Vec<usize>>(), self.options.starts),
         };
         let further = starts.saturating_sub(1);
@@ -306,14 +309,18 @@ impl Stages<'_, '_, '_> {
         }
     }
 
-    /// The candidate with the lowest error, if it has states of its own and the user did not choose it. Such models differ more
-    /// from start to start than candidates differ from each other.
-    fn best_has_free_states(&self) -> Option<usize> {
-        let score =
-            |&place: &usize| Score::of(&self.trials[place].predicted, self.bench.folds, |_| true).sum();
-        let complete = (0..self.trials.len()).filter(|&place| self.trials[place].is_complete());
-        let best = complete.min_by(|a, b| score(a).total_cmp(&score(b)))?;
-        (self.options.only.is_none() && self.trials[best].candidate.has_free_states()).then_some(best)
+    /// The best candidate with states of its own, of alike ones the one with the fewest numbers, if it is about the best of all
+    /// and the user did not choose it. Such models differ more from start to start than from candidate to candidate.
+    pub fn best_with_free_states(&self) -> Option<usize> {
+        let score = |place: usize| Score::of(&self.trials[place].predicted, self.bench.folds, |_| true).sum();
+        let complete = || (0..self.trials.len()).filter(|&place| self.trials[place].is_complete());
+        let free = || complete().filter(|&place| self.trials[place].candidate.has_free_states());
+        let lowest = free().map(score).fold(f64::INFINITY, f64::min);
+        let numbers = |place: usize| self.trials[place].members.values().map(Model::parameters).max();
+        let alike = free().filter(|&place| score(place) <= lowest + 2.0 * ln(ALIKE));
+        let best = alike.min_by_key(|&place| numbers(place).unwrap_or(usize::MAX))?;
+        let is_about_best = complete().all(|other| score(best) <= score(other) + 2.0 * ln(ABOUT_AS_GOOD));
+        (self.options.only.is_none() && is_about_best).then_some(best)
     }
 
     /// Drops the candidates with the rate unless they are clearly better than those without, for data in which a

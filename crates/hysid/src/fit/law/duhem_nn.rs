@@ -229,10 +229,14 @@ const FREE_SHAPE: (usize, usize) = (6, 10);
 const FREE_RATE_COMPANDING: f64 = 0.2;
 const EPOCHS_OF_FREE: usize = 45;
 
-/// Candidates of `auto` with free states: odd or not, with and without the acceleration.
+/// Largest mean of what lies about zero, in standard deviations. Designed.
+const ABOUT_ZERO: f64 = 0.3;
+
+/// Candidates of `auto` with free states, with and without the acceleration: odd ones first where input and output lie about
+/// zero.
 fn with_free_states(
     model: ClassicalModel,
-    CandidateRequest { options, .. }: &CandidateRequest<'_>,
+    CandidateRequest { data, options, .. }: &CandidateRequest<'_>,
     rate: Option<RateMethod>,
 ) -> Vec<ClassicalOptions> {
     let of = |odd, acceleration| ClassicalOptions {
@@ -252,8 +256,19 @@ fn with_free_states(
         seed: options.seed,
         ..ClassicalOptions::of(model)
     };
-    let accelerations: &[bool] = if rate.is_some() { &[true, false] } else { &[false] };
-    accelerations.iter().flat_map(|&acceleration| [of(true, acceleration), of(false, acceleration)]).collect()
+    let is_about_zero = |values: fn(&Record) -> &[f64]| {
+        let all = data.records().iter().flat_map(values).copied().filter(|value| !value.is_nan());
+        let (mean, deviation) = spread(&all.collect::<Vec<f64>>());
+        mean.abs() <= ABOUT_ZERO * deviation
+    };
+    let is_odd = is_about_zero(|record| &record.inputs()[0]) && is_about_zero(Record::output);
+    let variants: &[(bool, bool)] = match (is_odd, rate.is_some()) {
+        (true, true) => &[(true, true), (true, false), (false, false)],
+        (true, false) => &[(true, false), (false, false)],
+        (false, true) => &[(false, true), (false, false)],
+        (false, false) => &[(false, false)],
+    };
+    variants.iter().map(|&(odd, acceleration)| of(odd, acceleration)).collect()
 }
 
 fn is_free(options: &ClassicalOptions) -> bool {
