@@ -159,13 +159,13 @@ pub struct Overwriting {
 pub struct ColumnOptions {
     /// Record of each row [default: a column `record`]
     ///
-    /// A column with the name of the record; the rows of a record must follow each other. Without such a column, each table is
-    /// one record.
+    /// A column with the name of the record; the rows of a record must follow each other. Without such a column, a record is a
+    /// table, or a part of it where the time begins again or a condition of the test changes.
     #[arg(long, value_name = "COLUMN")]
     pub record: Option<String>,
-    /// Time stamps, or none [default: `t` or `time`]
+    /// Time stamps, or none [default: by name, unit and values]
     ///
-    /// The default is found with a unit too: `t_ms`, `Time (s)`. `--time none` uses no column as time.
+    /// `--time none` uses no column as time.
     #[arg(long, value_name = "COLUMN")]
     pub time: Option<String>,
     /// Input; repeat for several [default: from names]

@@ -41,8 +41,8 @@ pub struct Cycles {
     pub field: Option<Field>,
     /// Where cycles begin: zero, mean, reversals or start [default: as suits the data]
     ///
-    /// Where the input passes zero, its mean, or the value with which the record starts, always in the same direction; or
-    /// at every other turning point.
+    /// Where the input passes zero, its centre (mean), or the value with which the record starts, always in the same direction;
+    /// or at every other turning point.
     #[arg(long, value_name = "WHERE", value_parser = named::<Division>, help_heading = "Method")]
     pub divide: Option<Division>,
     /// Remove from the output first: slope, drift

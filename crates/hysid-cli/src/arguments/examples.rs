@@ -52,7 +52,7 @@ Examples:
   hysid look test.xlsx --sheet 2 -o clean.csv
   hysid look log.txt --skip 12 --decimal comma --missing -999
 
-Options for files that are not read as you expect: hysid look --help, docs/files.md";
+Options for files that are not read as you expect: hysid look --help options, docs/files.md";
 
 pub(super) const DIAGNOSE_EXAMPLES: &str = "\
 Examples:

@@ -105,8 +105,13 @@ fn of_side(whose: (&str, &str), points: &[(f64, f64)], (sign, level): (f64, f64)
     let beyond = square(ultimate) - 2.0 * area / stiffness;
     let strength =
         if beyond >= 0.0 { stiffness * (ultimate - beyond.sqrt()) } else { WITHOUT_EQUAL_ENERGY * peak };
-    let mut yielded = RecordFigure::new(whose, YIELD, sign * strength);
-    if beyond < 0.0 {
+    // Within rounding, a straight backbone has its yield point at its end.
+    let yields = strength / stiffness < ultimate * (1.0 - 1e-9);
+    let of_yield = |kind, value: f64| RecordFigure::new(whose, kind, yields.then_some(value));
+    let mut yielded = of_yield(YIELD, sign * strength);
+    if !yields {
+        yielded = yielded.with_note("the backbone does not yield up to its end");
+    } else if beyond < 0.0 {
         yielded =
             yielded.with_note("no elastic-plastic curve has the energy of the backbone: 0.85 of the peak");
     }
@@ -119,8 +124,8 @@ fn of_side(whose: (&str, &str), points: &[(f64, f64)], (sign, level): (f64, f64)
         RecordFigure::new(whose, PEAK, sign * peak),
         RecordFigure::new(whose, PEAK_INPUT, level + sign * peak_input),
         yielded,
-        RecordFigure::new(whose, YIELD_INPUT, level + sign * strength / stiffness),
+        of_yield(YIELD_INPUT, level + sign * strength / stiffness),
         end,
-        RecordFigure::new(whose, DUCTILITY, ultimate * stiffness / strength),
+        of_yield(DUCTILITY, ultimate * stiffness / strength),
     ]
 }

@@ -51,6 +51,9 @@ fn material(subject: &ExportSubject<'_>) -> String {
 fn usage(subject: &ExportSubject<'_>) -> String {
     let (name, names) = (subject.name(), subject.names());
     let (x, y) = (in_markdown(&names.inputs[0]), in_markdown(&names.output));
-    let words = [("@x@", &*x), ("@y@", &y), ("UPPER", &name.to_uppercase()), ("NAME", name)];
+    // A saved state is the numbers of the state, what tells it from others, and a checksum.
+    let states = (subject.program().state_len() + 2).to_string();
+    let words =
+        [("@x@", &*x), ("@y@", &y), ("@state_variables@", &states), ("@keyword@", "NAME"), ("NAME", name)];
     filled(include_str!("abaqus/usage.md.txt"), &words)
 }

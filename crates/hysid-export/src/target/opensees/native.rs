@@ -87,8 +87,11 @@ impl Native {
 
     /// Explains the constants.
     pub fn constants(&self) -> String {
-        let strain = if self.origin == 0.0 { "x".into() } else { format!("x - {:?}", self.origin) };
-        format!("Its strain is `{strain}` and its stress is `y - {:?}`.", self.offset)
+        let strain = match self.origin {
+            0.0 => "Its strain is the input of the model".into(),
+            origin => format!("Its strain is the input of the model, less {origin:?}"),
+        };
+        format!("{strain}. The output of the model is its stress plus {:?}.", self.offset)
     }
 
     /// The tag of a command, counted from that of the material.
