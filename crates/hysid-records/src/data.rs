@@ -8,6 +8,7 @@ use std::path::Path;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::error::{Channel, DataError, DataProblem};
 use hysid_core::model::Model;
+use hysid_core::significant::Significant;
 use hysid_core::words::{Hint, Words};
 
 use hysid_tables::{
@@ -20,6 +21,7 @@ use crate::columns::{ColumnChoice, Roles, time_or_no_rate};
 use crate::record_names::RecordNames;
 use crate::units::UnitFactors;
 use hysid_document::shell::quoted;
+use hysid_document::unit;
 use hysid_document::visible::{clipped, listed};
 
 /// Measured data and the tables they come from.
@@ -331,13 +333,25 @@ fn places(
         ends.extend(plateaus.iter().flatten().map(|rows| rows.end));
         ends.sort_unstable();
         ends.dedup();
-        let name = |number: usize| match ends.len() {
-            1 => naming.stem.to_string(),
-            _ => format!("{} ({})", naming.stem, number + 1),
+        // What divides the rows tells the records apart.
+        let divider = if plateaus.is_some() { &roles.record } else { &roles.condition };
+        let values = divider.as_ref().and_then(|name| Some((name, numbers(table, name)?)));
+        let name = |number: usize, rows: &Range<usize>| match (ends.len(), &values) {
+            (1, _) => naming.stem.to_string(),
+            (_, None) => format!("{} ({})", naming.stem, number + 1),
+            (_, Some((column, values))) => {
+                let mean = values[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+                let value = unit::with(&format!("{:.3}", Significant(mean)), column);
+                format!("{} ({}: {value})", naming.stem, number + 1)
+            }
         };
         let starts = std::iter::once(0).chain(ends.iter().copied());
         let rows = starts.zip(&ends).map(|(start, &end)| start..end);
-        let place = |(number, rows)| RecordPlace { record: name(number), table: naming.table, rows };
+        let place = |(number, rows): (usize, Range<usize>)| RecordPlace {
+            record: name(number, &rows),
+            table: naming.table,
+            rows,
+        };
         return Ok(rows.enumerate().map(place).collect());
     };
     let cell = place_of(table, column)?;

@@ -237,7 +237,7 @@ fn a_measured_column_of_records_is_divided_by_its_plateaus() {
     let data = table("T_K,x,y", |k, [_, x, y]| {
         texts(&[&(if k < 40 { 5.0 } else { 300.0 } + 0.01 * sin(40.0 * k as f64)), &x, &y])
     });
-    told(data, "--record T_K", &["all scored, in 2 records: data (1), data (2)"]);
+    told(data, "--record T_K", &["all scored, in 2 records: data (1: 5 K), data (2: 300 K)"]);
 }
 
 #[test]
