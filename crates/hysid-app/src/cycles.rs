@@ -18,7 +18,7 @@ use hysid::data::record::Dataset;
 use hysid::diagnosis::cycles::{
     Correction, CycleOptions, CycleTable, FIGURES, Figure, LEVEL_FIGURES, corrected,
 };
-use hysid::diagnosis::model::ModelCycles;
+use hysid::diagnosis::model::{MagnetisationNode, ModelCycles};
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves, without_calibration_points};
 use hysid_document::visible::clipped;
 use hysid_document::{Problem, Result, count, object};
@@ -39,6 +39,8 @@ pub struct Cycles<'a> {
     pub table: CycleTable,
     /// First-order reversal curves, if there are any.
     pub curves: Option<ReversalCurves>,
+    /// Initial and anhysteretic curve of a model of a magnet; otherwise empty.
+    pub magnetisation: Vec<MagnetisationNode>,
     /// Names and units.
     pub quantities: Quantities,
     /// Reading of the data, label and text.
@@ -78,6 +80,7 @@ impl<'a> Cycles<'a> {
             data: set,
             table,
             curves,
+            magnetisation: Vec::new(),
             understood,
         })
     }
@@ -100,6 +103,7 @@ impl<'a> Cycles<'a> {
             data: Cow::Owned(driven.data),
             table: driven.table,
             curves: driven.reversal_curves,
+            magnetisation: driven.magnetisation,
             understood,
         })
     }

@@ -1,6 +1,7 @@
 //! Cycles, levels, figures of records and reversal curves as CSV.
 
 use hysid::diagnosis::cycles::{CycleRow, Figure, LEVEL_FIGURES, LevelRow, RecordFigure};
+use hysid::diagnosis::model::MagnetisationNode;
 use hysid::diagnosis::reversal_curves::{MarginalValue, ReversalCurves, ReversalNode};
 use hysid_records::{IN_MEMORY, header_line};
 use hysid_tables::shortest;
@@ -71,7 +72,19 @@ pub fn side_tables(cycles: &Cycles) -> Vec<SideTable> {
         let (what, extension, beginning) = ("margins", "forc-margins.csv", &b"distribution,field"[..]);
         tables.push(SideTable { what, extension, beginning, content: marginals_csv(cycles, curves) });
     }
+    if !cycles.magnetisation.is_empty() {
+        let (what, extension, beginning) = ("curves", "curves.csv", &b"input"[..]);
+        tables.push(SideTable { what, extension, beginning, content: magnetisation_csv(cycles) });
+    }
     tables
+}
+
+/// Initial and anhysteretic curve as CSV.
+fn magnetisation_csv(cycles: &Cycles) -> Vec<u8> {
+    let q = &cycles.quantities;
+    let names = [q.as_input("input"), q.as_output("initial"), q.as_output("anhysteretic")];
+    let row = |node: &MagnetisationNode| [node.input, node.initial, node.anhysteretic].map(shortest).into();
+    written(&names, cycles.magnetisation.iter().map(row))
 }
 
 /// The levels as CSV.

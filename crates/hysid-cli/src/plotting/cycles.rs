@@ -178,6 +178,7 @@ fn cycles<'a>(data: Cow<'a, Dataset>, options: &CycleOptions) -> Result<Cycles<'
         data,
         table,
         curves: None,
+        magnetisation: Vec::new(),
         understood: Vec::new(),
     })
 }

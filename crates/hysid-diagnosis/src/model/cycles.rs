@@ -4,15 +4,17 @@
 //! cycles            of growing amplitude, two of each, over the trained range: about its middle if it has both signs,
 //!                   otherwise from its end next to 0; three over the whole range at each trained speed
 //! reversal curves   from forty inputs on the falling branch back to the upper end of the trained range
+//! magnets           the initial curve, and the anhysteretic one, where oscillations about each input end that decay
 //! ```
 
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::error::Result;
 use hysid_core::model::Model;
 
+use super::magnetisation::{self, MagnetisationNode};
 use super::probe::{Probe, Probing};
 use crate::DiagnosisOptions;
-use crate::cycles::{CycleOptions, CycleTable};
+use crate::cycles::{CycleOptions, CycleTable, Field};
 use crate::reversal_curves::{ReversalCurveOptions, ReversalCurves};
 
 /// Amplitudes of the growing cycles.
@@ -56,6 +58,8 @@ pub struct ModelCycles {
     pub table: CycleTable,
     /// Its first-order reversal curves; `None` if its output is the same everywhere at a vanishing speed.
     pub reversal_curves: Option<ReversalCurves>,
+    /// Initial and anhysteretic curve of a magnet whose range has both signs; otherwise empty.
+    pub magnetisation: Vec<MagnetisationNode>,
 }
 
 impl ModelCycles {
@@ -80,9 +84,12 @@ impl ModelCycles {
         };
         let curves = reversal_curves(&probe)?;
         let has_loops = curves.check_identifiable(crate::FEWEST_ROWS).is_ok();
+        let table = CycleTable::of(&data, &options)?;
+        let has_curves = table.field == Field::Magnet && begin(&probe).0 == 0.0;
         Ok(Self {
             probing: probe.description(),
-            table: CycleTable::of(&data, &options)?,
+            table,
+            magnetisation: if has_curves { magnetisation::curves(&probe)? } else { Vec::new() },
             reversal_curves: if has_loops { ReversalCurves::of(&curves, &options_of_curves)? } else { None },
             data,
         })

@@ -270,3 +270,34 @@ fn a_model_whose_rows_need_much_work_is_probed_with_fewer() {
     let diagnosis = ModelDiagnosis::of(&heavy).unwrap();
     assert!(diagnosis.invertibility.scans < 100, "{}", diagnosis.invertibility.scans);
 }
+
+/// Plays follow the largest oscillation that they feel and end above and below the input by the same: the anhysteretic curve of
+/// a Prandtl-Ishlinskii model is its straight line `c + (w_0 + Σ w_i) x`, and the initial one `c + w_0 x + Σ w_i max(x - r_i, 0)`.
+#[test]
+fn initial_and_anhysteretic_curve_of_plays_are_their_closed_forms() {
+    use hysid_core::law::Classical;
+    use hysid_core::law::prandtl_ishlinskii::PrandtlIshlinskii;
+
+    let (c, w0, thresholds, weights) = (0.3, 0.5, [0.4, 1.0], [0.8, 0.6]);
+    let law = PrandtlIshlinskii::new(c, w0, thresholds.into(), weights.into()).unwrap();
+    let request = FitSpec::Classical(ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii));
+    let body = Predictor::Law(Classical::PrandtlIshlinskii(law));
+    let x: Vec<f64> = [0.0, 1.0, 0.0, -1.0, 0.0, 1.0].map(|x| X * x).into();
+    let record = Record::new("r", vec![x.clone()], x).unwrap();
+    let data = Dataset::new(ColumnNames::of(None, &["H_A_per_m"], "B_T"), vec![record]).unwrap();
+    let found = ProvenanceDraft::of(request, Termination::Converged);
+    let magnet = Model::new(body, InputTransform::default(), None, &data, found).unwrap();
+    let cycles = ModelCycles::of(&magnet, &crate::cycles::CycleOptions::default(), None).unwrap();
+    assert_eq!(cycles.magnetisation.len(), 41);
+    for node in &cycles.magnetisation {
+        let x = node.input;
+        let plays = thresholds.iter().zip(weights);
+        let initial: f64 = plays.map(|(r, w)| w * (x.abs() - r).max(0.0) * x.signum()).sum();
+        assert!((node.initial - (c + w0 * x + initial)).abs() < 1e-12, "{node:?}");
+        // At the ends of the range, oscillations are cut off on one side.
+        if x.abs() <= X - 1.0 - X / 40.0 {
+            let line = c + (w0 + weights.iter().sum::<f64>()) * x;
+            assert!((node.anhysteretic - line).abs() < 0.02 * X, "{node:?} {line}");
+        }
+    }
+}
