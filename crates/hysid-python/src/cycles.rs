@@ -68,8 +68,9 @@ pub fn of_model(
     division: Option<&str>,
     field: Option<&str>,
     smoothing_factor: Option<usize>,
+    density: Option<f64>,
 ) -> PyResult<String> {
-    let (model, options) = (Arc::clone(model), options(division, field)?);
+    let (model, options) = (Arc::clone(model), CycleOptions { density, ..options(division, field)? });
     let driven = interruptible(py, move || ModelCycles::of(&model, &options, smoothing_factor))?;
     told(&driven.table, driven.reversal_curves.as_ref())
 }

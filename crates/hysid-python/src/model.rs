@@ -284,15 +284,16 @@ impl Model {
     }
 
     /// Its cycles and first-order reversal curves, as JSON.
-    #[pyo3(signature = (division, field, smoothing_factor))]
+    #[pyo3(signature = (division, field, smoothing_factor, density))]
     fn cycles(
         &self,
         py: Python<'_>,
         division: Option<&str>,
         field: Option<&str>,
         smoothing_factor: Option<usize>,
+        density: Option<f64>,
     ) -> PyResult<String> {
-        crate::cycles::of_model(py, &self.model, division, field, smoothing_factor)
+        crate::cycles::of_model(py, &self.model, division, field, smoothing_factor, density)
     }
 
     /// Runs it sample by sample, from its initial state or a state that was found.

@@ -286,6 +286,12 @@ def test_losses_of_magnets_are_given_per_mass():
     assert np.isnan(hysid.cycles(field, flux, time, field="magnet")["power_per_mass"]).all()
     with pytest.raises(ValueError, match="density: a number above 0"):
         hysid.cycles(field, flux, time, density=0)
+    model = hysid.fit(field, flux, model="prandtl-ishlinskii")
+    driven = model.cycles(field="magnet", density=7650)
+    assert np.allclose(7650 * driven["energy_per_mass"], driven["energy"], equal_nan=True)
+    assert np.isfinite(driven["energy_per_mass"]).any()
+    with pytest.raises(ValueError, match="density: a number above 0"):
+        model.cycles(density=-1)
 
 
 def test_a_model_has_cycles_and_reversal_curves(spring_and_slider):

@@ -238,16 +238,21 @@ def cycles(
     arranged = columns(x, y, time, None, records)
     if not 0 <= (smoothing_growth := real("smoothing_growth", smoothing_growth)) <= 1:
         raise ValueError(f"smoothing_growth: a number from 0 to 1 is needed, not {smoothing_growth}")
-    if density is not None and not (density := real("density", density)) > 0:
-        raise ValueError(f"density: a number above 0 is needed, not {density}")
     return cycles_of(
         arranged,
         *options,
         smallest_reversal=smallest_reversal,
         smoothing=smoothing,
         smoothing_growth=smoothing_growth,
-        density=density,
+        density=density_of(density),
     )
+
+
+def density_of(density: float | None) -> float | None:
+    """A mass density that is given, checked."""
+    if density is not None and not (density := real("density", density)) > 0:
+        raise ValueError(f"density: a number above 0 is needed, not {density}")
+    return density
 
 
 def cycles_of(

@@ -13,7 +13,7 @@ import numpy as np
 from hysid import _hysid
 from hysid._arguments import name_of, pair, real, truth, whole
 from hysid._columns import Column, column_of
-from hysid._cycles import Cycles, named_options
+from hysid._cycles import Cycles, density_of, named_options
 from hysid._data import Columns, columns, in_units_of, is_record_list, shaped_like
 from hysid._diagnosis import ModelDiagnosis
 from hysid._inverse import Inverse, Inversion, Reference
@@ -783,7 +783,12 @@ class Model(StoredModel):
         return ModelDiagnosis(json.loads(self._native.diagnose()))
 
     def cycles(
-        self, *, division: str | None = None, field: str | None = None, smoothing_factor: int | None = None
+        self,
+        *,
+        division: str | None = None,
+        field: str | None = None,
+        smoothing_factor: int | None = None,
+        density: float | None = None,
     ) -> Cycles:
         """Drive the model through cycles and first-order reversal curves over its trained range and read their figures.
 
@@ -796,13 +801,16 @@ class Model(StoredModel):
             ``"general"``; by default as the names and units of the columns indicate.
         smoothing_factor : int, optional
             Smoothing factor of the density of the reversal curves, 1 to 10; chosen by default.
+        density : float, optional
+            Mass density in kg/m³, for losses of magnets per mass.
 
         Returns
         -------
         Cycles
             The figures of the model's cycles, not of measured data.
         """
-        return Cycles._of(self._native.cycles(*named_options(division, field, smoothing_factor)))
+        options = named_options(division, field, smoothing_factor)
+        return Cycles._of(self._native.cycles(*options, density_of(density)))
 
     def _columns(self, x: Any, y: Any, time: Any, rate: Any, records: Any) -> Columns:
         return columns(x, y, time, rate, records, self.inputs)
