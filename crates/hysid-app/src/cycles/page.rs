@@ -44,8 +44,13 @@ fn table_section(cycles: &Cycles) -> Part {
     let names: Vec<&str> =
         cycles.figures().map(|figure| figure.name).filter(|name| !PLACES.contains(name)).collect();
     let figures = present(cycles, &names);
-    let mut parts = vec![Part::Table(shown(cycles, &figures, AT_EACH_END, unit::label))];
-    if cycles.table.cycles.iter().any(|row| !row.complete) {
+    let mut parts = Vec::new();
+    // Reversal curves alone are no cycles, and have a section of their own.
+    let has_rows = cycles.curves.is_none() || cycles.table.complete().next().is_some();
+    if has_rows {
+        parts.push(Part::Table(shown(cycles, &figures, AT_EACH_END, unit::label)));
+    }
+    if has_rows && cycles.table.cycles.iter().any(|row| !row.complete) {
         parts.push(Part::note("* incomplete: the record begins or ends within the cycle."));
     }
     let notes = notes(cycles);
