@@ -164,7 +164,7 @@ def test_the_inverse_of_a_record_is_the_program_s(program, tmp_path):
 
 def test_options_have_the_program_s_names(program, tmp_path):
     """One name everywhere: what the program takes for a model and its training, `fit` takes too."""
-    usage = program("fit", "--help", folder=tmp_path).stdout
+    usage = program("fit", "--help", "options", folder=tmp_path).stdout
     offered = {name.replace("-", "_") for name in re.findall(r"^\s+(?:-\w, )?--([a-z-]+)", usage, re.M)}
     keywords = set(inspect.signature(hysid.fit).parameters)
     assert set(_hysid.option_names()) <= keywords
