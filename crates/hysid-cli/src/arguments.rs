@@ -163,7 +163,7 @@ pub struct ColumnOptions {
     /// table, or a part of it where the time begins again or a condition of the test changes.
     #[arg(long, value_name = "COLUMN")]
     pub record: Option<String>,
-    /// Time stamps, or none [default: by name, unit and values]
+    /// Time stamps, or none [default: detected]
     ///
     /// `--time none` uses no column as time.
     #[arg(long, value_name = "COLUMN")]
