@@ -1,11 +1,13 @@
 //! Limits on the unpacked size of a file: a small one may claim any size, and compression gives a thousandfold.
 
 use std::cell::Cell;
-use std::io::{self, Read};
+use std::io::{self, Cursor, Read};
 use std::rc::Rc;
 use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
+
+use zip::ZipArchive;
 
 /// Bytes that any file may unpack to.
 const FREE_BYTES: u64 = 8 << 20;
@@ -65,6 +67,34 @@ impl Budget {
             return Err(too_much());
         }
         Ok(bytes)
+    }
+
+    /// The parts of an archive whose names are wanted, at most `most` and together within the budget.
+    ///
+    /// # Errors
+    /// No archive, a damaged one, more parts, and those of `is_wanted`.
+    pub fn parts(
+        self,
+        archive: &[u8],
+        most: usize,
+        is_wanted: impl Fn(&str) -> Result<bool, String>,
+    ) -> Result<Vec<(String, Vec<u8>)>, String> {
+        let mut archive = ZipArchive::new(Cursor::new(archive)).map_err(|_| DAMAGED)?;
+        if archive.len() > most {
+            return Err(format!("it has more than {most} parts"));
+        }
+        let (mut parts, mut left) = (Vec::new(), self.bytes());
+        for place in 0..archive.len() {
+            let part = archive.by_index(place).map_err(|_| DAMAGED)?;
+            let name = part.name().map_err(|_| DAMAGED)?.into_owned();
+            if !is_wanted(&name)? {
+                continue;
+            }
+            let content = self.unpacked(part)?;
+            left = left.checked_sub(content.len() as u64).ok_or_else(too_much)?;
+            parts.push((name, content));
+        }
+        Ok(parts)
     }
 
     /// Runs a library, which may panic or never end.

@@ -1,10 +1,6 @@
 //! Arrays of NumPy, `.npy`, and archives of them, `.npz`. Source: "NEP 1: A Simple File Format for NumPy Arrays".
 
-use std::io::Cursor;
-
-use zip::ZipArchive;
-
-use super::budget::{Budget, DAMAGED, too_much};
+use super::budget::{Budget, DAMAGED};
 use super::variables::Variable;
 
 const SIGNATURE: &[u8] = b"\x93NUMPY";
@@ -30,17 +26,8 @@ pub fn variables(bytes: &[u8], budget: Budget) -> Result<(Vec<Variable>, &'stati
     if is_array(bytes) {
         return Ok((array("array", bytes, &mut left)?, "NumPy array"));
     }
-    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|_| DAMAGED)?;
-    if archive.len() > MOST_ARRAYS {
-        return Err(format!("it has more than {MOST_ARRAYS} parts"));
-    }
     let mut found = Vec::new();
-    let mut unpacked = budget.bytes();
-    for place in 0..archive.len() {
-        let part = archive.by_index(place).map_err(|_| DAMAGED)?;
-        let name = part.name().map_err(|_| DAMAGED)?.into_owned();
-        let content = budget.unpacked(part)?;
-        unpacked = unpacked.checked_sub(content.len() as u64).ok_or_else(too_much)?;
+    for (name, content) in budget.parts(bytes, MOST_ARRAYS, |_| Ok(true))? {
         if is_array(&content) {
             found.extend(array(name.trim_end_matches(".npy"), &content, &mut left)?);
         }

@@ -6,7 +6,7 @@ use std::io::{Cursor, Write as _};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, ZipArchive, ZipWriter};
+use zip::{CompressionMethod, ZipWriter};
 
 use super::super::budget::{Budget, DAMAGED, too_much};
 
@@ -33,26 +33,13 @@ pub enum SpreadsheetKind {
 /// No archive of a spreadsheet; parts that unpack to more than the budget, or declare more than they hold.
 pub fn checked(bytes: &[u8]) -> Result<(Vec<u8>, SpreadsheetKind), String> {
     let budget = Budget::of(bytes.len());
-    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|_| DAMAGED)?;
-    if archive.len() > MOST_PARTS {
-        return Err(format!("it has more than {MOST_PARTS} parts"));
-    }
-    let mut parts = Vec::new();
-    let mut left = budget.bytes();
-    for place in 0..archive.len() {
-        let part = archive.by_index(place).map_err(|_| DAMAGED)?;
-        let name = part.name().map_err(|_| DAMAGED)?.into_owned();
+    let parts = budget.parts(bytes, MOST_PARTS, |name| {
         let lower = name.to_ascii_lowercase();
         if lower.ends_with(".bin") && lower.contains("workbook") {
             return Err("it is a binary workbook (.xlsb): save it as .xlsx".into());
         }
-        if ![".xml", ".rels", "mimetype"].iter().any(|ending| lower.ends_with(ending)) {
-            continue;
-        }
-        let content = budget.unpacked(part)?;
-        left = left.checked_sub(content.len() as u64).ok_or_else(too_much)?;
-        parts.push((name, content));
-    }
+        Ok([".xml", ".rels", "mimetype"].iter().any(|ending| lower.ends_with(ending)))
+    })?;
     let has = |name: &str| parts.iter().any(|(part, _)| part.eq_ignore_ascii_case(name));
     let kind =
         match (has("content.xml"), parts.iter().any(|(part, _)| part.to_lowercase().contains("workbook"))) {
