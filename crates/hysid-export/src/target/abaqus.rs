@@ -21,15 +21,7 @@ pub(super) const BACK_END: BackEnd = BackEnd {
 const MATERIAL: &str = "a user material of Abaqus";
 
 fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
-    let inputs = subject.names().inputs.len();
-    if inputs > 1 {
-        return Err(Error::Inputs { target: MATERIAL, inputs });
-    }
-    if subject.model().has_inertia() {
-        return Err(Error::Inertia { target: MATERIAL });
-    }
-    let mut files = c::sources(subject);
-    files.push(c::test(subject));
+    let mut files = c::of_material(subject, MATERIAL)?;
     files.push(ExportFile::new(format!("{}_umat.c", subject.name()), material(subject)));
     Ok(files.into())
 }

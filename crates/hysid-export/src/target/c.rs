@@ -36,6 +36,23 @@ pub(super) fn test(subject: &ExportSubject<'_>) -> ExportFile {
     ExportFile::new(format!("{}_test.c", subject.name()), self_test::self_test(subject))
 }
 
+/// The same files around which a material of a structural analysis is written: a force that follows from one displacement.
+pub(super) fn of_material(
+    subject: &ExportSubject<'_>,
+    target: &'static str,
+) -> Result<Vec<ExportFile>, Error> {
+    let inputs = subject.names().inputs.len();
+    if inputs > 1 {
+        return Err(Error::Inputs { target, inputs });
+    }
+    if subject.model().has_inertia() {
+        return Err(Error::Inertia { target });
+    }
+    let mut files = sources(subject);
+    files.push(test(subject));
+    Ok(files)
+}
+
 pub(super) fn sources(subject: &ExportSubject<'_>) -> Vec<ExportFile> {
     let name = subject.name();
     let mut files = vec![

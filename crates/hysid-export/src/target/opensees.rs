@@ -30,16 +30,8 @@ const ROWS_OF_BRANCH: usize = 50;
 const MATERIAL: &str = "a uniaxialMaterial of OpenSees";
 
 fn write(subject: &ExportSubject<'_>) -> Result<TargetFiles, Error> {
-    let inputs = subject.names().inputs.len();
-    if inputs > 1 {
-        return Err(Error::Inputs { target: MATERIAL, inputs });
-    }
-    if subject.model().has_inertia() {
-        return Err(Error::Inertia { target: MATERIAL });
-    }
     let name = subject.name();
-    let mut files = c::sources(subject);
-    files.push(c::test(subject));
+    let mut files = c::of_material(subject, MATERIAL)?;
     files.push(ExportFile::new(format!("{name}Material.h"), material::header(subject)));
     files.push(ExportFile::new(format!("{name}Material.cpp"), material::source(subject)));
     let model = subject.model();
