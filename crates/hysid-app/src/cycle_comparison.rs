@@ -28,24 +28,24 @@ fn names(field: Field) -> &'static [&'static str] {
     }
 }
 
+/// The data with the outputs of a model in the place of the measured ones. Rows that were not measured stay blank, unless none
+/// was.
+pub fn with_outputs<'o>(data: &Dataset, outputs: impl Iterator<Item = &'o [f64]>) -> hysid::Result<Dataset> {
+    let is_measured = data.scored() > 0;
+    let with_output = |(record, output): (&Record, &[f64])| {
+        let rows = output.iter().zip(record.output());
+        let kept = rows.map(|(model, y)| if is_measured && y.is_nan() { f64::NAN } else { *model });
+        record.clone().with_output(kept.collect())
+    };
+    let records = data.records().iter().zip(outputs).map(with_output).collect::<hysid::Result<_>>()?;
+    Dataset::new(data.names().clone(), records)
+}
+
 /// The table of the data and that of the model on the same inputs, divided alike; `None` for data without loops.
 fn tables(set: &ReportSet) -> Option<(CycleTable, CycleTable)> {
     let measured = CycleTable::of(set.data, &CycleOptions::default()).ok()?;
-    let with_model = |(record, output): (&Record, &Vec<f64>)| {
-        // Where nothing was measured, nothing is compared.
-        let rows = output.iter().zip(record.output());
-        record
-            .clone()
-            .with_output(rows.map(|(model, y)| if y.is_nan() { f64::NAN } else { *model }).collect())
-    };
-    let records = set.data.records().iter().zip(&set.simulated).map(with_model);
-    let simulated =
-        Dataset::new(set.data.names().clone(), records.collect::<hysid::Result<_>>().ok()?).ok()?;
-    let alike = CycleOptions {
-        division: Some(measured.division),
-        field: Some(measured.field),
-        ..CycleOptions::default()
-    };
+    let simulated = with_outputs(set.data, set.simulated.iter().map(Vec::as_slice)).ok()?;
+    let alike = CycleOptions { division: Some(measured.division), ..CycleOptions::default() };
     let model = CycleTable::of(&simulated, &alike).ok()?;
     Some((measured, model))
 }

@@ -14,7 +14,7 @@ mod band_coverage;
 mod beforehand;
 pub mod compare;
 mod course;
-mod cycle_comparison;
+pub mod cycle_comparison;
 pub mod cycles;
 pub mod date;
 pub mod diagnosis;

@@ -10,6 +10,7 @@ use anyhow::{Result, anyhow};
 use hysid::data::record::Dataset;
 use hysid::diagnosis::cycles::CycleOptions;
 use hysid::model::Prediction;
+use hysid_app::cycle_comparison::with_outputs;
 use hysid_document::Chart;
 
 pub use drawing::{Format, Style, drawing};
@@ -37,16 +38,8 @@ impl PlotData {
     /// The data with the output of the model in place of the measured one, in the rows that have one.
     fn simulated(&self) -> Result<Option<Dataset>> {
         let Some(predicted) = &self.predicted else { return Ok(None) };
-        let is_measured = self.is_measured();
-        let output = |measured: &[f64], simulated: &[f64]| -> Vec<f64> {
-            let pairs = measured.iter().zip(simulated);
-            pairs.map(|(y, model)| if is_measured && y.is_nan() { f64::NAN } else { *model }).collect()
-        };
-        let records = self.data.records().iter().zip(predicted);
-        let records = records
-            .map(|(record, predicted)| record.clone().with_output(output(record.output(), &predicted.output)))
-            .collect::<hysid::Result<_>>()?;
-        Ok(Some(Dataset::new(self.data.names().clone(), records)?))
+        let outputs = predicted.iter().map(|predicted| predicted.output.as_slice());
+        Ok(Some(with_outputs(&self.data, outputs)?))
     }
 
     /// Only the records of these names; all if there are none.
