@@ -26,7 +26,7 @@ pub struct Cycles {
     /// Table to write [default: name of the file with `.cycles.csv`; `-` is stdout]
     ///
     /// The default is in the current folder and named after the first file. The page has the same name with `.html`;
-    /// further tables, if the data have them, have it with `.figures.csv`, `.levels.csv` and `.forc.csv`.
+    /// further tables, if the data have them, have it with `.figures.csv`, `.levels.csv`, `.forc.csv`, `.forc-margins.csv` and `.curves.csv`.
     #[arg(short, long, value_name = "TABLE.csv")]
     pub out: Option<PathBuf>,
     #[command(flatten)]

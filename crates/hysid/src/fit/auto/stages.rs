@@ -311,7 +311,7 @@ impl Stages<'_, '_, '_> {
 
     /// The best candidate with states of its own, of alike ones the one with the fewest numbers, if it is about the best of all
     /// and the user did not choose it. Such models differ more from start to start than from candidate to candidate.
-    pub fn best_with_free_states(&self) -> Option<usize> {
+    fn best_with_free_states(&self) -> Option<usize> {
         let score = |place: usize| Score::of(&self.trials[place].predicted, self.bench.folds, |_| true).sum();
         let complete = || (0..self.trials.len()).filter(|&place| self.trials[place].is_complete());
         let free = || complete().filter(|&place| self.trials[place].candidate.has_free_states());
