@@ -23,10 +23,12 @@ impl Beforehand {
         };
         request.model().check_data(&data.set, request.rate()).map_err(|error| data.explain(error))?;
         let summary = Summary::of(&data.set);
-        let understood = understanding::understanding(data, &summary, request, &model, face);
+        let of_request = understanding::of_request(data, request, &model, face);
+        let understood = [understanding::of_data(data, &summary, face), of_request.clone()].concat();
+        let in_short = [understanding::in_short(data, &summary, face), of_request].concat();
         let mut warnings = data_warnings(data, &summary, face);
         warnings.extend(request.cautions(&data.set).iter().map(|caution| face.told(caution)));
-        Ok(Self { understood, warnings })
+        Ok(Self { understood, in_short, warnings })
     }
 }
 

@@ -242,7 +242,7 @@ impl CompareTask<'_> {
 }
 
 fn percent(errors: &Errors) -> String {
-    errors.nrmse_std_percent.map_or_else(|| "-".into(), |percent| format!("{:.3}", Significant(percent)))
+    errors.nrmse_std_percent.map_or_else(|| "-".into(), |percent| format!("{:.4}", Significant(percent)))
 }
 
 /// The cells of a fitted model, in the order of [`HEADINGS`].

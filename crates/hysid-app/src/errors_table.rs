@@ -22,11 +22,10 @@ pub fn errors_table(sets: &[(&str, &Errors)]) -> String {
     let column = sets.first().map_or("", |(_, errors)| errors.output.as_str());
     let unit = unit::of_column(column).map_or_else(String::new, |unit| format!(", {}", clipped(&unit)));
     let output = clipped(column);
-    let rows: [(String, Measure); 6] = [
+    let rows: [(String, Measure); 5] = [
         (format!("RMSE of {output}{unit}"), |errors| number(errors.rmse)),
         ("NRMSE, % of std".into(), |errors| percent(errors.nrmse_std_percent)),
         ("NRMSE, % of range".into(), |errors| percent(errors.nrmse_range_percent)),
-        ("fit, %".into(), |errors| percent(errors.fit_percent)),
         (format!("largest error{unit}"), |errors| number(errors.max_abs_error)),
         ("rows scored".into(), |errors| errors.samples.to_string()),
     ];
@@ -44,5 +43,5 @@ fn number(value: f64) -> String {
 
 /// `None` is for an output that does not vary.
 fn percent(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".into(), |value| format!("{value:.3}"))
+    value.map_or_else(|| "-".into(), number)
 }

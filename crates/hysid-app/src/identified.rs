@@ -19,6 +19,8 @@ use crate::{Report, ReportSet, loops, page};
 pub struct Beforehand {
     /// Reading of data and request, label and text.
     pub understood: Vec<(String, String)>,
+    /// The same in a few lines.
+    pub in_short: Vec<(String, String)>,
     pub warnings: Vec<String>,
 }
 

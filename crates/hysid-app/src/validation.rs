@@ -117,8 +117,6 @@ impl ValidateOutcome {
         let blank = String::new;
         let all = &self.errors.unseen;
         rows.push(row("all folds", [blank(), percent(all), blank(), number(all.rmse)]));
-        let mean = self.errors.unseen_nrmse_std_percent.map_or_else(|| "-".into(), number);
-        rows.push(row("geometric mean", [blank(), mean, blank(), blank()]));
         shorten_names(&mut rows);
         let mut text = aligned(&rows).join("\n") + "\n\n";
         text += &wrapped(
@@ -158,7 +156,7 @@ fn percent(errors: &Errors) -> String {
 }
 
 fn number(value: f64) -> String {
-    format!("{:.3}", Significant(value))
+    format!("{:.4}", Significant(value))
 }
 
 /// Cuts names off where a line would be too long for a terminal.

@@ -50,6 +50,17 @@ pub fn suggest_command(error: &mut clap::Error) {
     }
 }
 
+/// Leaves out what a list of all values says worse than the one that was meant, and advice to take a wrong option for a file.
+pub fn shorten(error: &mut clap::Error) {
+    if error.get(ContextKind::SuggestedValue).is_some() {
+        error.remove(ContextKind::ValidValue);
+    }
+    if let Some(ContextValue::StyledStrs(hints)) = error.remove(ContextKind::Suggested) {
+        let useful = hints.into_iter().filter(|hint| !hint.to_string().contains("as a value")).collect();
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(useful));
+    }
+}
+
 /// Hint for a value after `--force` of `hysid restoring-force`, which takes none: it may be a column.
 pub fn hint_of_force() -> Option<String> {
     value_of_force(typed()).map(|column| applied_force(&column))

@@ -49,7 +49,7 @@ pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -
     let beforehand = Beforehand::of(data, request, Face::Terminal)?;
     // Looking at long data takes its time, and Ctrl-C ends it at once: there is nothing to lose yet.
     interrupt::listen(to_ctrl_c)?;
-    note_labelled(&beforehand.understood);
+    note_labelled(&beforehand.in_short);
     beforehand.warnings.iter().for_each(warning);
     Ok(beforehand)
 }

@@ -127,6 +127,7 @@ fn refuse(error: clap::Error) -> ExitCode {
             let mut error = error;
             let hint = is_extra_value(&error).then(help::hint_of_force).flatten();
             help::suggest_command(&mut error);
+            help::shorten(&mut error);
             let text = cleaned(error).render().to_string();
             let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
             let said: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:")).collect();

@@ -39,10 +39,8 @@ impl FitSpec {
     fn new(options: &str, rate: &str, data: &Dataset) -> PyResult<Self> {
         let chosen = NamedOptions::of(serde_json::from_str(options).map_err(refused)?).map_err(refused)?;
         let rate: RateChoice = rate.parse().map_err(refused)?;
-        let is_decided = matches!(rate, RateChoice::Method(_));
-        let rate = rate.method(chosen.model(), &data.set);
-        let request = chosen.request(rate, is_decided);
-        chosen.model().check_data(&data.set, rate).map_err(refused)?;
+        chosen.model().check_data(&data.set, rate.method(chosen.model(), &data.set)).map_err(refused)?;
+        let request = chosen.request_for(rate, &data.set);
         Ok(Self { chosen, request })
     }
 

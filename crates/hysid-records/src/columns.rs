@@ -10,8 +10,8 @@ use std::ops::Range;
 use hysid_core::data::rate::RateMethod;
 use hysid_core::data::record::{ColumnNames, Dataset};
 use hysid_core::model::Model;
+use hysid_core::options::FitSpec;
 use hysid_core::options::chosen::{NamedOptions, RateChoice};
-use hysid_core::options::{FitSpec, ModelName};
 use hysid_core::words::{Hint, Words};
 
 use self::guess::Guess;
@@ -72,22 +72,16 @@ impl Default for RateOption {
 }
 
 impl RateOption {
-    /// The method that it means for a model and data; `None` for no rate.
-    pub fn method(&self, data: &Dataset, model: ModelName) -> Result<Option<RateMethod>> {
-        Ok(match self {
-            Self::Column(_) => Some(RateMethod::Given),
-            Self::Choice(RateChoice::Method(_)) if !data.has_time() => {
-                let words = Words::from("there is no time column to compute the rate from");
-                return Err(Problem::Other(words.advised(time_or_no_rate())));
-            }
-            Self::Choice(choice) => choice.method(model, data),
-        })
-    }
-
     /// Fit specification from the options, for these data.
     pub fn request(&self, chosen: &NamedOptions, data: &Dataset) -> Result<FitSpec> {
-        let is_decided = !matches!(self, Self::Choice(RateChoice::Auto | RateChoice::None));
-        Ok(chosen.request(self.method(data, chosen.model())?, is_decided))
+        match self {
+            Self::Column(_) => Ok(chosen.request(Some(RateMethod::Given), true)),
+            Self::Choice(RateChoice::Method(_)) if !data.has_time() => {
+                let words = Words::from("there is no time column to compute the rate from");
+                Err(Problem::Other(words.advised(time_or_no_rate())))
+            }
+            Self::Choice(choice) => Ok(chosen.request_for(*choice, data)),
+        }
     }
 }
 

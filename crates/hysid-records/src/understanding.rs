@@ -24,31 +24,48 @@ const MOST_REPEATS: usize = 5;
 
 const MOST_INPUTS: usize = 20;
 
-/// Describes data and request as labels and texts, line by line.
-pub fn understanding(
-    data: &Data,
-    summary: &Summary,
-    request: &FitSpec,
-    model: &str,
-    face: Face,
-) -> Vec<(String, String)> {
+/// The request of a fit to these data, as labels and texts.
+pub fn of_request(data: &Data, request: &FitSpec, model: &str, face: Face) -> Vec<(String, String)> {
     let used = request.rate().filter(|_| request.model().uses_rate());
-    let rate = match used {
-        None if request.model().uses_rate()
-            && data.set.has_time()
-            && data.set.speeds() == SpeedEvidence::One =>
-        {
-            let words = "none: each input value was passed at one speed only, so the data cannot show a rate dependence";
-            let backward = Hint::Value("rate", "backward".into());
-            face.told(&Words::from(words).advised(Words::from("to use the rate anyway: ") + backward))
-        }
-        used => rate(&data.roles.inputs[0], data.roles.rate.as_deref(), used),
-    };
-    let model = format!("{}{model}", request.model().name());
-    let mut lines = of_data(data, summary, face);
-    lines.extend([("rate".to_string(), rate), ("model".to_string(), model)]);
+    let mut lines = vec![("model".to_string(), format!("{}{model}", request.model().name()))];
+    let is_one_speed = || data.set.has_time() && data.set.speeds() == SpeedEvidence::One;
+    if used.is_none() && request.model().uses_rate() && is_one_speed() {
+        let words =
+            "none: each input value was passed at one speed only, so the data cannot show a rate dependence";
+        let backward = Hint::Value("rate", "backward".into());
+        let advised = Words::from(words).advised(Words::from("to use the rate anyway: ") + backward);
+        lines.push(("rate".into(), face.told(&advised)));
+    } else if let Some(method) = used {
+        lines.push(("rate".into(), rate(&data.roles.inputs[0], data.roles.rate.as_deref(), method)));
+    }
     if let FitSpec::Classical(options) = request {
         lines.extend(error_of_records(options, data, face).map(|text| ("error".to_string(), text)));
+    }
+    lines
+}
+
+/// The data in two lines, and what was left out of them; `hysid look` and [`of_data`] tell more.
+pub fn in_short(data: &Data, summary: &Summary, face: Face) -> Vec<(String, String)> {
+    let files: Vec<&str> = data.source.tables.iter().map(|table| table.file.as_str()).collect();
+    let turning = turning_points(summary);
+    let samples = samples(summary, " samples");
+    let mut lines = vec![("data".to_string(), format!("{}: {samples}, {turning}", listed_paths(&files)))];
+    let inputs = data.roles.inputs.iter().zip(&summary.inputs);
+    let mut columns: Vec<String> =
+        inputs.take(MOST_INPUTS).map(|(name, range)| format!("input {}", ranged(name, *range))).collect();
+    if let Some(more) = summary.inputs.len().checked_sub(MOST_INPUTS).filter(|&more| more > 0) {
+        columns.push(format!("and {more} more inputs"));
+    }
+    columns.push(format!("output {}", output(data, summary)));
+    columns.extend(time(data, summary).map(|text| format!("time {text}")));
+    columns.extend(data.roles.guessed.as_ref().map(|guessed| format!("guessed {}", face.told(guessed))));
+    lines.push(("columns".into(), columns.join("; ")));
+    let left_out = data.source.tables.iter().filter_map(|table| table.left_out.described());
+    lines.extend(left_out.map(|text| ("left out".to_string(), text)));
+    lines.extend(repeats(data).into_iter().map(|text| ("repeats".to_string(), text)));
+    let ignored: Vec<&str> = data.roles.set_aside.iter().map(|(name, _)| name.as_str()).collect();
+    if !ignored.is_empty() {
+        lines.push(("ignored".into(), format!("{} (`hysid look` says why)", listed(&ignored))));
     }
     lines
 }
@@ -87,19 +104,12 @@ pub fn of_data(data: &Data, summary: &Summary, face: Face) -> Vec<(String, Strin
             say("left out", file + &text);
         }
     }
-    say("samples", samples(summary));
+    say("samples", samples(summary, ""));
     for text in repeats(data) {
         say("repeats", text);
     }
-    if let Some(time) = &data.roles.time {
-        say(
-            "time",
-            format!(
-                "{}: {}",
-                clipped(time),
-                time_steps(summary, &unit::suffix(unit::of_column(time).as_deref()))
-            ),
-        );
+    if let Some(text) = time(data, summary) {
+        say("time", text);
     }
     let inputs: Vec<(&String, &(f64, f64))> = data.roles.inputs.iter().zip(&summary.inputs).collect();
     for (name, range) in inputs.iter().take(MOST_INPUTS) {
@@ -108,23 +118,14 @@ pub fn of_data(data: &Data, summary: &Summary, face: Face) -> Vec<(String, Strin
     if let Some(more) = inputs.len().checked_sub(MOST_INPUTS).filter(|&more| more > 0) {
         say("", format!("and {more} more"));
     }
-    let missing = match summary.rows - summary.scored {
-        0 => String::new(),
-        missing => format!(", missing in {missing} rows"),
-    };
-    say("output", ranged(&data.roles.output, summary.output) + &missing);
+    say("output", output(data, summary));
     for (name, reason) in data.roles.set_aside.iter().take(MOST_INPUTS) {
         say("ignored", format!("{}: {}", clipped(name), face.told(reason)));
     }
     if let Some(guessed) = &data.roles.guessed {
         say("guessed", face.told(guessed));
     }
-    let first = &data.roles.inputs[0];
-    let turning = summary.turning_points();
-    say(
-        "turning",
-        format!("{turning} turning point{} of {}", if turning == 1 { "" } else { "s" }, clipped(first)),
-    );
+    say("turning", format!("{} of {}", turning_points(summary), clipped(&data.roles.inputs[0])));
     lines
 }
 
@@ -163,7 +164,29 @@ fn as_read(tables: &[TableOrigin]) -> Vec<(String, usize)> {
     ways
 }
 
-fn samples(summary: &Summary) -> String {
+fn turning_points(summary: &Summary) -> String {
+    match summary.turning_points() {
+        1 => "1 turning point".into(),
+        turning => format!("{turning} turning points"),
+    }
+}
+
+fn output(data: &Data, summary: &Summary) -> String {
+    let missing = match summary.rows - summary.scored {
+        0 => String::new(),
+        missing => format!(", missing in {missing} rows"),
+    };
+    ranged(&data.roles.output, summary.output) + &missing
+}
+
+/// The column of time and its steps.
+fn time(data: &Data, summary: &Summary) -> Option<String> {
+    let time = data.roles.time.as_ref()?;
+    let steps = time_steps(summary, &unit::suffix(unit::of_column(time).as_deref()));
+    Some(format!("{}: {steps}", clipped(time)))
+}
+
+fn samples(summary: &Summary, word: &str) -> String {
     let scored = match summary.scored == summary.rows {
         true => "all scored".to_string(),
         false => format!("{} scored", summary.scored),
@@ -175,7 +198,7 @@ fn samples(summary: &Summary) -> String {
             format!("{} records: {}", records.len(), listed(&names))
         }
     };
-    format!("{}, {scored}, in {records}", summary.rows)
+    format!("{}{word}, {scored}, in {records}", summary.rows)
 }
 
 /// Repeated protocols, and the noise that they show; the first few if there are many.
@@ -227,13 +250,12 @@ fn ranged(name: &str, (low, high): (f64, f64)) -> String {
     format!("{name}: {:.4} to {:.4}{unit}", Significant(low), Significant(high))
 }
 
-fn rate(input: &str, column: Option<&str>, method: Option<RateMethod>) -> String {
+fn rate(input: &str, column: Option<&str>, method: RateMethod) -> String {
     let (input, column) = (clipped(input), clipped(column.unwrap_or_default()));
     match method {
-        None => "none".into(),
-        Some(RateMethod::Given) => format!("of {input} from column {column}"),
-        Some(RateMethod::Central) => format!("of {input} by central differences"),
-        Some(RateMethod::Backward) => format!("of {input} by backward differences"),
-        Some(RateMethod::SavitzkyGolay) => format!("of {input} by the Savitzky-Golay method"),
+        RateMethod::Given => format!("of {input} from column {column}"),
+        RateMethod::Central => format!("of {input} by central differences"),
+        RateMethod::Backward => format!("of {input} by backward differences"),
+        RateMethod::SavitzkyGolay => format!("of {input} by the Savitzky-Golay method"),
     }
 }

@@ -119,9 +119,8 @@ impl<'a> Fit<'a> {
     fn request(&self, data: &Dataset) -> Result<FitSpec> {
         let chosen = self.chosen()?;
         let model = chosen.model();
-        let rate = self.rate.method(model, data);
-        model.check_data(data, rate)?;
-        Ok(chosen.request(rate, matches!(self.rate, RateChoice::Method(_))))
+        model.check_data(data, self.rate.method(model, data))?;
+        Ok(chosen.request_for(self.rate, data))
     }
 
     /// The observer, which also keeps to the time limit.

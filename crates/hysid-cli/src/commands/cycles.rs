@@ -37,8 +37,9 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
         }
         Given::Tables(tables) => {
             let data = data_of(tables, &arguments.columns)?;
-            let understood = understanding::of_data(&data, &Summary::of(&data.set), Face::Terminal);
-            note_labelled(&understood);
+            let summary = Summary::of(&data.set);
+            let understood = understanding::of_data(&data, &summary, Face::Terminal);
+            note_labelled(&understanding::in_short(&data, &summary, Face::Terminal));
             data.unused_inputs("cycles of", "used").iter().for_each(warning_words);
             if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
                 warning("cycles ignores --rate: it needs no rate");

@@ -44,8 +44,9 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
 
 fn of_data(arguments: &Diagnose, tables: Vec<Table>) -> Result<PrintedDiagnosis> {
     let data = data_of(tables, &arguments.columns)?;
-    let understood = understanding::of_data(&data, &Summary::of(&data.set), Face::Terminal);
-    note_labelled(&understood);
+    let summary = Summary::of(&data.set);
+    let understood = understanding::of_data(&data, &summary, Face::Terminal);
+    note_labelled(&understanding::in_short(&data, &summary, Face::Terminal));
     data.unused_inputs("diagnosed:", "diagnosed").iter().for_each(warning_words);
     if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
         warning("diagnose ignores --rate: it uses the speeds between turning points");

@@ -76,7 +76,7 @@ fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
     let limits = wanted(arguments, arguments.step.or_else(of_data))?;
     let options = PlanOptions { limits, wave: arguments.wave, seed: arguments.seed };
     let understood = understanding::of_data(&data, &summary, Face::Terminal);
-    note_labelled(&understood);
+    note_labelled(&understanding::in_short(&data, &summary, Face::Terminal));
     let plan = Plan::of(&data.set, &options).map_err(|error| data.explain(error))?;
     let shown: Vec<String> = arguments.like.iter().map(|path| files::shown(path)).collect();
     let planned = Planned {

@@ -2,6 +2,8 @@
 
 use hysid_core::elementary::{cos, sin};
 
+use serde_json::Value;
+
 use crate::workbench::{Workbench, csv, rows};
 
 const QUICK: &str = "--no-report --model xpnn+ --starts 1 --epochs 1 -o out.json";
@@ -19,13 +21,36 @@ fn texts(cells: &[&dyn ToString]) -> Vec<String> {
     cells.iter().map(|cell| cell.to_string()).collect()
 }
 
+/// A text in one line.
+fn words(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 #[track_caller]
 fn told(data: String, options: &str, lines: &[&str]) {
     let bench = Workbench::new();
     bench.put("data.csv", data);
-    let ran = bench.succeeds(&format!("fit data.csv {QUICK} {options}"));
+    let fitted = words(&bench.succeeds(&format!("fit data.csv {QUICK} {options}")).stderr);
+    let look: Value =
+        serde_json::from_str(&bench.run(&format!("look data.csv --json {options}")).stdout).unwrap();
+    let columns = look["files"][0]["columns"].as_array().unwrap();
     for line in lines {
-        assert!(ran.stderr.contains(line), "{line}\n{}", ran.stderr);
+        let of_column = ["input", "output", "time", "ignored"].into_iter().find_map(|role| {
+            let (name, more) = line.strip_prefix(role)?.trim().split_once(':')?;
+            Some((role, name, more.trim()))
+        });
+        let Some((role, name, more)) = of_column else {
+            assert!(fitted.contains(&words(line)), "{line}\n{fitted}");
+            continue;
+        };
+        let column =
+            columns.iter().find(|column| column["name"] == name).unwrap_or_else(|| panic!("{name}: {look}"));
+        let role = if role == "ignored" { "unused" } else { role };
+        assert_eq!(column["role"], role, "{line}\n{look}");
+        assert!(
+            more.is_empty() || role == "time" || column["note"].as_str().unwrap().contains(more),
+            "{line}\n{look}"
+        );
     }
 }
 
@@ -65,7 +90,7 @@ fn what_no_input_is_is_set_aside_and_told() {
         "ignored  note: text",
         "ignored  room: constant",
         "ignored  n: counts the rows",
-        "guessed  input and output, from names and values (change: --input, --output)",
+        "guessed input and output, from names and values",
     ];
     told(data.clone(), "", &lines);
     told(data.clone(), "--input x --input sample", &["input    sample: ", "ignored  room: constant"]);
@@ -81,7 +106,7 @@ fn columns_that_only_grow_are_refused_where_others_are_left() {
         "error: data.csv: column \"position\" grows from row to row: if it is time, --time position --input x --output y \
          (columns: position, x, y); otherwise name input and output",
     );
-    told(growing("position,x,y"), "--time position", &["time     position"]);
+    told(growing("position,x,y"), "--time position", &["time     position:"]);
     told(growing("position,x,y"), "--input position --input x", &["input    position: "]);
     told(growing("position,x,y"), "--input x --output y", &["input    x: "]);
     let data = table("cycle,x,y", |k, [_, x, y]| texts(&[&(k / 20), &x, &y]));
@@ -172,7 +197,12 @@ fn counters_sums_and_conditions_have_no_role() {
     told(
         warm,
         "",
-        &["input    Field (T): ", "output   Moment (emu): ", "in 3 records: ", "few values, which divide"],
+        &[
+            "input    Field (T): ",
+            "output   Moment (emu): ",
+            "in 3 records: ",
+            "ignored  Temperature (K): a condition of the test, with few values, which divide",
+        ],
     );
 }
 

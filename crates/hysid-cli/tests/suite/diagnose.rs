@@ -58,7 +58,7 @@ fn text_tells_every_property_and_fits_a_terminal() {
     }
     must_contain(&ran.stdout, &["\ndeterioration      yes ", "\nexperiments for what could not be tested\n"]);
     must_contain(&ran.stdout, &["\nenergy, J ", "\nsecant stiffness, kN/mm "]);
-    assert!(ran.stderr.starts_with("file     joint.csv\nread as  text, UTF-8; "), "{}", ran.stderr);
+    assert!(ran.stderr.starts_with("data     joint.csv: 1901 samples, "), "{}", ran.stderr);
     assert_eq!(ran.last_line(), "page    joint.diagnosis.html");
 }
 

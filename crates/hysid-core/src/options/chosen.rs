@@ -64,6 +64,20 @@ impl NamedOptions {
         self.model.unwrap_or(ModelName::AUTO)
     }
 
+    /// The specification of the fit to these data. Data that pass each place at one speed determine no relaxation either: `xpnn+`
+    /// then has none by default, and needs no time.
+    pub fn request_for(&self, choice: RateChoice, data: &Dataset) -> FitSpec {
+        let rate = choice.method(self.model(), data);
+        let is_unseen = choice == RateChoice::Auto && data.has_time() && data.speeds() == SpeedEvidence::One;
+        let relaxation = self.relaxation.or(is_unseen.then_some(0));
+        let is_network = matches!(self.model(), ModelName::Network(family) if family.relaxes());
+        let always_rate = matches!(choice, RateChoice::Method(_));
+        match is_network {
+            true => Self { relaxation, ..self.clone() }.request(rate, always_rate),
+            false => self.request(rate, always_rate),
+        }
+    }
+
     /// The specification of the fit. `always_rate` is true if only models with the rate are allowed.
     pub fn request(&self, rate: Option<RateMethod>, always_rate: bool) -> FitSpec {
         let used = self.used();
@@ -394,5 +408,17 @@ mod tests {
         assert_eq!(rate("lugre", 0.0), Some(RateMethod::Backward), "a model that is nothing without it");
         assert_eq!(rate("pnn", 2.0), None);
         assert_eq!("backward".parse(), Ok(RateChoice::Method(RateMethod::Backward)));
+
+        let relaxation = |options: Value, choice: RateChoice, rise: f64| match chosen(options)
+            .unwrap()
+            .request_for(choice, &sweep(rise))
+        {
+            FitSpec::Network(options) => options.sizes.relaxation,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(relaxation(json!({"model": "xpnn+"}), RateChoice::Auto, 0.0), 0);
+        assert_eq!(relaxation(json!({"model": "xpnn+"}), RateChoice::Auto, 2.0), 4);
+        assert_eq!(relaxation(json!({"model": "xpnn+"}), RateChoice::None, 0.0), 4, "creep without a rate");
+        assert_eq!(relaxation(json!({"model": "xpnn+", "relaxation": 3}), RateChoice::Auto, 0.0), 3);
     }
 }

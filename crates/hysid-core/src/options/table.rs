@@ -167,8 +167,8 @@ options! {
         used_by: |model, _| network_or_auto(model, |family| family.has_tanh_layer()),
     }
     relaxation: usize {
-        meaning: "Relaxation neurons of each input of xpnn+, for data with time stamps, or relaxation elements of \
-                  dynamic-prandtl-ishlinskii (at most 3); 0 for none",
+        meaning: "Relaxation neurons of each input of xpnn+, for data with time stamps (by default none for data of \
+                  one speed), or relaxation elements of dynamic-prandtl-ishlinskii (at most 3); 0 for none",
         group: Model,
         values: OptionValues::Count(0, 1000),
         default: |model, _| match model {

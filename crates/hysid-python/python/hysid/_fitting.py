@@ -118,9 +118,9 @@ def fit(
         duhem-nn; 8 (4 with degradation) for hysteretic-oscillator and hysteretic-state-space; chosen by
         cross-validation for random-stops.
     relaxation : int, optional
-        Relaxation neurons of each input of xpnn+, for data with time stamps, or relaxation elements of
-        dynamic-prandtl-ishlinskii (at most 3); 0 for none. Default: 4 for networks; set by each candidate for auto; 2
-        for dynamic-prandtl-ishlinskii.
+        Relaxation neurons of each input of xpnn+, for data with time stamps (by default none for data of one speed), or
+        relaxation elements of dynamic-prandtl-ishlinskii (at most 3); 0 for none. Default: 4 for networks; set by each
+        candidate for auto; 2 for dynamic-prandtl-ishlinskii.
     no_deterioration : bool, optional
         Use stops that do not deteriorate. Default: off for networks; chosen by cross-validation for auto and
         random-stops.
