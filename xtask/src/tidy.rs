@@ -74,6 +74,7 @@ fn violations(paths: &BTreeSet<String>, files: &[SourceFile]) -> Vec<Violation> 
     let mut found = Vec::new();
     for path in paths {
         found.extend(rules::telling_name(path));
+        found.extend(rules::table_in_its_place(path));
     }
     for SourceFile { path, text } in files {
         found.extend(rules::clean_whitespace(path, text));

@@ -70,6 +70,9 @@ const ALLOWED: [(&str, Effect); 10] = [
     ("crates/hysid-studio/src/", Effect::Clock),
 ];
 
+/// The folders that may have tables of data, all of them generated: measured ones belong to others.
+const TABLES_IN: [&str; 3] = ["crates/hysid-cli/tests/files/", "docs/tutorials/data/", "fuzz/corpus/table/"];
+
 /// Written in two parts, or this file would break its own rule.
 const LEFT_TO_DO: [&str; 3] = [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("XX", "X")];
 
@@ -253,6 +256,15 @@ fn equation_number(text: &str) -> Option<(String, &str)> {
     let (section, count) = number.split_once('.')?;
     let is_count = |digits: &str| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
     (is_count(section) && is_count(count)).then(|| (number.to_owned(), rest))
+}
+
+/// Tables of data are where they are expected, so that none is committed with a change by mistake.
+pub fn table_in_its_place(path: &str) -> Option<Violation> {
+    let endings = [".csv", ".dat", ".frc", ".h5", ".mat", ".npy", ".npz", ".tsv", ".xlsx"];
+    let is_elsewhere = !TABLES_IN.iter().any(|folder| path.starts_with(folder));
+    let is_table = endings.iter().any(|ending| path.ends_with(ending));
+    (is_table && is_elsewhere)
+        .then(|| violation(path, 1, format!("tables are in {} only", TABLES_IN.join(", "))))
 }
 
 /// Every relative link in the repository's documents leads to a file or folder of the repository.

@@ -27,6 +27,14 @@ fn tabs_and_trailing_whitespace_are_refused() {
 }
 
 #[test]
+fn tables_elsewhere_are_refused() {
+    assert!(table_in_its_place("out.csv").is_some());
+    assert!(table_in_its_place("crates/hysid/src/loops.mat").is_some());
+    assert!(table_in_its_place("docs/tutorials/data/sheet.csv").is_none());
+    assert!(table_in_its_place("docs/files.md").is_none());
+}
+
+#[test]
 fn marks_of_unfinished_work_are_refused() {
     for mark in LEFT_TO_DO {
         let text = format!("fine\n// {mark}: later\n{mark}S_IN_WORDS = 1");
