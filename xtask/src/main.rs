@@ -1,4 +1,4 @@
-//! Developer commands: `cargo xtask check | test | python | site | sdist | same-arithmetic`.
+//! Developer commands: `cargo xtask check | test | python | site | sdist | release | same-arithmetic`.
 
 mod browser;
 mod cargo;
@@ -8,6 +8,7 @@ mod environment;
 mod markdown;
 mod proofs;
 mod python;
+mod release;
 mod repository;
 mod same_arithmetic;
 mod site;
@@ -42,6 +43,9 @@ enum DeveloperCommand {
     Site,
     /// Build the Python package's source distribution and install it alone (some minutes)
     Sdist,
+    /// Check versions, build every crate from its archive, install the program and the source distribution: a release
+    /// without its upload (half an hour)
+    Release,
     /// Compare models and exported C to the last bit with several instruction sets, some of them emulated
     SameArithmetic {
         /// Only every so many of the fits: all of them take hours where a processor is emulated
@@ -60,6 +64,7 @@ fn main() -> ExitCode {
         DeveloperCommand::Python => python::build_and_test(),
         DeveloperCommand::Site => site::run(),
         DeveloperCommand::Sdist => python::source_distribution(),
+        DeveloperCommand::Release => release::run(),
         DeveloperCommand::SameArithmetic { every } => same_arithmetic::run(every.get()),
         DeveloperCommand::Tidy => tidy::run(),
     };
