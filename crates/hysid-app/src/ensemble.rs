@@ -118,7 +118,7 @@ fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> Vec<P
         ),
         false => (
             "A single model was requested. It was fitted to the data alone, because its error is lower than \
-             that of a model distilled from an ensemble of these candidates. The error is that on held-out \
+             that of a model trained to imitate an ensemble of these candidates. The error is that on held-out \
              data, together with the distance from the ensemble on paths that were not measured.",
             "The share is the weight of a candidate in the ensemble.",
         ),

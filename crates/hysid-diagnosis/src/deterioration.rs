@@ -66,7 +66,7 @@ pub(crate) fn verdict(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
         || !shrinking.is_empty() && 2.0 * sum(&shrinking) >= trends.iter().map(energy).sum()
     {
         let text = format!(
-            "the energy of repeated loops falls by up to {:.0} % (in {} of {} groups of equal loops; Mann-Kendall score {trend_score:.1})",
+            "the energy of repeated loops falls by up to {:.0} % (in {} of {} groups of equal loops; trend score {trend_score:.1})",
             100.0 * strongest.loss,
             shrinking.len(),
             trends.len()

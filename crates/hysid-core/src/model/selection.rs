@@ -76,7 +76,7 @@ impl Selection {
         if let Some(SingleModel { name, distilled, is_law, .. }) = &self.single {
             return match (is_law, distilled) {
                 (true, _) => format!("{name}, a law, in place of an ensemble"),
-                (false, true) => format!("one {name}, distilled from the ensemble"),
+                (false, true) => format!("one {name}, trained to imitate the ensemble"),
                 (false, false) => format!("one {name}, fitted to the data alone"),
             };
         }
@@ -105,7 +105,7 @@ impl Selection {
         let (errors, reason) = match &self.single {
             Some(SingleModel { distilled, distilled_percent, plain_percent, is_law: false, .. }) => {
                 let of_distilled =
-                    distilled_percent.map(|error| format!("distilled model {}", percent(Some(error))));
+                    distilled_percent.map(|error| format!("model trained to imitate the ensemble {}", percent(Some(error))));
                 let plain = format!("best single fit {}", percent(*plain_percent));
                 let errors: Vec<String> = of_distilled.into_iter().chain([plain]).collect();
                 let is_lower =
@@ -113,7 +113,7 @@ impl Selection {
                 let reason = match (is_lower, distilled) {
                     (true, _) => "",
                     (false, true) => {
-                        "; the distilled model agrees better with the ensemble on inputs that were not measured"
+                        "; this model agrees better with the ensemble on inputs that were not measured"
                     }
                     (false, false) => {
                         "; the single fit agrees better with the ensemble on inputs that were not measured"
