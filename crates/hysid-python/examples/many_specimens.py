@@ -63,19 +63,47 @@ def serial(tasks: list[tuple[int, str]]) -> list[dict[str, object]]:
 
 
 def distributed(client, tasks, kill_one: bool = False) -> list[dict[str, object]]:
-    """Side by side, on all workers of a cluster; what a worker had begun when it died is done by another."""
+    """Side by side, on all workers of a cluster; what a worker had begun when it died is done by another.
+
+    Each result is fetched as soon as it is there, and its future released: a worker that dies takes no finished result with it.
+    """
     from dask.distributed import as_completed
 
     # Results have no side effects: a key that says what they are lets Dask do them again elsewhere.
     futures = client.map(identify, *zip(*tasks), pure=True)
-    done = 0
-    for _ in as_completed(futures):
-        done += 1
-        if kill_one and done == len(tasks) // 3:
+    found = {}
+    running = as_completed(futures, with_results=True)
+    # No other reference to a future stays, so that releasing it makes Dask forget it.
+    del futures
+    for future, result in running:
+        found[result["specimen"], result["architecture"]] = result
+        future.release()
+        if kill_one and len(found) == len(tasks) // 3:
             victim = next(iter(client.run(os.getpid).values()))
             os.kill(victim, signal.SIGKILL)
             print(f"killed the worker with process id {victim}", file=sys.stderr)
-    return client.gather(futures)
+    return [found[task] for task in tasks]
+
+
+def count_fits(dask_scheduler=None, prefix: str = "identify") -> None:
+    """From now on the scheduler counts how often each task was finished, to see that none was done twice."""
+    from distributed.diagnostics.plugin import SchedulerPlugin
+
+    class Count(SchedulerPlugin):
+        def __init__(self) -> None:
+            self.finished = {}
+
+        def transition(self, key, start, finish, *args, **kwargs) -> None:
+            if finish == "memory" and str(key).startswith(prefix):
+                self.finished[key] = self.finished.get(key, 0) + 1
+
+    dask_scheduler.add_plugin(Count(), name="count")
+
+
+def counted(dask_scheduler=None) -> tuple[int, int]:
+    """How many tasks were finished, and how many of them more than once."""
+    finished = dask_scheduler.plugins["count"].finished
+    return len(finished), sum(1 for times in finished.values() if times > 1)
 
 
 def arguments() -> argparse.Namespace:
@@ -85,6 +113,7 @@ def arguments() -> argparse.Namespace:
     where.add_argument("--workers", type=int, default=2, metavar="N", help="processes on this machine [default: 2]")
     where.add_argument("--scheduler", metavar="ADDRESS", help="of a cluster that runs already")
     parser.add_argument("--specimens", type=int, default=32, metavar="N", help="[default: 32]")
+    parser.add_argument("--only", choices=ARCHITECTURES, help="one of the models [default: all]")
     parser.add_argument("--kill-one", action="store_true", help="kill a worker in the middle, to see what happens")
     parser.add_argument("--out", metavar="FILE.json", help="write all models")
     return parser.parse_args()
@@ -92,7 +121,8 @@ def arguments() -> argparse.Namespace:
 
 def main() -> None:
     given = arguments()
-    tasks = [(specimen, name) for specimen in range(given.specimens) for name in ARCHITECTURES]
+    names = [given.only] if given.only else list(ARCHITECTURES)
+    tasks = [(specimen, name) for specimen in range(given.specimens) for name in names]
     if given.serial:
         began = time.perf_counter()
         found = serial(tasks)
@@ -109,12 +139,14 @@ def main() -> None:
         with Client(cluster) as client:
             # Workers import the package before the clock starts, as those of a cluster have long done.
             client.run(measured, 0)
+            client.run_on_scheduler(count_fits)
             began = time.perf_counter()
             found = distributed(client, tasks, given.kill_one)
+            print("{} fits finished, {} of them more than once".format(*client.run_on_scheduler(counted)))
         if not given.scheduler:
             cluster.close()
     seconds = time.perf_counter() - began
-    for name in ARCHITECTURES:
+    for name in names:
         errors = [row["error_percent"] for row in found if row["architecture"] == name]
         print(f"{name:<20} median error {np.median(errors):6.2f} % of std over {len(errors)} specimens")
     print(f"{len(found)} models in {seconds:.1f} s")

@@ -16,7 +16,7 @@ def run(tmp_path, name, *arguments):
     command = [sys.executable, EXAMPLE, "--specimens", "4", "--out", out, *arguments]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
-    return json.loads(out.read_text()), done.stderr
+    return json.loads(out.read_text()), done.stderr + done.stdout
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
@@ -24,6 +24,7 @@ def test_two_workers_of_which_one_is_killed_give_the_models_of_a_serial_run(tmp_
     alone, _ = run(tmp_path, "serial", "--serial")
     together, said = run(tmp_path, "together", "--workers", "2", "--kill-one")
     assert "killed the worker" in said
+    assert "12 fits finished, 0 of them more than once" in said
     assert together == alone
     assert len({row["checksum"] for row in alone}) == len(alone) == 12
 
