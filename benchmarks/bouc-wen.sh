@@ -17,9 +17,10 @@ hysid -q look "$folder/bw_test.h5" -o test.rows.csv >test.txt
 awk -F, 'NR == 1 { print "t_s,force_N,displacement_m"; next } { printf "%.9f,%s,%s\n", (NR - 2) / 750, $1, $2 }' \
     train.rows.csv >train.csv
 awk -F, '
+    BEGIN { n = 0; k = 0 }
     NR == 1 { print "record,t_s,force_N,displacement_m"; next }
     $1 == "multisine" { u[n] = $2; y[n++] = $3; next }
-    { printf "sinesweep,%.9f,%s,%s\n", k++ / 750, $2, $3 }
+    { printf "sinesweep,%.9f,%s,%s\n", (k++) / 750, $2, $3 }
     END {
         for (i = 0; i < 2 * n; i++) printf "multisine,%.9f,%s,%s\n", i / 750, u[i % n], i < n ? "" : y[i - n]
     }' test.rows.csv >both.csv
@@ -28,8 +29,8 @@ for record in multisine sinesweep; do
 done
 
 hysid --version
-hysid -q fit train.csv -o model.json --no-report
+hysid -q fit train.csv --output displacement_m -o model.json --no-report >fit.txt
 for record in multisine sinesweep; do
     hysid -q evaluate model.json "$record.csv" --json >"$record.json"
-    echo "$record: $(grep -o '"rmse": *[-0-9.e]*' "$record.json" | head -1) m"
+    printf '%s: %.3g m\n' "$record" "$(grep -o '"rmse": *[-0-9.e]*' "$record.json" | head -1 | cut -d: -f2)"
 done
