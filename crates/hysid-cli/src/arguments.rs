@@ -487,9 +487,9 @@ pub struct Evaluate {
     pub band: Option<f64>,
     #[command(flatten)]
     pub data_sets: DataSetsOptions,
-    /// Test the residual for structure: whiteness, correlation with the input, size and bias by place
+    /// Test whether the error depends on the input, its rate, the amplitude, the direction or time
     ///
-    /// Says for each test what was found and what helps (docs/residuals.md). The rows are kept in memory.
+    /// Says for each test what was found and what helps. The rows are kept in memory.
     #[arg(long)]
     pub residuals: bool,
     #[command(flatten)]

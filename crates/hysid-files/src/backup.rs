@@ -1,7 +1,7 @@
 //! A copy of a file that is about to be replaced.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use crate::seal;
@@ -65,14 +65,44 @@ pub(crate) fn copied_aside(target: &Path) -> io::Result<PathBuf> {
     unreachable!("there is always a further name")
 }
 
-/// True if both files have the same content.
+/// True if both files have the same content. They may be larger than the memory.
 pub(crate) fn are_same(a: &Path, b: &Path) -> io::Result<bool> {
-    Ok(fs::metadata(a)?.len() == fs::metadata(b)?.len() && fs::read(a)? == fs::read(b)?)
+    if fs::metadata(a)?.len() != fs::metadata(b)?.len() {
+        return Ok(false);
+    }
+    let (mut a, mut b) = (BufReader::new(File::open(a)?), BufReader::new(File::open(b)?));
+    loop {
+        let (of_a, of_b) = (a.fill_buf()?, b.fill_buf()?);
+        let common = of_a.len().min(of_b.len());
+        if of_a[..common] != of_b[..common] {
+            return Ok(false);
+        }
+        if common == 0 {
+            return Ok(of_a.len() == of_b.len());
+        }
+        a.consume(common);
+        b.consume(common);
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_are_compared_to_their_last_byte() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a", "b"].map(|name| folder.path().join(name));
+        let mut content = vec![7; 100_000];
+        fs::write(&a, &content).unwrap();
+        fs::write(&b, &content).unwrap();
+        assert!(are_same(&a, &b).unwrap());
+        content[99_999] = 8;
+        fs::write(&b, &content).unwrap();
+        assert!(!are_same(&a, &b).unwrap());
+        fs::write(&b, &content[..99_999]).unwrap();
+        assert!(!are_same(&a, &b).unwrap());
+    }
 
     #[test]
     fn a_file_that_another_writer_kept_leaves_nothing_behind() {

@@ -61,7 +61,7 @@ pub fn text(table: &CycleTable, quantities: &Quantities) -> String {
 pub fn cycles_section(table: &CycleTable, quantities: &Quantities, several_records: bool) -> Option<Part> {
     let cycles: Vec<&CycleRow> = table.complete().collect();
     let largest = largest(&cycles)?;
-    let words = "The cycles of `hysid cycles`, where docs/cycles.md defines the figures. Rows count from 1 in their \
+    let words = "The cycles of `hysid cycles`, whose page in the documentation defines the figures. Rows count from 1 in their \
                  record.";
     let mut parts: Vec<Part> = energy_chart(&cycles, quantities).map(Part::chart).into_iter().collect();
     parts.push(Part::Table(cycles_table(table, &cycles, quantities, largest, several_records)));

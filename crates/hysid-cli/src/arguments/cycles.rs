@@ -15,7 +15,8 @@ Examples:
   hysid cycles data.csv --field magnet -o loops.csv
   hysid cycles model.json                cycles of the model, driven by Hysid
 
-Definitions of all figures: docs/cycles.md";
+Definitions of all figures:
+https://github.com/hysid/hysid/blob/main/docs/cycles.md";
 
 #[derive(Debug, Args)]
 #[command(after_help = CYCLES_EXAMPLES)]

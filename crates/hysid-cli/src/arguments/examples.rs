@@ -7,7 +7,8 @@ Examples:
   hysid fit data.csv --model bouc-wen    one named model
   hysid fit a.csv b.csv --input i --output flux -o core.json
 
-All options: hysid fit --help options; their ranges: docs/options.md";
+All options: hysid fit --help options; their ranges:
+https://github.com/hysid/hysid/blob/main/docs/options.md";
 
 pub(super) const DEMO_EXAMPLES: &str = "\
 Examples:
@@ -52,7 +53,8 @@ Examples:
   hysid look test.xlsx --sheet 2 -o clean.csv
   hysid look log.txt --skip 12 --decimal comma --missing -999
 
-Options for files that are not read as you expect: hysid look --help options, docs/files.md";
+Options for files that are not read as you expect: hysid look --help options,
+https://github.com/hysid/hysid/blob/main/docs/files.md";
 
 pub(super) const DIAGNOSE_EXAMPLES: &str = "\
 Examples:

@@ -15,7 +15,8 @@ Examples:
   hysid plan --like data.csv --length 2000 -o drive.csv
   hysid plan --for \"piezo stage\" --range 0:150 --step 0.001 --length 5000
 
-Method, protocols and what they are worth: docs/plan.md";
+Method, protocols and what they are worth:
+https://github.com/hysid/hysid/blob/main/docs/plan.md";
 
 #[derive(Debug, Args)]
 #[command(after_help = PLAN_EXAMPLES)]

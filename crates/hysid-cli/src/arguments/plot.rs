@@ -14,7 +14,8 @@ Examples:
   hysid plot model.json test.csv --kind histories --band 0.9 -o time.pdf
   hysid plot data.csv --kind backbone --font serif -o backbone.svg
 
-How to make figures for a paper: docs/how-to/figures-for-a-paper.md";
+How to make figures for a paper:
+https://github.com/hysid/hysid/blob/main/docs/how-to/figures-for-a-paper.md";
 
 /// Content of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

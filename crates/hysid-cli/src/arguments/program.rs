@@ -13,7 +13,8 @@ Examples:
   hysid models model.json        what a model file holds
   hysid models model.json --json the same as one JSON object
 
-More about each model: docs/models.md; properties of a model: hysid diagnose";
+Properties of a model: hysid diagnose. More about each model:
+https://github.com/hysid/hysid/blob/main/docs/models.md";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:

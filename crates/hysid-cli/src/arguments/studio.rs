@@ -11,7 +11,8 @@ Examples:
   hysid studio --project DIR      opens a project again
   hysid studio --no-open --port 8080
 
-No data leave this machine. See docs/studio.md.";
+No data leave this machine. See
+https://github.com/hysid/hysid/blob/main/docs/studio.md";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
