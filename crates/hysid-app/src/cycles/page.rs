@@ -66,7 +66,8 @@ fn record_section(cycles: &Cycles) -> Option<Part> {
     let table = record_figures(cycles, label)?;
     let mut sources: Vec<&str> = cycles.table.figures.iter().map(|figure| figure.kind.source).collect();
     sources.dedup();
-    let sources = format!("Definitions: the page Tables of cycles of the documentation, after {}.", sources.join("; "));
+    let sources =
+        format!("Definitions: the page Tables of cycles of the documentation, after {}.", sources.join("; "));
     Some(Part::section("Figures of the record", [Part::Table(table), Part::note(sources)]))
 }
 

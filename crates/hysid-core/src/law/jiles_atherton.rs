@@ -87,6 +87,26 @@ pub struct JilesAthertonState {
     m: f64,
 }
 
+impl JilesAthertonState {
+    /// `M/M_s`
+    pub fn share(&self) -> f64 {
+        self.m
+    }
+}
+
+/// Laws that [`JilesAtherton::advance_side_by_side`] takes.
+pub const SIDE_BY_SIDE: usize = 4;
+
+/// The way from one field to the next, upwards: `parts` parts of length `part`.
+#[derive(Debug, Clone, Copy, Default)]
+struct Way {
+    direction: f64,
+    from: f64,
+    part: f64,
+    parts: f64,
+    m: f64,
+}
+
 impl JilesAtherton {
     /// `α M_s`: the field that the saturated magnetisation adds, in the unit of the input.
     pub fn coupling(&self) -> f64 {
@@ -103,22 +123,57 @@ impl JilesAtherton {
 
     /// Advances to the next field and returns `M/M_s`.
     pub fn advance(&self, state: &mut JilesAthertonState, h: f64) -> f64 {
+        let Way { direction, from, part, parts, mut m } = self.way(state, h);
+        for index in 0..parts as usize {
+            m = self.runge_kutta(from + part * index as f64, m, part);
+        }
+        *state = JilesAthertonState { h, m: direction * m };
+        state.m
+    }
+
+    /// The way to the next field. The law is odd: downwards is upwards in a mirror.
+    fn way(&self, state: &JilesAthertonState, h: f64) -> Way {
         let direction = (h - state.h).signum();
         let end = SATURATED * (self.a + self.k + self.coupling());
         let (from, to) = ((direction * state.h).clamp(-end, end), (direction * h).clamp(-end, end));
-        state.h = h;
-        if to > from {
-            // The law is odd: downwards is upwards in a mirror.
-            let part = LONGEST_PART * self.a.min(self.k);
-            let parts = ((to - from) / part).ceil().clamp(1.0, MOST_PARTS);
-            let part = (to - from) / parts;
-            let mut m = direction * state.m;
-            for index in 0..parts as usize {
-                m = self.runge_kutta(from + part * index as f64, m, part);
-            }
-            state.m = direction * m;
+        let part = LONGEST_PART * self.a.min(self.k);
+        let parts = if to > from { ((to - from) / part).ceil().clamp(1.0, MOST_PARTS) } else { 0.0 };
+        Way { direction, from, part: (to - from) / parts.max(1.0), parts, m: direction * state.m }
+    }
+
+    /// Advances up to [`SIDE_BY_SIDE`] laws, with the numbers of [`Self::advance`]. A step waits for the one before, so that
+    /// several laws together take little longer than one.
+    pub fn advance_side_by_side(laws: &[Self], states: &mut [JilesAthertonState], h: f64) {
+        let count = laws.len().min(states.len()).min(SIDE_BY_SIDE);
+        let mut ways = [Way::default(); SIDE_BY_SIDE];
+        for lane in 0..count {
+            ways[lane] = laws[lane].way(&states[lane], h);
         }
-        state.m
+        let most = ways.iter().map(|way| way.parts).fold(0.0, f64::max);
+        for index in 0..most as usize {
+            let mut k = [[0.0; 4]; SIDE_BY_SIDE];
+            for (order, (of_part, of_slope)) in
+                [(0.0, 0.0), (0.5, 0.5), (0.5, 0.5), (1.0, 1.0)].into_iter().enumerate()
+            {
+                for lane in 0..count {
+                    let Way { from, part, m, .. } = ways[lane];
+                    let h = from + part * index as f64;
+                    k[lane][order] = match order {
+                        0 => laws[lane].slope(h, m),
+                        _ => laws[lane].slope(h + of_part * part, m + of_slope * part * k[lane][order - 1]),
+                    };
+                }
+            }
+            for lane in 0..count {
+                let Way { part, m, parts, .. } = ways[lane];
+                if (index as f64) < parts {
+                    ways[lane].m = runge_kutta_end(m, part, k[lane]);
+                }
+            }
+        }
+        for lane in 0..count {
+            states[lane] = JilesAthertonState { h, m: ways[lane].direction * ways[lane].m };
+        }
     }
 
     fn runge_kutta(&self, h: f64, m: f64, by: f64) -> f64 {
@@ -126,10 +181,11 @@ impl JilesAtherton {
         let k2 = self.slope(h + 0.5 * by, m + 0.5 * by * k1);
         let k3 = self.slope(h + 0.5 * by, m + 0.5 * by * k2);
         let k4 = self.slope(h + by, m + by * k3);
-        (m + by * (k1 + 2.0 * (k2 + k3) + k4) / 6.0).clamp(-1.0, 1.0)
+        runge_kutta_end(m, by, [k1, k2, k3, k4])
     }
 
     /// `d(M/M_s)/dH` on the way up; never negative.
+    #[inline(always)]
     fn slope(&self, h: f64, m: f64) -> f64 {
         let (langevin, steepness) = langevin((h + self.coupling() * m) / self.a); // (8.22)
         let anhysteretic = steepness / self.a;
@@ -150,6 +206,12 @@ impl JilesAtherton {
     }
 }
 
+#[inline(always)]
+fn runge_kutta_end(m: f64, by: f64, [k1, k2, k3, k4]: [f64; 4]) -> f64 {
+    (m + by * (k1 + 2.0 * (k2 + k3) + k4) / 6.0).clamp(-1.0, 1.0)
+}
+
+#[inline(always)]
 fn langevin(x: f64) -> (f64, f64) {
     let square = x * x;
     if square < 0.0025 {

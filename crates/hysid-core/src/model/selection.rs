@@ -104,8 +104,8 @@ impl Selection {
         };
         let (errors, reason) = match &self.single {
             Some(SingleModel { distilled, distilled_percent, plain_percent, is_law: false, .. }) => {
-                let of_distilled =
-                    distilled_percent.map(|error| format!("model trained to imitate the ensemble {}", percent(Some(error))));
+                let of_distilled = distilled_percent
+                    .map(|error| format!("model trained to imitate the ensemble {}", percent(Some(error))));
                 let plain = format!("best single fit {}", percent(*plain_percent));
                 let errors: Vec<String> = of_distilled.into_iter().chain([plain]).collect();
                 let is_lower =

@@ -105,6 +105,28 @@ impl SearchFamily for Materials {
         &self.unknowns
     }
 
+    fn features_side_by_side(
+        &self,
+        points: &[Vec<f64>],
+        series: &Series,
+        columns: &mut [FeatureColumns<'_>],
+    ) {
+        let laws: Vec<JilesAtherton> = points.iter().map(|parameters| self.law(parameters)).collect();
+        let mut states = vec![JilesAthertonState::default(); laws.len()];
+        for (sample, y) in series.samples.iter().zip(&series.output) {
+            let works = laws.iter().zip(&states).map(|(law, state)| law.operations(state, sample.x));
+            if columns.iter_mut().zip(works).any(|(columns, operations)| columns.is_over(operations)) {
+                return;
+            }
+            JilesAtherton::advance_side_by_side(&laws, &mut states, sample.x);
+            if !y.is_nan() {
+                for (columns, state) in columns.iter_mut().zip(&states) {
+                    columns.push(&[1.0, sample.x, state.share()]);
+                }
+            }
+        }
+    }
+
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>) {
         let law = self.law(parameters);
         let mut state = JilesAthertonState::default();
@@ -116,6 +138,28 @@ impl SearchFamily for Materials {
             if !y.is_nan() {
                 columns.push(&[1.0, sample.x, m]);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hysid_core::elementary::sin;
+
+    use super::*;
+    use crate::fit::law::search::tests::assert_side_by_side;
+
+    fn series_of(x: Vec<f64>) -> Series {
+        let y = x.clone();
+        Series::all(&Dataset::from_slices(&x, &y).unwrap(), None).unwrap().remove(0)
+    }
+
+    #[test]
+    fn laws_side_by_side_are_as_alone() {
+        for form in [JilesAthertonForm::Original, JilesAthertonForm::Differential] {
+            // From steps below a part to steps of many, and a rest.
+            let x = (0..300).map(|k| f64::from(k / 3) * sin(0.3 * f64::from(k)));
+            assert_side_by_side(&Materials::new(100.0, form), &[series_of(x.collect())]);
         }
     }
 }

@@ -11,8 +11,8 @@ use crate::optimise::parallel;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
-use super::LawObjective;
 use super::projection::Projection;
+use super::{LawObjective, SIDE_BY_SIDE};
 
 /// Step of a finite difference in `u`.
 const DIFFERENCE: f64 = 1e-5;
@@ -75,17 +75,26 @@ impl LeastSquaresProblem for LawObjective<'_> {
 
     /// By finite differences, inwards where `u_j` is near its bound.
     fn slope(&self, u: &[f64], here: &Projection) -> Option<Slope<Symmetric>> {
-        let column = |j: usize| {
-            let by = if u[j] + DIFFERENCE > 1.0 { -DIFFERENCE } else { DIFFERENCE };
-            let mut u = u.to_vec();
-            u[j] += by;
-            let mut column = self.value(&u).residual;
-            for (there, here) in column.iter_mut().zip(&here.residual) {
-                *there = (*there - here) / by;
-            }
-            column
+        let by = |j: usize| if u[j] + DIFFERENCE > 1.0 { -DIFFERENCE } else { DIFFERENCE };
+        let beside = |j: usize| {
+            let mut beside = u.to_vec();
+            beside[j] += by(j);
+            beside
         };
-        let jacobian: Vec<Vec<f64>> = parallel::numbered(u.len(), column);
+        let columns = |group: usize| -> Vec<Vec<f64>> {
+            let first = group * SIDE_BY_SIDE;
+            let indices = first..u.len().min(first + SIDE_BY_SIDE);
+            let points: Vec<Vec<f64>> = indices.clone().map(beside).collect();
+            let mut columns: Vec<Vec<f64>> =
+                self.values(&points).into_iter().map(|value| value.residual).collect();
+            for (column, j) in columns.iter_mut().zip(indices) {
+                for (there, here) in column.iter_mut().zip(&here.residual) {
+                    *there = (*there - here) / by(j);
+                }
+            }
+            columns
+        };
+        let jacobian = parallel::numbered(u.len().div_ceil(SIDE_BY_SIDE), columns).concat();
         (!self.stop.is_asked())
             .then(|| Slope { evaluations: jacobian.len(), ..Slope::of_residual(&jacobian, &here.residual) })
     }
