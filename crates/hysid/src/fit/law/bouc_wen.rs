@@ -99,55 +99,11 @@ impl SearchFamily for BoucWenFamily {
         &self.unknowns
     }
 
-    fn features_side_by_side(
-        &self,
-        points: &[Vec<f64>],
-        series: &Series,
-        columns: &mut [FeatureColumns<'_>],
-    ) {
-        let laws: Vec<BoucWen> = points.iter().map(|parameters| self.law(parameters)).collect();
-        let mut states = vec![BoucWenState::default(); laws.len()];
-        for (&Sample { x, rate, .. }, y) in series.samples.iter().zip(&series.output) {
-            if columns.iter_mut().any(|columns| columns.is_over(OPERATIONS_A_ROW)) {
-                return;
-            }
-            for ((law, state), columns) in laws.iter().zip(&mut states).zip(columns.iter_mut()) {
-                let z = law.yield_displacement * law.advance(state, x);
-                if !y.is_nan() {
-                    columns.push(&[1.0, x, z, rate][..columns.count()]);
-                }
-            }
-        }
-    }
-
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut FeatureColumns<'_>) {
         let law = self.law(parameters);
         let mut state = BoucWenState::default();
         columns.run(series, OPERATIONS_A_ROW, |&Sample { x, rate, .. }| {
             [1.0, x, law.yield_displacement * law.advance(&mut state, x), rate]
         });
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use hysid_core::elementary::sin;
-
-    use super::*;
-    use crate::fit::law::search::tests::assert_side_by_side;
-    use crate::options::classical::ClassicalModel;
-
-    fn series_of(x: Vec<f64>) -> Series {
-        let y = x.clone();
-        Series::all(&Dataset::from_slices(&x, &y).unwrap(), None).unwrap().remove(0)
-    }
-
-    #[test]
-    fn laws_side_by_side_are_as_alone() {
-        for degradation in [false, true] {
-            let options = ClassicalOptions { degradation, ..ClassicalOptions::of(ClassicalModel::BoucWen) };
-            let x = (0..300).map(|k| f64::from(k / 3) * sin(0.3 * f64::from(k)));
-            assert_side_by_side(&BoucWenFamily::new(200.0, &options), &[series_of(x.collect())]);
-        }
     }
 }

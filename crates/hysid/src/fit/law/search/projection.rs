@@ -43,11 +43,6 @@ impl<'a> FeatureColumns<'a> {
         }
     }
 
-    /// Number of features.
-    pub fn count(&self) -> usize {
-        self.columns.len()
-    }
-
     /// Counts the operations of one more row; true once stopped, and the columns are of no use then.
     pub fn is_over(&mut self, operations: usize) -> bool {
         self.pace.is_over(operations)
