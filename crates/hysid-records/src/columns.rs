@@ -2,6 +2,7 @@
 
 mod guess;
 mod kind;
+mod other_table;
 pub mod values;
 
 use std::collections::HashMap;

@@ -10,6 +10,7 @@ import { JudgeStep } from "./steps/judge.js";
 import { TakeAwayStep } from "./steps/take-away.js";
 import { CyclesStep, DiagnoseStep } from "./steps/training-page.js";
 import { TryStep } from "./steps/try.js";
+import { listenToDrops, sendFiles } from "./uploads.js";
 
 const KINDS = { data: DataStep, diagnose: DiagnoseStep, figures: CyclesStep, identify: IdentifyStep, judge: JudgeStep, compare: CompareStep, "take-away": TakeAwayStep, try: TryStep };
 const steps = new Map();
@@ -64,6 +65,20 @@ function showFit() {
   document.getElementById("running").textContent = fit?.is_running ? `${Math.round(100 * fit.done)} %` : "";
   if (shownStep().name === "identify") steps.get("identify")?.update();
 }
+
+/** A file that is dropped on a step which takes one stays there; all others go to the data. */
+listenToDrops(async (files) => {
+  const { name } = shownStep();
+  const step = steps.get(name);
+  if (!step?.take || project.models.length === 0) {
+    location.hash = "data";
+    await sendFiles(files);
+    return;
+  }
+  const ids = await sendFiles(files, "unseen");
+  await project.load();
+  if (ids.length > 0) step.take(ids.at(-1));
+});
 
 const load = () => project.load().catch((error) => {
   if (!(error instanceof Gone || isStranger())) showBanner(element("p", { text: error.message }), button("Try again", load));

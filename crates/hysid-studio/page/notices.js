@@ -8,7 +8,7 @@ const OF_COLUMNS = ["--input", "--output", "--time", "--record", "--rate"];
 
 /** Moves the focus to the control of an option and unfolds what it is in. */
 function focusOption(flag) {
-  const found = [...document.querySelectorAll("[data-flag]")].filter((node) => node.dataset.flag === flag);
+  const found = [...document.querySelectorAll("[data-flag]")].filter((node) => node.dataset.flag.split(" ").includes(flag));
   const control = found.find((node) => node.closest("section")?.hidden === false) ?? found[0];
   if (!control) return;
   const section = control.closest("section");
@@ -40,6 +40,8 @@ export class Notice {
   show(words) { this.node.replaceChildren(problem(words)); }
   /** Shows why an action failed. The banner tells when the server is gone. */
   fail(error) { if (!(error instanceof Gone)) this.show(error.words ?? error.message); }
+  /** Shows several: words, or why actions failed. */
+  all(problems) { this.node.replaceChildren(...problems.filter((one) => !(one instanceof Gone)).map((one) => (typeof one === "string" ? problem(one) : failure(one)))); }
   clear() { this.node.replaceChildren(); }
   /** Runs an action and shows its error, or the words that it gives. */
   async saying(action) {

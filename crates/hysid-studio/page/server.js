@@ -92,11 +92,11 @@ export function runBinary(address, arrays, signal) {
   return binary(address, { method: "POST", headers: { "content-type": "application/octet-stream" }, body, signal });
 }
 
-/** Sends a file; `progress` gets the share that has arrived. */
-export function upload(file, progress) {
+/** Sends a file for a use, the usual one if none is given; `progress` gets the share that has arrived. */
+export function upload(file, use, progress) {
   return new Promise((done, failed) => {
     const call = new XMLHttpRequest();
-    call.open("POST", `/api/files?name=${encodeURIComponent(file.name)}`);
+    call.open("POST", `/api/files?name=${encodeURIComponent(file.name)}${use ? `&use=${use}` : ""}`);
     call.upload.addEventListener("progress", (event) => { if (event.lengthComputable) progress(event.loaded / event.total); });
     call.addEventListener("load", () => {
       let answer = {};

@@ -52,6 +52,30 @@ pub struct ChosenColumns {
     pub output: String,
 }
 
+/// Columns of a file by their roles: those that were chosen, of a table that names them in its own way.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[allow(missing_docs, reason = "each field is the role of its name")]
+pub struct FileColumns {
+    pub record: Option<String>,
+    pub time: Option<String>,
+    pub inputs: Vec<String>,
+    pub rate: Option<String>,
+    pub output: Option<String>,
+}
+
+impl FileColumns {
+    pub fn choice(&self) -> ColumnChoice {
+        let Self { record, time, inputs, rate, output } = self.clone();
+        let rate = rate.map_or_else(RateOption::default, RateOption::Column);
+        ColumnChoice { record, time, input: inputs, output, rate }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 impl Begun {
     /// The method of the rate that was asked for; `None` for the default, and for a column.
     pub fn rate_method(&self) -> Option<&str> {
@@ -59,11 +83,23 @@ impl Begun {
     }
 }
 
+impl From<ChosenColumns> for FileColumns {
+    fn from(chosen: ChosenColumns) -> Self {
+        let ChosenColumns { record, time, inputs, rate, output } = chosen;
+        Self { record, time, inputs, rate, output: Some(output) }
+    }
+}
+
 impl ChosenColumns {
     pub fn choice(&self) -> ColumnChoice {
+        FileColumns::from(self.clone()).choice()
+    }
+
+    /// The roles that find the same columns in other tables.
+    pub fn roles(&self) -> Roles {
         let Self { record, time, inputs, rate, output } = self.clone();
-        let rate = rate.map_or_else(RateOption::default, RateOption::Column);
-        ColumnChoice { record, time, input: inputs, output: Some(output), rate }
+        let (guessed, set_aside, condition, note) = (None, Vec::new(), None, None);
+        Roles { record, time, inputs, rate, output, guessed, set_aside, condition, note }
     }
 
     pub fn of(roles: &Roles) -> Self {
@@ -87,6 +123,9 @@ pub struct ProjectFile {
     pub checksum: String,
     #[serde(rename = "use")]
     pub usage: Use,
+    /// Columns that were chosen for this file, in place of those that are like the columns of the first.
+    #[serde(default, skip_serializing_if = "FileColumns::is_empty")]
+    pub columns: FileColumns,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -124,6 +163,12 @@ pub struct Begun {
     /// How they were read.
     pub understanding: Understanding,
     pub columns: ChosenColumns,
+    /// Columns that were chosen for single files; empty if none were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub of_files: Vec<FileColumns>,
+    /// Files whose columns have other names than those of the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub renamed: Vec<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -233,9 +278,21 @@ impl Project {
         self.files.iter().filter(move |file| file.usage == usage)
     }
 
+    /// The file that determines the columns: models are fitted to training files.
+    pub fn first(&self) -> Option<&ProjectFile> {
+        self.files_for(Use::Training).chain(&self.files).next()
+    }
+
+    /// Columns that were chosen for single training files; empty if none were.
+    pub fn columns_of_files(&self) -> Vec<FileColumns> {
+        let all: Vec<FileColumns> = self.files_for(Use::Training).map(|file| file.columns.clone()).collect();
+        if all.iter().all(FileColumns::is_empty) { Vec::new() } else { all }
+    }
+
     /// True if a fit had other data than the present ones.
     pub fn is_stale(&self, begun: &Begun) -> bool {
         begun.understanding != self.understanding
+            || begun.of_files != self.columns_of_files()
             || !begun.files.iter().eq(self.files_for(Use::Training).map(|file| &file.name))
     }
 }
@@ -295,6 +352,7 @@ mod tests {
             bytes: 1,
             checksum: String::new(),
             usage: Use::Training,
+            columns: FileColumns::default(),
         };
         let with = |files: Vec<ProjectFile>| Project { files, ..Project::default() }.checked();
         assert_eq!(with(vec![file(7, "a.csv")]).unwrap().next, 8, "a number is never given twice");
@@ -327,6 +385,7 @@ mod tests {
             bytes: 7,
             checksum: "0".into(),
             usage: Use::Unseen,
+            columns: FileColumns::default(),
         });
         folder.write_project(&project.text()).unwrap();
         assert_eq!(Project::of(&folder).unwrap(), project);

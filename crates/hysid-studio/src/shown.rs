@@ -37,7 +37,9 @@ pub fn shown(
         "files": project.files.iter().map(shown_file).collect::<Vec<_>>(),
         "reading": project.understanding.reading,
         "columns": roles.map(ChosenColumns::of),
-        "columns_are_chosen": project.understanding.columns.is_some(),
+        "columns_are_chosen": project.understanding.columns.is_some() || project.files.iter().any(|file| !file.columns.is_empty()),
+        // The file that determines the columns.
+        "first": view.first,
         "problem": view.problem,
         "names": roles.map(|roles| names(roles, str::to_string)),
         "labels": roles.map(|roles| names(roles, unit::label)),

@@ -58,6 +58,12 @@ pub fn lines(stored: &ProjectModel, model: &Model, folder: &Path) -> Value {
             Some("This fit was stopped early. The commands run it to its end, and give another model.")
         }
     };
+    let note = match stored.begun.renamed.is_empty() {
+        true => note,
+        false => Some(
+            "The training files name their columns differently: give the columns of all files the names of the first, and then run the command.",
+        ),
+    };
     json!({"shell": shell(stored, folder), "python": python(&stored.begun, &stored.file), "note": note})
 }
 

@@ -19,6 +19,12 @@ export class CompareStep {
     body.replaceChildren(this.notice.node, this.table.node, this.error.node, this.pictures.node);
   }
 
+  /** Compares the models on a file that was dropped here. */
+  take(file) {
+    this.file = file;
+    this.update();
+  }
+
   async update() {
     const { models } = project;
     const file = fileOr(this.file);

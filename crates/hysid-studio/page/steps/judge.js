@@ -22,6 +22,11 @@ export class JudgeStep {
   }
 
   choose(id) { this.model = id; }
+  /** Judges the model by a file that was dropped here. */
+  take(file) {
+    this.file = file;
+    this.update();
+  }
 
   update() {
     const model = modelOr(this.model);
@@ -33,11 +38,13 @@ export class JudgeStep {
       return;
     }
     const choose = (what) => (id) => { this[what] = id; this.update(); };
-    this.head.update([model, project.usable().map(({ id, name, use }) => [id, name, use]), file.id, this.withMembers], () => [
+    const unread = project.files.find(({ id, problem: why }) => id === this.file && why);
+    this.head.update([model, unread, project.usable().map(({ id, name, use }) => [id, name, use]), file.id, this.withMembers], () => [
       element("div", { class: "row" }, modelChoice("judge", model, choose("model")), fileChoice("judge", file, choose("file")),
         tick("Members as thin lines", this.withMembers, (is) => { this.withMembers = is; this.update(); })),
+      unread ? element("p", { class: "problem" }, linked(unread.problem)) : null,
       stale(model), model.chosen ? element("p", { class: "verdict", text: sentence(model.chosen) }) : null, model.why ? element("p", { class: "note", text: sentence(model.why) }) : null,
-      project.usable("unseen").length === 0 ? element("p", { class: "problem", text: "There are no unseen data. Drop a second measurement on this page to estimate the error on new data." }) : null]);
+      project.usable("unseen").length === 0 ? element("p", { class: "problem", text: "There are no unseen data. Drop a second measurement here to estimate the error on new data." }) : null]);
     this.draw(model, file);
   }
 

@@ -67,6 +67,7 @@ const FILES: &[(&str, &[u8])] = files![
     "steps/training-page.js",
     "steps/try.js",
     "studio.css",
+    "uploads.js",
     "uplot/LICENSE",
     "uplot/uPlot.esm.js",
     "uplot/uPlot.min.css",

@@ -22,15 +22,17 @@ use serde_json::json;
 use super::Shared;
 use super::answer::{Answer, Arrays, Refusal, at_once, computed, diagnosed, done, value};
 use crate::choices::MOST_FILE_BYTES;
-use crate::project::{ChosenColumns, Use};
+use crate::project::{ChosenColumns, FileColumns, Use};
 
 /// Longest pause of an upload.
 const LONGEST_PAUSE: Duration = Duration::from_secs(60);
 
-/// The name of a file that comes in.
+/// The name of a file that comes in, and its use if that is chosen.
 #[derive(Deserialize)]
 pub struct Named {
     name: String,
+    #[serde(rename = "use")]
+    usage: Option<Use>,
 }
 
 /// A file on its way: removed unless it arrives.
@@ -77,7 +79,7 @@ pub async fn upload(
     }
     drop(file);
     let id = computed(shared, move |studio| {
-        let usage = studio.usage_of_next();
+        let usage = named.usage.unwrap_or_else(|| studio.usage_of_next());
         let id = studio.take_file(&named.name, &place, usage)?;
         Ok(id)
     })
@@ -149,53 +151,50 @@ pub async fn reading(State(shared): State<Shared>, Json(reading): Json<ReadingCh
     Ok(done())
 }
 
-/// Columns by their names, while they are being chosen.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AskedColumns {
-    record: Option<String>,
-    time: Option<String>,
-    inputs: Vec<String>,
-    rate: Option<String>,
-    output: Option<String>,
-}
-
-impl AskedColumns {
-    fn chosen(self) -> hysid_document::Result<ChosenColumns> {
-        let Self { record, time, inputs, rate, output } = self;
-        let missing = |role| {
-            let words = Words::from(format!("no column has the role {role}: choose one"));
-            Problem::Request(words.advised(Hint::Option(role)))
-        };
-        if inputs.is_empty() {
-            return Err(missing("input"));
-        }
-        let output = output.ok_or_else(|| missing("output"))?;
-        Ok(ChosenColumns { record, time, inputs, rate, output })
+/// All columns of the first file.
+fn chosen(asked: FileColumns) -> hysid_document::Result<ChosenColumns> {
+    let FileColumns { record, time, inputs, rate, output } = asked;
+    let missing = |role| {
+        let words = Words::from(format!("no column has the role {role}: choose one"));
+        Problem::Request(words.advised(Hint::Option(role)))
+    };
+    if inputs.is_empty() {
+        return Err(missing("input"));
     }
+    let output = output.ok_or_else(|| missing("output"))?;
+    Ok(ChosenColumns { record, time, inputs, rate, output })
 }
 
 /// Sets the roles of columns; returns a note if one of them stays what it was.
 pub async fn columns(
     State(shared): State<Shared>,
-    Json(asked): Json<Option<AskedColumns>>,
+    Json(asked): Json<Option<FileColumns>>,
 ) -> Answer<Response> {
-    let note =
-        computed(shared, move |studio| studio.choose_columns(asked.map(AskedColumns::chosen).transpose()?));
+    let note = computed(shared, move |studio| studio.choose_columns(asked.map(chosen).transpose()?));
     Ok(value(json!({"note": note.await?})))
+}
+
+/// Sets columns of one file that have the roles of the first file's.
+pub async fn columns_of(
+    State(shared): State<Shared>,
+    Path(id): Path<u64>,
+    Json(asked): Json<FileColumns>,
+) -> Answer<Response> {
+    computed(shared, move |studio| studio.choose_columns_of(id, asked)).await?;
+    Ok(done())
 }
 
 /// The numbers of a file.
 pub async fn numbers(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Arrays> {
     computed(shared, move |studio| {
         let data = studio.data_of(id)?;
-        Ok(Arrays::of(&columns_of(&data)))
+        Ok(Arrays::of(&arrays_of(&data)))
     })
     .await
 }
 
 /// Time or numbers of rows, inputs, rate where there is time, output: over all records.
-fn columns_of(data: &Data) -> Vec<(&'static str, Vec<f64>)> {
+fn arrays_of(data: &Data) -> Vec<(&'static str, Vec<f64>)> {
     let records = data.set.records();
     let joined = |column: &dyn Fn(&Record) -> Vec<f64>| records.iter().flat_map(column).collect::<Vec<f64>>();
     let mut columns = Vec::new();

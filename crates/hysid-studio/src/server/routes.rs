@@ -22,7 +22,7 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
         .route("/files/{id}", delete(files::remove))
         .route("/files/{id}/use", post(files::use_as))
         .route("/files/{id}/read", post(files::read_again))
-        .route("/files/{id}/columns", get(files::numbers))
+        .route("/files/{id}/columns", get(files::numbers).post(files::columns_of))
         .route("/specimens", post(files::specimen))
         .route("/reading", post(files::reading))
         .route("/columns", post(files::columns))

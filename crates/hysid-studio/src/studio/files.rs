@@ -15,12 +15,12 @@ use hysid_document::visible::clipped;
 use hysid_document::{Face, Problem, html, object};
 use hysid_document::{Result, problem};
 use hysid_records::{Data, ReadingChoice, Roles, csv_text, summarised, understanding};
-use hysid_tables::Table;
+use hysid_tables::{Table, other_kind};
 use serde_json::{Value, json};
 
 use super::Studio;
 use crate::folder::{ProjectFolder, UPLOAD, cannot_read};
-use crate::project::{ChosenColumns, Project, ProjectFile, Use};
+use crate::project::{ChosenColumns, FileColumns, Project, ProjectFile, Use};
 use crate::view::{View, read};
 use crate::words::{Said, said};
 
@@ -49,6 +49,10 @@ impl Studio {
         let reading = self.project().understanding.reading.clone();
         let name = self.folder.free_name(ProjectFolder::Data, given)?;
         let content = fs::read(place).map_err(|error| cannot_read(Path::new(&name), &error))?;
+        // A picture is no file of a project: it is refused, and the page says so.
+        if let Some(kind) = other_kind(&content) {
+            return Err(Problem::in_file(&name, kind.to_string()));
+        }
         let bytes = content.len() as u64;
         let checksum = hysid_files::checksum(&content[..]).map_err(|error| problem!("{name}: {error}"))?;
         let table = Table::from_bytes(Path::new(&name), content, &reading.reading()?);
@@ -61,7 +65,8 @@ impl Studio {
                 .map_err(|error| problem!("{name}: cannot be stored: {}", hysid_files::reason(&error)))?;
             stored = Some(path);
             let id = project.next_id();
-            project.files.push(ProjectFile { id, name, bytes, checksum, usage });
+            let columns = FileColumns::default();
+            project.files.push(ProjectFile { id, name, bytes, checksum, usage, columns });
             Ok((id, project.understanding.reading == reading))
         });
         if entered.is_err() {
@@ -168,8 +173,7 @@ impl Studio {
     /// Returns a note on a column that has a role by its name although none was chosen for it.
     pub fn choose_columns(&self, columns: Option<ChosenColumns>) -> Result<Option<String>> {
         let before = self.project().clone();
-        let first = before.files_for(Use::Training).chain(&before.files).next();
-        let note = match (&columns, first) {
+        let note = match (&columns, before.first()) {
             (Some(chosen), Some(first)) => self.check_columns(&before, first, chosen)?,
             _ => None,
         };
@@ -179,10 +183,26 @@ impl Studio {
                     "the files or their reading changed meanwhile: choose the columns again"
                 ));
             }
+            if columns.is_none() {
+                project.files.iter_mut().for_each(|file| file.columns = FileColumns::default());
+            }
             project.understanding.columns = columns;
             Ok(())
         })?;
         Ok(note)
+    }
+
+    /// Says which columns of a file have the roles of the first; those that are not chosen are found.
+    pub fn choose_columns_of(&self, id: u64, columns: FileColumns) -> Result<()> {
+        self.change_reading(|project| {
+            project.file(id)?;
+            project
+                .files
+                .iter_mut()
+                .filter(|file| file.id == id)
+                .for_each(|file| file.columns = columns.clone());
+            Ok(())
+        })
     }
 
     /// Checks columns by the first file; gives a note on one that keeps its role.

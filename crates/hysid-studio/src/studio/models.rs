@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
+use hysid::data::rate::RateMethod;
 use hysid::model::Model;
 use hysid_app::diagnosis::DiagnosedModel;
 use hysid_document::{Page, Problem, html};
 use hysid_document::{Result, problem};
-use hysid_records::{ColumnChoice, Data};
+use hysid_records::{ColumnChoice, Data, RateOption};
 use serde_json::Value;
 
 use super::Studio;
@@ -138,9 +139,19 @@ impl Studio {
                 (project.model(model)?.clone(), file, project.understanding.reading.clone())
             };
             let table = read(&file, &self.folder, &reading.reading()?)?;
-            // The model knows the names of its columns, whatever is chosen now.
-            let record = stored.begun.columns.record.filter(|name| table.column(name).is_some());
-            let columns = ColumnChoice { record, ..ColumnChoice::default() };
+            // The model knows its columns, whatever is chosen now; a table may have them under other names.
+            let wanted = stored.begun.columns.roles();
+            let (found, _) = wanted.in_table(&table, "the training data", &file.columns.choice());
+            let columns = ColumnChoice {
+                record: found.record,
+                time: found.time,
+                input: if found.inputs.len() == wanted.inputs.len() { found.inputs } else { Vec::new() },
+                output: Some(found.output).filter(|output| !output.is_empty()),
+                rate: found
+                    .rate
+                    .filter(|_| fitted.rate() == Some(RateMethod::Given))
+                    .map_or_else(RateOption::default, RateOption::Column),
+            };
             let data = Data::of_model(vec![table], &fitted, &columns, reading.zero)?;
             Run::of(&fitted, data.set)
         })
