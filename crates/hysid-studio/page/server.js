@@ -57,7 +57,7 @@ export const getText = async (address) => (await request(address)).text();
 /** Removes a file or a model from the project; gives a sentence if a file stays in the folder. */
 export async function remove(address) {
   const { kept } = await (await request(address, { method: "DELETE" })).json();
-  return kept.length ? `Removed from the project. ${kept.join(", ")} stays in its folder: somebody changed it, or Hysid did not write it.` : "";
+  return kept.length ? `${kept.join(", ")} stays in its folder: somebody changed it, or Hysid did not write it.` : "";
 }
 export async function post(address, value) {
   const response = await request(address, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(value) });

@@ -1,18 +1,16 @@
 // Files on their way to the studio: dropped anywhere on the page, or chosen.
 
 import { element } from "./elements.js";
-import { Notice } from "./notices.js";
+import { pageNotice } from "./notices.js";
 import { bytes } from "./numbers.js";
 import { project } from "./project.js";
 import { upload } from "./server.js";
 
-const notice = new Notice();
-const lines = element("div", { role: "status" });
-document.getElementById("uploads").append(notice.node, lines);
+const lines = document.getElementById("uploads");
 
 /** Sends files one after the other; gives the numbers of those that arrived. */
 export async function sendFiles(files, use = null) {
-  notice.clear();
+  pageNotice.clear();
   const problems = [];
   const ids = [];
   for (const file of files) {
@@ -35,7 +33,7 @@ export async function sendFiles(files, use = null) {
     }
     line.remove();
   }
-  notice.all(problems);
+  pageNotice.all(problems);
   return ids;
 }
 

@@ -1,9 +1,12 @@
 //! Content of a project: files, how they are read, models. It is one JSON file in the project's folder.
 
+use hysid::data::rate::RateMethod;
+use hysid::model::Model;
 use hysid::options::chosen::RateChoice;
 use hysid::options::table::{OPTIONS, OptionValues};
 use hysid_document::{Problem, Result, problem};
 use hysid_records::{ColumnChoice, RateOption, ReadingChoice, Roles};
+use hysid_tables::Head;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -185,6 +188,26 @@ pub struct ProjectModel {
     /// True if the fit did not come to its end, because the studio was ended.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub was_interrupted: bool,
+    /// The name that somebody gave it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+impl ProjectModel {
+    /// The columns of the model in a table, which may have them under other names: those of its fit, whatever is chosen
+    /// now for other files.
+    pub fn columns_in(&self, model: &Model, table: &Head, file: &ProjectFile) -> ColumnChoice {
+        let wanted = self.begun.columns.roles();
+        let (found, _) = wanted.in_table(table, "the training data", &file.columns.choice());
+        let rate = found.rate.filter(|_| model.rate() == Some(RateMethod::Given));
+        ColumnChoice {
+            record: found.record,
+            time: found.time,
+            input: if found.inputs.len() == wanted.inputs.len() { found.inputs } else { Vec::new() },
+            output: Some(found.output).filter(|output| !output.is_empty()),
+            rate: rate.map_or_else(RateOption::default, RateOption::Column),
+        }
+    }
 }
 
 impl Default for Project {

@@ -48,9 +48,9 @@ def test_columns_under_other_names_are_found_and_only_doubtful_ones_are_asked_fo
 def test_a_picture_is_refused_as_a_picture(start, visit):  # noqa: F811
     studio = start()
     opened = visit(studio)
-    picture = opened.page.screenshot()
+    picture = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + bytes(200)
     opened.page.locator("#data input[type=file]").set_input_files([{"name": "loop.csv", "mimeType": "text/csv", "buffer": picture}])
-    opened.page.locator("#uploads .problem", has_text="loop.csv: is a picture").wait_for()
+    opened.page.locator("#notices .problem", has_text="loop.csv: is a picture").wait_for()
     assert studio.state()["files"] == [] and list((studio.project / "data").iterdir()) == []
 
 

@@ -2,12 +2,13 @@
 
 import { control, choice } from "../controls.js";
 import { button, element, newId, Region, table } from "../elements.js";
-import { Notice, linked, problem } from "../notices.js";
+import { Notice, linked, problem, removeOne } from "../notices.js";
 import { bytes, counted, written } from "../numbers.js";
 import { RecordFigures } from "../plots/record-figures.js";
 import { project, startsOf } from "../project.js";
-import { getJson, post, remove } from "../server.js";
+import { getJson, post } from "../server.js";
 import { sendFiles } from "../uploads.js";
+import { Example } from "./example.js";
 
 const ROLES = ["input", "output", "time", "record", "rate", "unused"];
 const FLAG_OF_ROLE = { input: "--input", output: "--output", time: "--time", record: "--record", rate: "--rate" };
@@ -21,25 +22,27 @@ export class DataStep {
     this.reading = new Region();
     this.view = new Region();
     this.findings = new Region();
-    body.replaceChildren(this.adding(), this.notice.node, this.files.node, this.columns.node, this.reading.node, this.view.node, this.findings.node);
+    this.example = new Example(this.notice);
+    body.replaceChildren(this.adding(), this.notice.node, this.example.node, this.files.node, this.columns.node, this.reading.node, this.view.node, this.findings.node);
   }
 
   adding() {
     const id = newId("files");
-    const file = element("input", { type: "file", id, multiple: true, on: { change: () => { sendFiles([...file.files]); file.value = ""; } } });
+    const file = element("input", { type: "file", class: "hidden", id, multiple: true, on: { change: () => { sendFiles([...file.files]); file.value = ""; } } });
     const specimens = project.choices.specimens;
     const select = element("select", { "aria-label": "Synthetic specimen" }, ...specimens.map(({ name, what }) => element("option", { value: name, text: `${name}: ${what}` })));
-    this.box = element("div", { class: "empty" },
-      element("p", { text: "Drop CSV, spreadsheet or MATLAB files anywhere on this page, or choose them." }),
-      element("div", { class: "row centre" }, element("label", { for: id, text: "Choose files:" }), file),
-      element("div", { class: "row centre" }, element("span", { text: "No data yet? Take a synthetic specimen:" }), select,
-        button("Add", () => this.notice.during(() => post("/api/specimens", { name: select.value, seed: 1, noise_percent: 1 })))));
+    const add = button("Add", () => this.notice.during(() => post("/api/specimens", { name: select.value, seed: 1, noise_percent: 1 })));
+    this.box = element("div", { class: "empty drop" },
+      element("p", { class: "large", text: "Drop a file with measured input and output here" }),
+      element("div", { class: "row centre" }, file, element("label", { class: "button main", for: id, text: "Choose files" }), element("span", { class: "note", text: "CSV, text, spreadsheet, MATLAB, HDF5 or NumPy. Nothing leaves this computer." })),
+      element("details", {}, element("summary", { text: "Synthetic data of a known specimen" }), element("div", { class: "row centre" }, select, add)));
     return this.box;
   }
 
   update() {
     const { files, first, reading, columns, columns_are_chosen: areChosen, problem: whole } = project.state;
     this.box.classList.toggle("compact", files.length > 0);
+    this.example.update(files.length === 0);
     this.files.update([files, whole], () => this.fileList(files, whole));
     this.columns.update([files, first, columns, areChosen], () => this.columnTables(files, first, areChosen));
     const isUnread = files.some((file) => file.problem && file.columns.length === 0);
@@ -60,7 +63,7 @@ export class DataStep {
       const records = file.records.length > 1 ? `, ${file.records.length} records` : "";
       return element("li", {}, element("span", { class: "name", text: file.name }),
         element("span", { class: "about", text: file.problem ? "not read" : file.read_as === null ? "being read \u2026" : `${counted(file.rows)} rows${records}, ${bytes(file.bytes)}. ${file.read_as}` }), use,
-        button("Remove", () => this.notice.saying(() => remove(`/api/files/${file.id}`)), { "aria-label": `Remove ${file.name}` }),
+        button("Remove", () => removeOne("files", file), { "aria-label": `Remove ${file.name}` }),
         file.is_held_back ? button("Read again", () => this.notice.during(() => post(`/api/files/${file.id}/read`, {})), { "aria-label": `Read ${file.name} again` }) : null,
         file.problem ? problem(file.problem) : null,
         file.warnings.length > 0 ? element("ul", { class: "warnings" }, ...file.warnings.map((words) => element("li", {}, linked(words)))) : null);

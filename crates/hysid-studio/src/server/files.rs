@@ -20,9 +20,10 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::Shared;
-use super::answer::{Answer, Arrays, Refusal, at_once, computed, diagnosed, done, value};
+use super::answer::{Answer, Arrays, Refusal, at_once, computed, diagnosed, done, encoded, value};
 use crate::choices::MOST_FILE_BYTES;
 use crate::project::{ChosenColumns, FileColumns, Use};
+use crate::studio::{ForceAsked, PlanAsked};
 
 /// Longest pause of an upload.
 const LONGEST_PAUSE: Duration = Duration::from_secs(60);
@@ -98,6 +99,21 @@ fn too_large() -> Refusal {
 pub async fn remove(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
     let kept = at_once(shared, move |studio| studio.remove_file(id)).await?;
     Ok(value(json!({"kept": kept.into_iter().collect::<Vec<String>>()})))
+}
+
+/// Brings back a file or a model that was removed.
+pub async fn undo(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
+    computed(shared, move |studio| studio.undo_removal(id)).await?;
+    Ok(done())
+}
+
+/// The example of the first page.
+pub async fn example(State(shared): State<Shared>) -> Answer<Arrays> {
+    computed(shared, |studio| {
+        let example = studio.example()?;
+        Ok(Arrays::of(&example.columns).with("x-facts", encoded(&example.facts.to_string())))
+    })
+    .await
 }
 
 /// Reads a file that was held back.
@@ -224,6 +240,19 @@ pub async fn findings(State(shared): State<Shared>) -> Answer<Response> {
 /// The diagnosis of the training data.
 pub async fn diagnosis(State(shared): State<Shared>) -> Answer<Response> {
     Ok(value(json!({"html": diagnosed(shared, |studio| studio.diagnosis()).await?})))
+}
+
+/// A plan of the next test.
+pub async fn plan(State(shared): State<Shared>, Json(asked): Json<PlanAsked>) -> Answer<Response> {
+    Ok(value(computed(shared, move |studio| studio.plan(&asked)).await?))
+}
+
+/// The restoring force from the motion of a mass.
+pub async fn restoring_force(
+    State(shared): State<Shared>,
+    Json(asked): Json<ForceAsked>,
+) -> Answer<Response> {
+    Ok(value(computed(shared, move |studio| studio.restoring_force(&asked)).await?))
 }
 
 /// The cycles of the training data.

@@ -19,6 +19,7 @@ use hysid_tables::{Table, other_kind};
 use serde_json::{Value, json};
 
 use super::Studio;
+use super::removal::Removed;
 use crate::folder::{ProjectFolder, UPLOAD, cannot_read};
 use crate::project::{ChosenColumns, FileColumns, Project, ProjectFile, Use};
 use crate::view::{View, read};
@@ -27,7 +28,7 @@ use crate::words::{Said, said};
 const MOST_FILES: usize = 200;
 
 /// Refuses one more file in a full project.
-fn check_room(project: &Project) -> Result<()> {
+pub(super) fn check_room(project: &Project) -> Result<()> {
     if project.files.len() >= MOST_FILES {
         return Err(problem!("a project has at most {MOST_FILES} files: remove some that are not used"));
     }
@@ -110,16 +111,18 @@ impl Studio {
 
     /// Removes a file from the project. Gives its name if it stays in the folder, because it is no longer the one that came.
     pub fn remove_file(&self, id: u64) -> Result<Option<String>> {
-        let removed = self.change(|project| {
-            let removed = project.file(id)?.clone();
-            project.files.retain(|file| file.id != id);
-            Ok(removed)
+        let (removed, place) = self.change(|project| {
+            project.file(id)?;
+            let place = project.files.iter().position(|file| file.id == id).unwrap_or_default();
+            Ok((project.files.remove(place), place))
         })?;
         // A model that was made of it keeps its line.
         let path = self.folder.data(&removed.name);
-        let kept = self.folder.remove_if(&path, |file| {
+        let aside = self.folder.removed(ProjectFolder::Data, id, 0);
+        let kept = self.folder.set_aside_if(&path, &aside, |file| {
             Ok(file.metadata()?.len() == removed.bytes && hysid_files::checksum(file)? == removed.checksum)
         });
+        self.keep_removed(Removed::File(removed.clone(), place));
         self.folder.release(id);
         self.read_files();
         Ok(kept.then_some(removed.name))

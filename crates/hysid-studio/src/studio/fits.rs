@@ -119,6 +119,7 @@ impl Studio {
     /// A model that cannot be stored; the error names the place of a copy.
     pub fn end(&self) -> Result<()> {
         self.folder.end_readings();
+        self.forget_removed();
         self.fits.end();
         self.save_again().map_err(|problem| {
             let place = self.unsaved().as_ref().and_then(|found| found.rescued.clone());
@@ -178,6 +179,7 @@ impl Studio {
             made: date::now(),
             seconds: found.identified.seconds.unwrap_or_default(),
             was_interrupted: false,
+            name: None,
         })
     }
 
@@ -258,6 +260,7 @@ impl Studio {
             made: date::now(),
             seconds: 0.0,
             was_interrupted,
+            name: None,
         })
     }
 
