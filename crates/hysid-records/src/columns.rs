@@ -93,7 +93,7 @@ impl RateOption {
 }
 
 /// The columns of each role, by name.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Roles {
     /// Column with the name of each row's record.
     pub record: Option<String>,
@@ -298,17 +298,7 @@ impl Roles {
             Some(name) => require(table, name, "record").map(|()| Some(full_name(table, name)))?,
             None => table.header.iter().find(|name| is_record(name) && !used(name)).cloned(),
         };
-        Ok(Self {
-            record,
-            time,
-            inputs,
-            rate,
-            output,
-            guessed: None,
-            set_aside: Vec::new(),
-            condition: None,
-            note: None,
-        })
+        Ok(Self { record, time, inputs, rate, output, ..Self::default() })
     }
 
     pub fn names(&self) -> ColumnNames {

@@ -15,6 +15,8 @@ use crate::folder::{Folder, plain};
 /// Version of the project's file.
 const VERSION: u32 = 1;
 
+const MOST_FILES: usize = 200;
+
 /// Largest number of a file or a model, far below those that a page in a browser rounds.
 const LARGEST_ID: u64 = 1 << 48;
 
@@ -44,22 +46,11 @@ pub struct Understanding {
     pub columns: Option<ChosenColumns>,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "each field is the role of its name")]
-pub struct ChosenColumns {
-    pub record: Option<String>,
-    pub time: Option<String>,
-    pub inputs: Vec<String>,
-    pub rate: Option<String>,
-    pub output: String,
-}
-
-/// Columns of a file by their roles: those that were chosen, of a table that names them in its own way.
+/// Columns by their roles. Of the file that determines the roles all are known; of others those that were chosen.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[allow(missing_docs, reason = "each field is the role of its name")]
-pub struct FileColumns {
+pub struct ChosenColumns {
     pub record: Option<String>,
     pub time: Option<String>,
     pub inputs: Vec<String>,
@@ -67,7 +58,7 @@ pub struct FileColumns {
     pub output: Option<String>,
 }
 
-impl FileColumns {
+impl ChosenColumns {
     pub fn choice(&self) -> ColumnChoice {
         let Self { record, time, inputs, rate, output } = self.clone();
         let rate = rate.map_or_else(RateOption::default, RateOption::Column);
@@ -77,32 +68,11 @@ impl FileColumns {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
-}
-
-impl Begun {
-    /// The method of the rate that was asked for; `None` for the default, and for a column.
-    pub fn rate_method(&self) -> Option<&str> {
-        self.request.rate.as_deref().filter(|method| self.columns.rate.is_none() && *method != "auto")
-    }
-}
-
-impl From<ChosenColumns> for FileColumns {
-    fn from(chosen: ChosenColumns) -> Self {
-        let ChosenColumns { record, time, inputs, rate, output } = chosen;
-        Self { record, time, inputs, rate, output: Some(output) }
-    }
-}
-
-impl ChosenColumns {
-    pub fn choice(&self) -> ColumnChoice {
-        FileColumns::from(self.clone()).choice()
-    }
 
     /// The roles that find the same columns in other tables.
     pub fn roles(&self) -> Roles {
         let Self { record, time, inputs, rate, output } = self.clone();
-        let (guessed, set_aside, condition, note) = (None, Vec::new(), None, None);
-        Roles { record, time, inputs, rate, output, guessed, set_aside, condition, note }
+        Roles { record, time, inputs, rate, output: output.unwrap_or_default(), ..Roles::default() }
     }
 
     pub fn of(roles: &Roles) -> Self {
@@ -111,8 +81,15 @@ impl ChosenColumns {
             time: roles.time.clone(),
             inputs: roles.inputs.clone(),
             rate: roles.rate.clone(),
-            output: roles.output.clone(),
+            output: Some(roles.output.clone()),
         }
+    }
+}
+
+impl Begun {
+    /// The method of the rate that was asked for; `None` for the default, and for a column.
+    pub fn rate_method(&self) -> Option<&str> {
+        self.request.rate.as_deref().filter(|method| self.columns.rate.is_none() && *method != "auto")
     }
 }
 
@@ -127,8 +104,8 @@ pub struct ProjectFile {
     #[serde(rename = "use")]
     pub usage: Use,
     /// Columns that were chosen for this file, in place of those that are like the columns of the first.
-    #[serde(default, skip_serializing_if = "FileColumns::is_empty")]
-    pub columns: FileColumns,
+    #[serde(default, skip_serializing_if = "ChosenColumns::is_empty")]
+    pub columns: ChosenColumns,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -168,7 +145,7 @@ pub struct Begun {
     pub columns: ChosenColumns,
     /// Columns that were chosen for single files; empty if none were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub of_files: Vec<FileColumns>,
+    pub of_files: Vec<ChosenColumns>,
     /// Files whose columns have other names than those of the first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub renamed: Vec<String>,
@@ -280,6 +257,14 @@ impl Project {
         serde_json::to_string_pretty(self).expect("a project is plain data") + "\n"
     }
 
+    /// Refuses one more file in a full project.
+    pub fn check_room(&self) -> Result<()> {
+        if self.files.len() >= MOST_FILES {
+            return Err(problem!("a project has at most {MOST_FILES} files: remove some that are not used"));
+        }
+        Ok(())
+    }
+
     /// A number that was not used before.
     pub fn next_id(&mut self) -> u64 {
         self.next += 1;
@@ -307,9 +292,10 @@ impl Project {
     }
 
     /// Columns that were chosen for single training files; empty if none were.
-    pub fn columns_of_files(&self) -> Vec<FileColumns> {
-        let all: Vec<FileColumns> = self.files_for(Use::Training).map(|file| file.columns.clone()).collect();
-        if all.iter().all(FileColumns::is_empty) { Vec::new() } else { all }
+    pub fn columns_of_files(&self) -> Vec<ChosenColumns> {
+        let all: Vec<ChosenColumns> =
+            self.files_for(Use::Training).map(|file| file.columns.clone()).collect();
+        if all.iter().all(ChosenColumns::is_empty) { Vec::new() } else { all }
     }
 
     /// True if a fit had other data than the present ones.
@@ -375,7 +361,7 @@ mod tests {
             bytes: 1,
             checksum: String::new(),
             usage: Use::Training,
-            columns: FileColumns::default(),
+            columns: ChosenColumns::default(),
         };
         let with = |files: Vec<ProjectFile>| Project { files, ..Project::default() }.checked();
         assert_eq!(with(vec![file(7, "a.csv")]).unwrap().next, 8, "a number is never given twice");
@@ -408,7 +394,7 @@ mod tests {
             bytes: 7,
             checksum: "0".into(),
             usage: Use::Unseen,
-            columns: FileColumns::default(),
+            columns: ChosenColumns::default(),
         });
         folder.write_project(&project.text()).unwrap();
         assert_eq!(Project::of(&folder).unwrap(), project);

@@ -136,7 +136,8 @@ fn python(begun: &Begun, file: &str) -> Option<String> {
     let text = |text: &str| Value::from(text).to_string();
     let column = |name: &str| format!("table[{}]", text(name));
     let inputs = columns.inputs.iter().map(|name| text(name)).collect::<Vec<String>>().join(", ");
-    let mut arguments = vec![format!("table[[{inputs}]]"), column(&columns.output)];
+    let mut arguments =
+        vec![format!("table[[{inputs}]]"), column(columns.output.as_deref().unwrap_or_default())];
     arguments.extend(columns.time.iter().map(|name| format!("time={}", column(name))));
     arguments.extend(columns.record.iter().map(|name| format!("records={}", column(name))));
     arguments.extend(columns.rate.iter().map(|name| format!("rate={}", column(name))));

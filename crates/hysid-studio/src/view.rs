@@ -10,7 +10,7 @@ use hysid_records::{Data, Roles, TableOverview};
 use hysid_tables::{Reading, Table};
 
 use crate::folder::Folder;
-use crate::project::{FileColumns, Project, ProjectFile, Understanding, Use};
+use crate::project::{ChosenColumns, Project, ProjectFile, Understanding, Use};
 use crate::words::{Said, said};
 
 /// Time between two views that are shown while files are read.
@@ -49,7 +49,7 @@ pub struct FileView {
     pub problem: Option<Said>,
     /// The roles of the first file, and the columns that were chosen for this one: with others it is read anew.
     like: Option<Roles>,
-    chosen: FileColumns,
+    chosen: ChosenColumns,
     /// The roles of its own columns; some may be missing.
     pub roles: Option<Roles>,
 }

@@ -22,7 +22,7 @@ use serde_json::json;
 use super::Shared;
 use super::answer::{Answer, Arrays, Refusal, at_once, computed, diagnosed, done, encoded, value};
 use crate::choices::MOST_FILE_BYTES;
-use crate::project::{ChosenColumns, FileColumns, Use};
+use crate::project::{ChosenColumns, Use};
 use crate::studio::{ForceAsked, PlanAsked};
 
 /// Longest pause of an upload.
@@ -167,26 +167,24 @@ pub async fn reading(State(shared): State<Shared>, Json(reading): Json<ReadingCh
     Ok(done())
 }
 
-/// All columns of the first file.
-fn chosen(asked: FileColumns) -> hysid_document::Result<ChosenColumns> {
-    let FileColumns { record, time, inputs, rate, output } = asked;
-    let missing = |role| {
-        let words = Words::from(format!("no column has the role {role}: choose one"));
-        Problem::Request(words.advised(Hint::Option(role)))
-    };
-    if inputs.is_empty() {
-        return Err(missing("input"));
+/// Refuses columns of the first file without an input or an output.
+fn complete(chosen: ChosenColumns) -> hysid_document::Result<ChosenColumns> {
+    let missing = [("input", chosen.inputs.is_empty()), ("output", chosen.output.is_none())];
+    match missing.iter().find(|(_, is_missing)| *is_missing) {
+        Some((role, _)) => {
+            let words = Words::from(format!("no column has the role {role}: choose one"));
+            Err(Problem::Request(words.advised(Hint::Option(role))))
+        }
+        None => Ok(chosen),
     }
-    let output = output.ok_or_else(|| missing("output"))?;
-    Ok(ChosenColumns { record, time, inputs, rate, output })
 }
 
 /// Sets the roles of columns; returns a note if one of them stays what it was.
 pub async fn columns(
     State(shared): State<Shared>,
-    Json(asked): Json<Option<FileColumns>>,
+    Json(asked): Json<Option<ChosenColumns>>,
 ) -> Answer<Response> {
-    let note = computed(shared, move |studio| studio.choose_columns(asked.map(chosen).transpose()?));
+    let note = computed(shared, move |studio| studio.choose_columns(asked.map(complete).transpose()?));
     Ok(value(json!({"note": note.await?})))
 }
 
@@ -194,7 +192,7 @@ pub async fn columns(
 pub async fn columns_of(
     State(shared): State<Shared>,
     Path(id): Path<u64>,
-    Json(asked): Json<FileColumns>,
+    Json(asked): Json<ChosenColumns>,
 ) -> Answer<Response> {
     computed(shared, move |studio| studio.choose_columns_of(id, asked)).await?;
     Ok(done())

@@ -21,24 +21,14 @@ use serde_json::{Value, json};
 use super::Studio;
 use super::removal::Removed;
 use crate::folder::{ProjectFolder, UPLOAD, cannot_read};
-use crate::project::{ChosenColumns, FileColumns, Project, ProjectFile, Use};
+use crate::project::{ChosenColumns, Project, ProjectFile, Use};
 use crate::view::{View, read};
 use crate::words::{Said, said};
-
-const MOST_FILES: usize = 200;
-
-/// Refuses one more file in a full project.
-pub(super) fn check_room(project: &Project) -> Result<()> {
-    if project.files.len() >= MOST_FILES {
-        return Err(problem!("a project has at most {MOST_FILES} files: remove some that are not used"));
-    }
-    Ok(())
-}
 
 impl Studio {
     /// Where a file with this name that comes in is put, before it is [taken](Self::take_file).
     pub fn place_for_upload(&self) -> Result<PathBuf> {
-        check_room(&self.project())?;
+        self.project().check_room()?;
         let mut random = [0; 8];
         getrandom::fill(&mut random).map_err(|error| problem!("no random name: {error}"))?;
         Ok(self.folder.data(&format!("{UPLOAD}{:016x}", u64::from_le_bytes(random))))
@@ -59,14 +49,14 @@ impl Studio {
         let table = Table::from_bytes(Path::new(&name), content, &reading.reading()?);
         let mut stored = None;
         let entered = self.change(|project| {
-            check_room(project)?;
+            project.check_room()?;
             let name = self.folder.free_name(ProjectFolder::Data, given)?;
             let path = self.folder.data(&name);
             fs::rename(place, &path)
                 .map_err(|error| problem!("{name}: cannot be stored: {}", hysid_files::reason(&error)))?;
             stored = Some(path);
             let id = project.next_id();
-            let columns = FileColumns::default();
+            let columns = ChosenColumns::default();
             project.files.push(ProjectFile { id, name, bytes, checksum, usage, columns });
             Ok((id, project.understanding.reading == reading))
         });
@@ -187,7 +177,7 @@ impl Studio {
                 ));
             }
             if columns.is_none() {
-                project.files.iter_mut().for_each(|file| file.columns = FileColumns::default());
+                project.files.iter_mut().for_each(|file| file.columns = ChosenColumns::default());
             }
             project.understanding.columns = columns;
             Ok(())
@@ -196,7 +186,7 @@ impl Studio {
     }
 
     /// Says which columns of a file have the roles of the first; those that are not chosen are found.
-    pub fn choose_columns_of(&self, id: u64, columns: FileColumns) -> Result<()> {
+    pub fn choose_columns_of(&self, id: u64, columns: ChosenColumns) -> Result<()> {
         self.change_reading(|project| {
             project.file(id)?;
             project

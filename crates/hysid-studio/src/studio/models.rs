@@ -114,7 +114,7 @@ impl Studio {
             let place = project.models.iter().position(|model| model.begun.id == id).unwrap_or_default();
             Ok((project.models.remove(place), place))
         })?;
-        self.keep_removed(Removed::Model(removed.clone(), place));
+        self.keep_removed(Removed::Model(Box::new(removed.clone()), place));
         let aside = |part| self.folder.removed(ProjectFolder::Models, id, part);
         let text = |file| hysid_files::read_from("", file).map_err(io::Error::other);
         let is_model = |file| {

@@ -14,7 +14,7 @@ const MOST_REMOVED: usize = 20;
 /// What was removed, and its place in the list of the project.
 pub(super) enum Removed {
     File(ProjectFile, usize),
-    Model(ProjectModel, usize),
+    Model(Box<ProjectModel>, usize),
 }
 
 impl Removed {
@@ -74,7 +74,7 @@ impl Studio {
             Removed::File(file, place) => {
                 let file = ProjectFile { name: names.next().expect("a file has a name")?, ..file.clone() };
                 self.change_reading(|project| {
-                    super::files::check_room(project)?;
+                    project.check_room()?;
                     project.files.insert((*place).min(project.files.len()), file);
                     Ok(())
                 })
@@ -82,7 +82,7 @@ impl Studio {
             Removed::Model(model, place) => {
                 let file = names.next().expect("a model has a file")?;
                 let report = names.next().transpose()?;
-                let model = ProjectModel { file, report, ..model.clone() };
+                let model = ProjectModel { file, report, ..(**model).clone() };
                 self.change(|project| {
                     project.models.insert((*place).min(project.models.len()), model);
                     Ok(())
