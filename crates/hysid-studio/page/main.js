@@ -73,7 +73,7 @@ function showFit() {
 listenToDrops(async (files) => {
   const { name } = shownStep();
   const step = steps.get(name);
-  if (!step?.take || (!step.useOfDropped && project.models.length === 0)) {
+  if (!step?.take || (project.models.length === 0 && !step.needsNoModel)) {
     location.hash = "data";
     await sendFiles(files);
     return;

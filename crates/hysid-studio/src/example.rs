@@ -43,7 +43,7 @@ impl Example {
         all.extend(columns(&run.predicted));
         let names = run.data.names();
         let facts = json!({
-            "specimen": {"name": SPECIMEN, "seed": SEED, "noise_percent": NOISE_PERCENT},
+            "specimen": {"name": SPECIMEN, "seed": SEED, "noise_percent": NOISE_PERCENT, "is_example": true},
             "options": options,
             "model": model.name().name(),
             "inputs": [unit::label(&names.inputs[0])],

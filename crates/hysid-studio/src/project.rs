@@ -106,6 +106,9 @@ pub struct ProjectFile {
     /// Columns that were chosen for this file, in place of those that are like the columns of the first.
     #[serde(default, skip_serializing_if = "ChosenColumns::is_empty")]
     pub columns: ChosenColumns,
+    /// True for data of the example, which files of the user replace.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_example: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -362,6 +365,7 @@ mod tests {
             checksum: String::new(),
             usage: Use::Training,
             columns: ChosenColumns::default(),
+            is_example: false,
         };
         let with = |files: Vec<ProjectFile>| Project { files, ..Project::default() }.checked();
         assert_eq!(with(vec![file(7, "a.csv")]).unwrap().next, 8, "a number is never given twice");
@@ -395,6 +399,7 @@ mod tests {
             checksum: "0".into(),
             usage: Use::Unseen,
             columns: ChosenColumns::default(),
+            is_example: false,
         });
         folder.write_project(&project.text()).unwrap();
         assert_eq!(Project::of(&folder).unwrap(), project);

@@ -50,6 +50,7 @@ pub struct FileView {
     /// The roles of the first file, and the columns that were chosen for this one: with others it is read anew.
     like: Option<Roles>,
     chosen: ChosenColumns,
+    is_used: bool,
     /// The roles of its own columns; some may be missing.
     pub roles: Option<Roles>,
 }
@@ -110,7 +111,9 @@ impl View {
         let known: HashMap<u64, &Arc<FileView>> = known.map(|known| (known.id, known)).collect();
         let mut shown = Instant::now();
         for file in &project.files {
-            let known = known.get(&file.id).filter(|known| known.chosen == file.columns);
+            let known = known
+                .get(&file.id)
+                .filter(|known| known.chosen == file.columns && known.is_used == (file.usage != Use::Unused));
             let of_file = known.map(|known| Arc::clone(known)).unwrap_or_else(|| {
                 let table = match first_table.take_if(|(id, _)| *id == file.id) {
                     Some((_, table)) => table,
@@ -214,9 +217,17 @@ impl FileView {
         of: &str,
         understanding: &Understanding,
     ) -> Self {
-        let (id, chosen) = (file.id, file.columns.clone());
-        let mut view =
-            Self { id, table: None, data: None, problem: None, like: like.cloned(), chosen, roles: None };
+        let (id, chosen, is_used) = (file.id, file.columns.clone(), file.usage != Use::Unused);
+        let mut view = Self {
+            id,
+            table: None,
+            data: None,
+            problem: None,
+            like: like.cloned(),
+            chosen,
+            is_used,
+            roles: None,
+        };
         let table = match table {
             Ok(table) => table,
             Err(problem) => {
@@ -234,6 +245,8 @@ impl FileView {
         view.roles.clone_from(&roles);
         let (Some(like), Some(roles)) = (like, roles) else { return view };
         let data = match doubt.flatten() {
+            // It may be a wanted output, or the motion of a mass.
+            Some(_) if !is_used => return view,
             Some(problem) => Err(problem),
             None => Data::of_files(vec![(table, roles)], like.clone(), understanding.reading.zero),
         };

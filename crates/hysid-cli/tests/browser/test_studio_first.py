@@ -2,7 +2,7 @@
 
 import re
 
-from test_studio import is_drawn, visit  # noqa: F401 (a fixture)
+from test_studio import drop, is_drawn, visit  # noqa: F401 (a fixture)
 
 
 def test_the_example_is_shown_at_once_and_opened_in_all_steps(start, visit):  # noqa: F811
@@ -27,6 +27,10 @@ def test_the_example_is_shown_at_once_and_opened_in_all_steps(start, visit):  # 
     assert not page.get_by_role("button", name="Explore").is_visible()
     identify = opened.go("identify")
     assert identify.get_by_role("button").all_inner_texts()[0] == "Start" and not identify.get_by_label("Model", exact=True).is_visible()
+    # The first file of the user replaces the example and its model.
+    drop(page, "own.csv", "t_s,x_mm,y_N\n" + "".join(f"{k},{k % 7},{k % 7 + 0.1 * (k % 3)}\n" for k in range(60)))
+    state = studio.wait(lambda state: [file["name"] for file in state["files"]] == ["own.csv"])
+    assert state["files"][0]["use"] == "training" and state["models"] == [] and state["columns"]["inputs"] == ["x_mm"]
     opened.check()
 
 

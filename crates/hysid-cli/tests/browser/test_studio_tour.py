@@ -18,7 +18,7 @@ MOST_BYTES = 400_000
 WRITES = bool(os.environ.get("HYSID_WRITE"))
 
 #: Colours of a picture: figures and text of the page have few.
-COLOURS = 16
+COLOURS = 20
 
 
 class Tour:

@@ -88,7 +88,7 @@ def test_a_restoring_force_becomes_a_file_of_the_project(start, visit, tmp_path)
     force.get_by_role("button", name="Compute").click()
     force.get_by_role("button", name="Add to the project").click()
     state = studio.wait(lambda state: len(state["files"]) == 2)
-    assert state["files"][1]["name"] == "rig.force.csv" and state["files"][1]["problem"] is None
+    assert state["files"][1]["name"] == "rig.force.csv" and [file["problem"] for file in state["files"]] == [None, None]
     with (studio.project / "data" / "rig.force.csv").open() as table:
         found = list(csv.DictReader(table))
     column = next(name for name in found[0] if name.startswith("restoring_force"))

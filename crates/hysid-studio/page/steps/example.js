@@ -43,7 +43,7 @@ export class Example {
     this.figures.setOverlays([...band, { name: "simulated", role: "simulated", y: of("simulated") }]);
     const explore = button("Explore this example", () => this.explore(facts), { id: "explore" });
     const verdict = `A ${facts.model} model was fitted to ${counted(facts.rows_in_training)} rows of a soft magnet (synthetic electrical steel). It simulates the ${counted(facts.rows)} rows below, to which it was not fitted, with an error of ${percent(facts.error_percent)} of the standard deviation of the output; cross-validation estimated ${percent(facts.validation_percent)}.`;
-    this.node.replaceChildren(element("h2", { text: "An example: a soft magnet" }), element("p", { class: "verdict", text: verdict }), element("div", { class: "row" }, explore, element("span", { class: "note", text: "opens it in all steps. Remove it when you have your own data." })), this.figures.node);
+    this.node.replaceChildren(element("h2", { text: "An example: a soft magnet" }), element("p", { class: "verdict", text: verdict }), element("div", { class: "row" }, explore, element("span", { class: "note", text: "opens it in all steps. Your own file replaces it." })), this.figures.node);
   }
 
   /** The same data and the same fit as a project, then the step that judges it. */

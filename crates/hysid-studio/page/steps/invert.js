@@ -3,6 +3,7 @@
 import { choice } from "../controls.js";
 import { element } from "../elements.js";
 import { linked } from "../notices.js";
+import { written } from "../numbers.js";
 import { project } from "../project.js";
 import { modelChoice, modelOr, noFile, noModel, stale } from "./model-choice.js";
 import { field, UseCase } from "./use-case.js";
@@ -24,8 +25,8 @@ export class InvertStep extends UseCase {
     if (!file) return this.showNothing(noFile());
     return this.form.update([project.models.map(({ id, title }) => [id, title]), model.id, files.map(({ id, name }) => [id, name]), file.id], () => {
       const [range] = model.ranges;
-      const low = field(`Lowest ${model.input_labels[0]}`, String(range[0]));
-      const high = field(`Highest ${model.input_labels[0]}`, String(range[1]));
+      const low = field(`Lowest ${model.input_labels[0]}`, written(range[0]));
+      const high = field(`Highest ${model.input_labels[0]}`, written(range[1]));
       const slew = field("Largest rate of it", "none");
       const chosen = choice("Wanted output: the output column of", files.map(({ id, name }) => ({ value: id, text: name })), file.id, (id) => { this.file = Number(id); this.update(); }, { id: "invert-file" });
       const start = this.asking("Invert", () => `/api/models/${model.id}/inverse`, () => ({ file: file.id, low: low.read(), high: high.read(), slew: slew.read() }));

@@ -15,6 +15,7 @@ export class RestoringForceStep extends UseCase {
     this.update();
   }
   get useOfDropped() { return "unused"; }
+  get needsNoModel() { return true; }
 
   update() {
     const files = project.files.filter(({ columns }) => columns.length > 0);

@@ -2,6 +2,7 @@
 
 import { button, element, Region } from "../elements.js";
 import { Notice, failure, problem } from "../notices.js";
+import { written } from "../numbers.js";
 import { download } from "../plots/save.js";
 import { project } from "../project.js";
 import { getFile } from "../server.js";
@@ -45,7 +46,7 @@ export class TakeAwayStep {
   inverse(model, address) {
     const [range] = model.ranges;
     const [label] = model.input_labels;
-    const fields = { low: field(`Lowest ${label}`, String(range[0])), high: field(`Highest ${label}`, String(range[1])), slew: field("Largest rate of it", "none") };
+    const fields = { low: field(`Lowest ${label}`, written(range[0])), high: field(`Highest ${label}`, written(range[1])), slew: field("Largest rate of it", "none") };
     const query = () => Object.entries(fields).map(([name, one]) => [name, one.read()]).filter(([, value]) => value !== null).map(([name, value]) => `&${name}=${value}`).join("");
     const targets = project.choices.targets.filter(({ has_inverse: has }) => has);
     return element("div", {}, element("h2", { text: "Inverse" }),

@@ -80,6 +80,9 @@ pub async fn upload(
     }
     drop(file);
     let id = computed(shared, move |studio| {
+        if named.usage.is_none() {
+            studio.leave_example()?;
+        }
         let usage = named.usage.unwrap_or_else(|| studio.usage_of_next());
         let id = studio.take_file(&named.name, &place, usage)?;
         Ok(id)
@@ -146,6 +149,8 @@ pub struct Specimen {
     seed: u64,
     #[serde(default)]
     noise_percent: f64,
+    #[serde(default)]
+    is_example: bool,
 }
 
 fn one() -> u64 {
@@ -155,7 +160,12 @@ fn one() -> u64 {
 /// Takes the data of a specimen.
 pub async fn specimen(State(shared): State<Shared>, Json(asked): Json<Specimen>) -> Answer<Response> {
     let take = move |studio: &std::sync::Arc<crate::studio::Studio>| {
-        studio.take_specimen(&asked.name, asked.seed, asked.noise_percent)
+        studio.leave_example()?;
+        let ids = studio.take_specimen(&asked.name, asked.seed, asked.noise_percent)?;
+        if asked.is_example {
+            studio.mark_example(&ids)?;
+        }
+        Ok(ids)
     };
     let ids = computed(shared, take).await?;
     Ok(value(json!({"ids": ids})))

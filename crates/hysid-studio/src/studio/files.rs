@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 use super::Studio;
 use super::removal::Removed;
 use crate::folder::{ProjectFolder, UPLOAD, cannot_read};
-use crate::project::{ChosenColumns, Project, ProjectFile, Use};
+use crate::project::{ChosenColumns, Project, ProjectFile, ProjectModel, Use};
 use crate::view::{View, read};
 use crate::words::{Said, said};
 
@@ -57,7 +57,7 @@ impl Studio {
             stored = Some(path);
             let id = project.next_id();
             let columns = ChosenColumns::default();
-            project.files.push(ProjectFile { id, name, bytes, checksum, usage, columns });
+            project.files.push(ProjectFile { id, name, bytes, checksum, usage, columns, is_example: false });
             Ok((id, project.understanding.reading == reading))
         });
         if entered.is_err() {
@@ -92,6 +92,30 @@ impl Studio {
         }
         let usage = self.usage_of_next();
         self.take_content(&name, &content, usage).map(drop)
+    }
+
+    /// Marks files as data of the example.
+    pub fn mark_example(&self, ids: &[u64]) -> Result<()> {
+        self.change(|project| {
+            project.files.iter_mut().for_each(|file| file.is_example |= ids.contains(&file.id));
+            Ok(())
+        })
+    }
+
+    /// Removes the example, before files of the user come in its place.
+    pub fn leave_example(&self) -> Result<()> {
+        let project = self.project().clone();
+        let (example, own): (Vec<_>, Vec<_>) = project.files.iter().partition(|file| file.is_example);
+        if !own.is_empty() || self.fits.state().is_some_and(|fit| fit.is_running) {
+            return Ok(());
+        }
+        let is_of_it = |model: &&ProjectModel| {
+            model.begun.files.iter().all(|name| example.iter().any(|file| file.name == *name))
+        };
+        for model in project.models.iter().filter(is_of_it) {
+            self.remove_model(model.begun.id)?;
+        }
+        example.iter().try_for_each(|file| self.remove_file(file.id).map(drop))
     }
 
     /// Use of the next file: the first are for training; once there is a model, a file is unseen.
