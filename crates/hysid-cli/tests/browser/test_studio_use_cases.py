@@ -86,6 +86,7 @@ def test_a_restoring_force_becomes_a_file_of_the_project(start, visit, tmp_path)
     force.locator(".problem", has_text="a number is needed").wait_for()
     force.get_by_label("Mass, such as 2 t").fill("2 kg")
     force.get_by_role("button", name="Compute").click()
+    force.locator("svg.plot[aria-label^='restoring force (N) over x (m)']").wait_for()
     force.get_by_role("button", name="Add to the project").click()
     state = studio.wait(lambda state: len(state["files"]) == 2)
     assert state["files"][1]["name"] == "rig.force.csv" and [file["problem"] for file in state["files"]] == [None, None]

@@ -26,7 +26,7 @@ export class RestoringForceStep extends UseCase {
       const mass = field("Mass, such as 2 t", "in kg, or with a unit", { type: "text", flag: "--mass" });
       const values = {};
       const roles = Object.entries(COLUMNS).map(([name, text]) => {
-        const usual = ["displacement", "applied_force"].includes(name) ? "found by name and unit" : "none";
+        const usual = { displacement: "found by name and unit", applied_force: "found by name and unit", velocity: "computed", acceleration: "computed" }[name] ?? "none";
         const entries = [{ value: "", text: usual }, ...(name === "applied_force" ? [{ value: "none", text: "none" }] : []), ...file.columns.map((column) => ({ value: column.name, text: column.name }))];
         return choice(text, entries, "", (value) => { values[name] = value || null; }, { "data-flag": `--${name.replaceAll("_", "-")}` });
       });

@@ -183,7 +183,10 @@ impl Studio {
         let found = motion.restoring_force(&request)?;
         let warnings = force::warnings(&motion, &found, None, Face::Studio);
         let understood = force::understood(&table, &motion, &request.mass, &found, Face::Studio);
-        let mut parts = vec![Part::Command(force::summary(&motion, &found, None))];
+        let mut parts = vec![
+            Part::Command(force::summary(&motion, &found, None)),
+            Part::chart(force::chart(&motion, &found)),
+        ];
         parts.extend((!warnings.is_empty()).then(|| Part::warnings(&warnings)));
         parts.push(Part::section("How the data were read", [Part::Definitions(understood)]));
         let text = [written.header(), written.rows(&table, &motion, &found, zero)].concat();
