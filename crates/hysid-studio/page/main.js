@@ -71,6 +71,7 @@ function showFit() {
 
 /** A file that is dropped on a step which takes one stays there; all others go to the data. */
 listenToDrops(async (files) => {
+  show();
   const { name } = shownStep();
   const step = steps.get(name);
   if (!step?.take || (project.models.length === 0 && !step.needsNoModel)) {

@@ -41,7 +41,10 @@ export class Example {
     this.figures = new RecordFigures({ columns, labels: { time: null, inputs: facts.inputs, output: facts.output }, starts: [0], loopHeight: 340 });
     const band = of("low") ? [{ name: "prediction band", role: "band", style: "band", y: of("low"), high: of("high") }] : [];
     this.figures.setOverlays([...band, { name: "simulated", role: "simulated", y: of("simulated") }]);
-    const explore = button("Explore this example", () => this.explore(facts), { id: "explore" });
+    const explore = button("Explore this example", () => {
+      explore.disabled = true;
+      this.explore(facts);
+    }, { id: "explore" });
     const verdict = `A ${facts.model} model was fitted to ${counted(facts.rows_in_training)} rows of a soft magnet (synthetic electrical steel). It simulates the ${counted(facts.rows)} rows below, to which it was not fitted, with an error of ${percent(facts.error_percent)} of the standard deviation of the output; cross-validation estimated ${percent(facts.validation_percent)}.`;
     this.node.replaceChildren(element("h2", { text: "An example: a soft magnet" }), element("p", { class: "verdict", text: verdict }), element("div", { class: "row" }, explore, element("span", { class: "note", text: "opens it in all steps. Your own file replaces it." })), this.figures.node);
   }
@@ -51,13 +54,15 @@ export class Example {
     return this.notice.during(async () => {
       await post("/api/specimens", specimen);
       const { id } = await post("/api/fit", { options });
+      const events = ["change", "fit"];
       const ended = () => {
         const { fit } = project.state;
-        if (fit?.id !== id || fit.is_running) return;
-        project.removeEventListener("change", ended);
+        if (fit?.id !== id || fit.is_running || (fit.made && !project.models.some((model) => model.id === fit.made))) return;
+        events.forEach((name) => project.removeEventListener(name, ended));
         if (fit.made) location.hash = `judge/${fit.made}`;
       };
-      project.addEventListener("change", ended);
+      events.forEach((name) => project.addEventListener(name, ended));
+      ended();
     });
   }
 }
