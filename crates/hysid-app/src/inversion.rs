@@ -1,5 +1,6 @@
 //! Wanted outputs of a table, and the inputs that drive a model along them.
 
+mod drive;
 mod page;
 mod reference;
 
@@ -10,8 +11,12 @@ use hysid::error::InverseError;
 use hysid::model::{BandLevel, Inverse, Inversion, Model, Reach};
 use hysid_document::{Problem, Result};
 
+pub use drive::DriveTable;
 pub use page::page;
 pub use reference::{ReferenceOutputs, WantedRecord};
+
+/// Deviation of the driven model, in percent of the standard deviation of the wanted output, above which to warn.
+const LARGE: f64 = 5.0;
 
 /// How far an inverse looks ahead.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,6 +108,34 @@ impl Inverted {
     pub fn extrapolated(&self) -> usize {
         let rows = self.records.iter().flat_map(|record| &record.is_extrapolated);
         rows.filter(|is_extrapolated| **is_extrapolated).count()
+    }
+
+    /// Warnings on the drive.
+    pub fn warnings(&self) -> Vec<String> {
+        let rows = self.rows();
+        let mut all = Vec::new();
+        let missed = self.not_reached();
+        if !missed.is_empty() {
+            let counts: Vec<String> = missed.iter().map(|(word, count)| format!("{word} {count}")).collect();
+            let total = rows - self.reached();
+            all.push(format!(
+                "{total} of {rows} rows do not reach the wanted output: {} (column reach)",
+                counts.join(", ")
+            ));
+        }
+        let extrapolated = self.extrapolated();
+        if extrapolated > 0 {
+            all.push(format!(
+                "{extrapolated} of {rows} rows have an input or a rate outside the range of the training data (column extrapolated)"
+            ));
+        }
+        if let Some(percent) = self.errors.nrmse_std_percent.filter(|percent| *percent > LARGE) {
+            all.push(format!(
+                "the RMS deviation of the model output is {percent:.1} % of the standard deviation of the wanted output: \
+                 within these bounds the model does not follow the reference"
+            ));
+        }
+        all
     }
 
     /// Lowest and highest input.

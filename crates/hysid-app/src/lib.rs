@@ -73,6 +73,7 @@ pub use identified::{Beforehand, Identified};
 pub use memory::check_memory;
 pub use timing::ns_per_sample;
 pub use tracks::Tracks;
+pub use usage::purpose;
 
 /// Probability of the band that is drawn and judged.
 pub const BAND: f64 = 0.9;

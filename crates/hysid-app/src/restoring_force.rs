@@ -1,6 +1,7 @@
 //! The measured motion of a mass in a table, and the restoring force that follows from it.
 
 mod acceleration;
+mod chart;
 mod columns;
 mod mass;
 mod table;
@@ -16,6 +17,7 @@ use hysid_document::visible::clipped;
 use hysid_records::{column_of, data_words, equal_stamps, offset_of, places_of};
 use hysid_tables::{CellReader, DecimalSign, Result, Table, spread_equal};
 
+pub use chart::chart;
 pub use columns::MotionChoice;
 use columns::{COLUMNS, MotionColumns, kind};
 pub use mass::Mass;

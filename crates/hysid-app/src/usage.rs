@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hysid::model::Model;
 use hysid_document::shell::shown;
-use hysid_document::{Cell, Item, Part, Table, span, unit};
+use hysid_document::{Cell, Item, Part, Table, number, span, unit};
 
 use crate::Report;
 
@@ -77,6 +77,45 @@ fn limits(report: &Report) -> Part {
     }
     let items = limits.into_iter().map(|limit| Item { text: limit.into(), is_warning: false });
     Part::section("Limits of the model", [Part::Table(table), Part::List(items.collect())])
+}
+
+/// Three lines on the use of a model: for which inputs, for which not, and with which error.
+pub fn purpose(model: &Model) -> [String; 3] {
+    let (names, trained, provenance) = (model.names(), model.trained_ranges(), model.provenance());
+    let inputs = names.inputs.iter().zip(&trained.inputs);
+    let mut ranges: Vec<String> = inputs
+        .map(|(name, &range)| format!("{} from {}", unit::split(name).0, unit::with(&span(range), name)))
+        .collect();
+    if let Some(rate) = trained.rate {
+        let (name, per) =
+            (unit::split(&names.inputs[0]).0, names.time.as_deref().map_or("unit of time".into(), unit::of));
+        ranges.push(format!("a rate of {name} from {} {}/{per}", span(rate), unit::of(&names.inputs[0])));
+    }
+    let speeds = match trained.rate {
+        None if !model.needs_time() => {
+            ". It is rate-independent: it says nothing of speeds at which the specimen was not measured"
+        }
+        _ => "",
+    };
+    let percent = |error: Option<f64>| {
+        error.map(|error| format!("{} % of the standard deviation of the output", number(error, 3)))
+    };
+    let error = match (&provenance.validation, percent(provenance.trained_error().nrmse_std_percent)) {
+        (Some(errors), _) if let Some(error) = percent(errors.nrmse_std_percent) => {
+            format!("Expected error on new data like the training data: {error} (cross-validation).")
+        }
+        (_, Some(error)) => {
+            format!(
+                "Its error on new data is not known. On the training data it is {error}; judge it by measured data that it was not fitted to."
+            )
+        }
+        _ => "Its error is not known.".into(),
+    };
+    [
+        format!("Use it for {}, along paths like those of the training data.", ranges.join(" and ")),
+        format!("Do not use it outside these ranges, where it extrapolates with an unknown error{speeds}."),
+        error,
+    ]
 }
 
 /// True if a network in it deteriorates.

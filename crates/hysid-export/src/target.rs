@@ -60,6 +60,11 @@ impl Target {
         }
     }
 
+    /// True if the inverse of a model can be exported to it.
+    pub fn has_inverse(self) -> bool {
+        self.back_end().has_inverse
+    }
+
     pub(crate) fn back_end(self) -> &'static BackEnd {
         match self {
             Self::Abaqus => &abaqus::BACK_END,

@@ -2,6 +2,7 @@
 
 mod guess;
 mod kind;
+mod other_table;
 pub mod values;
 
 use std::collections::HashMap;
@@ -86,7 +87,7 @@ impl RateOption {
 }
 
 /// The columns of each role, by name.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Roles {
     /// Column with the name of each row's record.
     pub record: Option<String>,
@@ -291,17 +292,7 @@ impl Roles {
             Some(name) => require(table, name, "record").map(|()| Some(full_name(table, name)))?,
             None => table.header.iter().find(|name| is_record(name) && !used(name)).cloned(),
         };
-        Ok(Self {
-            record,
-            time,
-            inputs,
-            rate,
-            output,
-            guessed: None,
-            set_aside: Vec::new(),
-            condition: None,
-            note: None,
-        })
+        Ok(Self { record, time, inputs, rate, output, ..Self::default() })
     }
 
     pub fn names(&self) -> ColumnNames {

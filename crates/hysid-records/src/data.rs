@@ -40,6 +40,8 @@ pub struct DataSource {
     /// The tables, in the order of the command line.
     pub tables: Vec<TableOrigin>,
     places: Vec<RecordPlace>,
+    /// The roles in each table, if tables name their columns differently.
+    own_roles: Vec<Roles>,
 }
 
 /// Where a record stands.
@@ -61,29 +63,45 @@ impl Data {
     /// output are to be zero in the mean.
     pub fn new(tables: Vec<Table>, roles: Roles, zero: Option<usize>) -> Result<Self> {
         let names = roles.names();
-        Self::converted(tables, roles, names, None, zero)
+        for table in &tables[1..] {
+            roles.check_against(table, &tables[0].file)?;
+        }
+        Self::converted(tables, roles, names, &[], Vec::new(), zero)
     }
 
+    /// Takes records from tables that have columns of the roles `like`, each by its own roles, in the units of `like`.
+    pub fn of_files(files: Vec<(Table, Roles)>, like: Roles, zero: Option<usize>) -> Result<Self> {
+        let names = like.names();
+        let factors = |(table, roles): &(Table, Roles)| {
+            UnitFactors::between(roles, (&names, "the first file's"), &table.file, true, false)
+        };
+        let factors: Vec<UnitFactors> = files.iter().map(factors).collect::<Result<_>>()?;
+        let (tables, own): (Vec<Table>, Vec<Roles>) = files.into_iter().unzip();
+        let data = Self::converted(tables, like, names, &factors, own, zero)?;
+        let conversions = factors.into_iter().flat_map(|factors| factors.conversions).map(Words::from);
+        Ok(Self { warnings: data.warnings.into_iter().chain(conversions).collect(), ..data })
+    }
+
+    /// `factors` and `own_roles` are of each table; empty if all have the units and names of `roles`.
     fn converted(
         tables: Vec<Table>,
         roles: Roles,
         names: ColumnNames,
-        factors: Option<&UnitFactors>,
+        factors: &[UnitFactors],
+        own_roles: Vec<Roles>,
         zero: Option<usize>,
     ) -> Result<Self> {
-        for table in &tables[1..] {
-            roles.check_against(table, &tables[0].file)?;
-        }
         refuse_parts_of_a_test(&tables, &roles)?;
         let stems = stems(&tables);
-        let mut source = DataSource { places: Vec::new(), tables: Vec::new() };
+        let mut source = DataSource { places: Vec::new(), tables: Vec::new(), own_roles };
         let mut of_tables = Vec::new();
         for (index, (table, stem)) in tables.into_iter().zip(&stems).enumerate() {
             let first = source.places.len();
-            let mut columns = NumberColumns::read(&table, &roles)?;
-            factors.iter().for_each(|factors| columns.convert(factors));
+            let of_table = source.own_roles.get(index).unwrap_or(&roles);
+            let mut columns = NumberColumns::read(&table, of_table)?;
+            factors.get(index).into_iter().for_each(|factors| columns.convert(factors));
             let naming = Naming { table: index, stem, has_others: stems.len() > 1 };
-            source.places.extend(places(&table, &roles, &naming, columns.time.as_deref())?);
+            source.places.extend(places(&table, of_table, &naming, columns.time.as_deref())?);
             of_tables.push((columns, first..source.places.len()));
             source.tables.push(table.into_origin());
         }
@@ -116,7 +134,8 @@ impl Data {
         let roles = Roles::of_model(model, &tables[0], columns, true)?;
         let factors = UnitFactors::of(model, &roles, &tables[0].file, true, false)?;
         let names = factors.names(model, &roles);
-        let data = Self::converted(tables, roles, names, Some(&factors), zero)?;
+        let of_tables = vec![factors.clone(); tables.len()];
+        let data = Self::converted(tables, roles, names, &of_tables, Vec::new(), zero)?;
         let warnings =
             data.warnings.into_iter().chain(factors.conversions.into_iter().map(Words::from)).collect();
         Ok(Self { warnings, ..data })
@@ -176,6 +195,7 @@ impl DataSource {
             return Problem::Library(error.into());
         };
         let table = &self.tables[place.table];
+        let roles = self.own_roles.get(place.table).unwrap_or(roles);
         let line = error.row.map(|row| table.lines[place.rows.start + row]);
         match self.tables.len() {
             n if n > 1 && line.is_none() && concerns_all(&error) => {

@@ -28,18 +28,28 @@ impl UnitFactors {
     /// # Errors
     /// Units that differ without a factor between them, unless the user declares them the same.
     pub fn of(model: &Model, roles: &Roles, file: &str, is_scored: bool, are_the_same: bool) -> Result<Self> {
-        let trained = model.names();
+        Self::between(roles, (model.names(), "the model's"), file, is_scored, are_the_same)
+    }
+
+    /// The same for the columns of other data, which the words `whose` name.
+    pub fn between(
+        roles: &Roles,
+        (trained, whose): (&ColumnNames, &str),
+        file: &str,
+        is_scored: bool,
+        are_the_same: bool,
+    ) -> Result<Self> {
         if are_the_same {
             let inputs = vec![None; roles.inputs.len()];
             return Ok(Self { time: None, inputs, rate: None, output: None, conversions: Vec::new() });
         }
         let mut conversions = Vec::new();
         let mut column = |found: &str, trained: &str| -> Result<Option<f64>> {
-            let Some(factor) = factor(file, found, trained)? else {
-                conversions.extend(no_conversion(found, trained));
+            let Some(factor) = factor(file, found, trained, whose)? else {
+                conversions.extend(no_conversion(found, trained, whose));
                 return Ok(None);
             };
-            conversions.push(conversion(found, trained, factor));
+            conversions.push(conversion(found, trained, whose, factor));
             Ok(Some(factor))
         };
         let mut both = |found: &Option<String>, trained: &Option<String>| match (found, trained) {
@@ -78,7 +88,7 @@ impl UnitFactors {
 }
 
 /// Conversion factor; `None` for equal units.
-fn factor(file: &str, found: &str, trained: &str) -> Result<Option<f64>> {
+fn factor(file: &str, found: &str, trained: &str, whose: &str) -> Result<Option<f64>> {
     match Conversion::between(found, trained) {
         Conversion::Same => Ok(None),
         Conversion::Factor(factor) => Ok(Some(factor)),
@@ -86,7 +96,7 @@ fn factor(file: &str, found: &str, trained: &str) -> Result<Option<f64>> {
             let (here, there) = (unit_of(found), unit_of(trained));
             let (found, trained) = (clipped(found), clipped(trained));
             let words = Words::from(format!(
-                "column \"{found}\" is in {}, the model's \"{trained}\" in {}: no conversion between them is known",
+                "column \"{found}\" is in {}, {whose} \"{trained}\" in {}: no conversion between them is known",
                 clipped(&here),
                 clipped(&there),
             ));
@@ -96,10 +106,10 @@ fn factor(file: &str, found: &str, trained: &str) -> Result<Option<f64>> {
     }
 }
 
-fn conversion(found: &str, trained: &str, factor: f64) -> String {
+fn conversion(found: &str, trained: &str, whose: &str, factor: f64) -> String {
     let (here, there) = (unit_of(found), unit_of(trained));
     format!(
-        "converted: {} from {} to {}, the unit of the model's {} (factor {:.6})",
+        "converted: {} from {} to {}, the unit of {whose} {} (factor {:.6})",
         clipped(found),
         clipped(&here),
         clipped(&there),
@@ -109,10 +119,10 @@ fn conversion(found: &str, trained: &str, factor: f64) -> String {
 }
 
 /// Message on a column without a known unit, if that of the model has one.
-fn no_conversion(found: &str, trained: &str) -> Option<String> {
+fn no_conversion(found: &str, trained: &str, whose: &str) -> Option<String> {
     let unit = unit::of_column(trained).filter(|_| unit::of_column(found).is_none())?;
     Some(format!(
-        "not converted: {}, whose name tells no known unit, is taken to be in {}, the unit of the model's {}",
+        "not converted: {}, whose name tells no known unit, is taken to be in {}, the unit of {whose} {}",
         clipped(found),
         clipped(&unit),
         clipped(trained)

@@ -44,11 +44,11 @@ export function documentOf(html) {
 export function table(caption, heads, rows) {
   const head = heads.map((entry) => (typeof entry === "string" ? { text: entry } : entry));
   const cell = (content, column) => {
-    const node = element(column === 0 ? "th" : "td", { scope: column === 0 ? "row" : undefined, class: head[column].class });
+    const node = element(column === 0 ? "th" : "td", { scope: column === 0 ? "row" : undefined, class: head[column].class, "data-label": head[column].text });
     node.append(content ?? "");
     return node;
   };
-  return element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
+  return element("div", { class: "scroll cards", tabindex: "0", role: "region", "aria-label": caption },
     element("table", {},
       element("caption", { class: "hidden", text: caption }),
       element("thead", {}, element("tr", {}, ...head.map((entry) => element("th", { scope: "col", text: entry.text, class: entry.class })))),

@@ -6,12 +6,16 @@ import { connection, Gone, isStranger, listenToEvents } from "./server.js";
 import { CompareStep } from "./steps/compare.js";
 import { DataStep } from "./steps/data.js";
 import { IdentifyStep } from "./steps/identify.js";
+import { InvertStep } from "./steps/invert.js";
 import { JudgeStep } from "./steps/judge.js";
+import { PlanStep } from "./steps/plan.js";
+import { RestoringForceStep } from "./steps/restoring-force.js";
 import { TakeAwayStep } from "./steps/take-away.js";
 import { CyclesStep, DiagnoseStep } from "./steps/training-page.js";
 import { TryStep } from "./steps/try.js";
+import { listenToDrops, sendFiles } from "./uploads.js";
 
-const KINDS = { data: DataStep, diagnose: DiagnoseStep, figures: CyclesStep, identify: IdentifyStep, judge: JudgeStep, compare: CompareStep, "take-away": TakeAwayStep, try: TryStep };
+const KINDS = { data: DataStep, diagnose: DiagnoseStep, figures: CyclesStep, identify: IdentifyStep, judge: JudgeStep, compare: CompareStep, invert: InvertStep, plan: PlanStep, "restoring-force": RestoringForceStep, "take-away": TakeAwayStep, try: TryStep };
 const steps = new Map();
 const banner = document.getElementById("banner");
 
@@ -64,6 +68,21 @@ function showFit() {
   document.getElementById("running").textContent = fit?.is_running ? `${Math.round(100 * fit.done)} %` : "";
   if (shownStep().name === "identify") steps.get("identify")?.update();
 }
+
+/** A file that is dropped on a step which takes one stays there; all others go to the data. */
+listenToDrops(async (files) => {
+  show();
+  const { name } = shownStep();
+  const step = steps.get(name);
+  if (!step?.take || (project.models.length === 0 && !step.needsNoModel)) {
+    location.hash = "data";
+    await sendFiles(files);
+    return;
+  }
+  const ids = await sendFiles(files, step.useOfDropped ?? "unseen");
+  await project.load();
+  if (ids.length > 0) step.take(ids.at(-1));
+});
 
 const load = () => project.load().catch((error) => {
   if (!(error instanceof Gone || isStranger())) showBanner(element("p", { text: error.message }), button("Try again", load));

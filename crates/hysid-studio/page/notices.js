@@ -2,13 +2,13 @@
 
 import { button, element } from "./elements.js";
 import { project } from "./project.js";
-import { Gone } from "./server.js";
+import { Gone, post, remove } from "./server.js";
 
-const OF_COLUMNS = ["--input", "--output", "--time", "--record", "--rate"];
+const OF_COLUMNS = ["--input", "--output", "--time", "--record", "--rate", "--mass", "--displacement", "--velocity", "--acceleration", "--absolute-acceleration", "--base-acceleration", "--applied-force"];
 
 /** Moves the focus to the control of an option and unfolds what it is in. */
 function focusOption(flag) {
-  const found = [...document.querySelectorAll("[data-flag]")].filter((node) => node.dataset.flag === flag);
+  const found = [...document.querySelectorAll("[data-flag]")].filter((node) => node.dataset.flag.split(" ").includes(flag));
   const control = found.find((node) => node.closest("section")?.hidden === false) ?? found[0];
   if (!control) return;
   const section = control.closest("section");
@@ -34,18 +34,19 @@ export const problem = (words) => element("p", { class: "problem" }, linked(word
 /** Why an action failed. */
 export const failure = (error) => problem(error.words ?? error.message);
 
+/** Words that are no problem, with what can be done. */
+const told = (words, ...more) => element("p", { class: "told" }, words, " ", ...more);
+
 /** A place for the error of an action; empty as long as there is none. */
 export class Notice {
   constructor() { this.node = element("div", { role: "alert" }); }
   show(words) { this.node.replaceChildren(problem(words)); }
   /** Shows why an action failed. The banner tells when the server is gone. */
   fail(error) { if (!(error instanceof Gone)) this.show(error.words ?? error.message); }
+  tell(words, ...more) { this.node.replaceChildren(told(words, ...more)); }
+  /** Shows several: words, or why actions failed. */
+  all(problems) { this.node.replaceChildren(...problems.filter((one) => !(one instanceof Gone)).map((one) => (typeof one === "string" ? problem(one) : failure(one)))); }
   clear() { this.node.replaceChildren(); }
-  /** Runs an action and shows its error, or the words that it gives. */
-  async saying(action) {
-    const words = await this.during(action);
-    if (words) this.show(words);
-  }
   /** Runs an action and shows its error. */
   async during(action) {
     this.clear();
@@ -57,3 +58,14 @@ export class Notice {
     }
   }
 }
+
+/** The notice above all steps. */
+export const pageNotice = new Notice();
+document.getElementById("notices").append(pageNotice.node);
+
+/** Removes a file or a model from the project, and offers to bring it back. */
+export const removeOne = (kind, { id, name }) => pageNotice.during(async () => {
+  const stays = await remove(`/api/${kind}/${id}`);
+  const undo = () => pageNotice.during(() => post(`/api/removed/${id}`, {}));
+  pageNotice.tell(`${name} was removed. ${stays}`, button("Undo", undo, { "aria-label": `Undo: bring ${name} back` }));
+});

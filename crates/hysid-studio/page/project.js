@@ -42,7 +42,7 @@ class Project extends EventTarget {
   get labels() { return this.state.labels; }
   usable(use) { return this.files.filter((file) => file.read_as !== null && !file.problem && (use ? file.use === use : file.use !== "unused")); }
   /** Changes when the columns of a file mean something else. */
-  dataKey(file) { return JSON.stringify([file.id, file.rows, file.bytes, file.use === "unused", this.state.columns, this.state.reading]); }
+  dataKey(file) { return JSON.stringify([file.id, file.rows, file.bytes, file.use === "unused", file.columns.map(({ role }) => role), this.state.columns, this.state.reading]); }
 
   /** An answer that is asked for once. */
   once(key, ask) {

@@ -57,7 +57,7 @@ export const getText = async (address) => (await request(address)).text();
 /** Removes a file or a model from the project; gives a sentence if a file stays in the folder. */
 export async function remove(address) {
   const { kept } = await (await request(address, { method: "DELETE" })).json();
-  return kept.length ? `Removed from the project. ${kept.join(", ")} stays in its folder: somebody changed it, or Hysid did not write it.` : "";
+  return kept.length ? `${kept.join(", ")} stays in its folder: somebody changed it, or Hysid did not write it.` : "";
 }
 export async function post(address, value) {
   const response = await request(address, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(value) });
@@ -92,11 +92,11 @@ export function runBinary(address, arrays, signal) {
   return binary(address, { method: "POST", headers: { "content-type": "application/octet-stream" }, body, signal });
 }
 
-/** Sends a file; `progress` gets the share that has arrived. */
-export function upload(file, progress) {
+/** Sends a file for a use, the usual one if none is given; `progress` gets the share that has arrived. */
+export function upload(file, use, progress) {
   return new Promise((done, failed) => {
     const call = new XMLHttpRequest();
-    call.open("POST", `/api/files?name=${encodeURIComponent(file.name)}`);
+    call.open("POST", `/api/files?name=${encodeURIComponent(file.name)}${use ? `&use=${use}` : ""}`);
     call.upload.addEventListener("progress", (event) => { if (event.lengthComputable) progress(event.loaded / event.total); });
     call.addEventListener("load", () => {
       let answer = {};

@@ -3,6 +3,7 @@
 use hysid::options::ModelName;
 use hysid::options::network::Trainer;
 use hysid::options::table::{FitOption, OPTIONS, OptionValues};
+use hysid::plan::Protocol;
 use hysid::specimens::Specimen;
 use hysid_app::BAND;
 use hysid_app::models::Listed;
@@ -18,7 +19,7 @@ pub const MOST_FILE_BYTES: u64 = 1_000_000_000;
 pub fn all() -> Value {
     let models = std::iter::once(ModelName::AUTO).chain(ModelName::all());
     let specimen = |specimen: &&Specimen| json!({"name": specimen.name, "what": specimen.summary});
-    let target = |target: Target| json!({"name": target.name(), "what": target.what()});
+    let target = |target: Target| json!({"name": target.name(), "what": target.what(), "has_inverse": target.has_inverse()});
     let options = OPTIONS.iter().filter(|option| option.name != "model");
     json!({
         "program": format!("hysid {}", env!("CARGO_PKG_VERSION")),
@@ -29,6 +30,8 @@ pub fn all() -> Value {
         "options": options.map(option).collect::<Vec<_>>(),
         "reading": READING_OPTIONS.map(|option| object! { flag: flag(option.name), #[serde(flatten)] option: option }),
         "specimens": Specimen::all().iter().map(specimen).collect::<Vec<_>>(),
+        // Kinds of specimens for a first test.
+        "kinds": Protocol::ALL.map(Protocol::name),
         "targets": Target::ALL.map(target),
     })
 }

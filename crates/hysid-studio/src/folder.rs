@@ -33,6 +33,9 @@ const BEST_SO_FAR: &str = ".best-so-far.json";
 /// Begins the names of files on their way. 16 random digits follow.
 pub const UPLOAD: &str = ".upload-";
 
+/// Begins the names of files of what was removed.
+const REMOVED: &str = ".removed-";
+
 /// A folder in that of a project.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProjectFolder {
@@ -95,9 +98,9 @@ impl Folder {
         match Lock::acquire(&root.join(PROJECT)) {
             Ok(lock) => {
                 let data = root.join(ProjectFolder::Data.name());
-                remove_uploads(&data);
                 for folder in [&root, &data, &root.join(ProjectFolder::Models.name())] {
                     hysid_files::remove_leftovers(folder);
+                    remove_ours(folder);
                 }
                 Ok(Some(Self { root, readings: Readings::left_in(&data), _lock: lock }))
             }
@@ -115,11 +118,20 @@ impl Folder {
     }
 
     pub fn data(&self, file: &str) -> PathBuf {
-        self.root.join(ProjectFolder::Data.name()).join(plain(file))
+        self.in_folder(ProjectFolder::Data, file)
     }
 
     pub fn models(&self, file: &str) -> PathBuf {
-        self.root.join(ProjectFolder::Models.name()).join(plain(file))
+        self.in_folder(ProjectFolder::Models, file)
+    }
+
+    pub fn in_folder(&self, inner: ProjectFolder, file: &str) -> PathBuf {
+        self.root.join(inner.name()).join(plain(file))
+    }
+
+    /// Where a file of what was removed is kept, by the number of that.
+    pub fn removed(&self, inner: ProjectFolder, id: u64, part: usize) -> PathBuf {
+        self.in_folder(inner, &format!("{REMOVED}{id}-{part}"))
     }
 
     /// The path of the best model so far of a fit that is under way.
@@ -155,11 +167,16 @@ impl Folder {
         }
     }
 
-    /// Removes a file of the project if it is one that Hysid wrote or took, and nobody changed. True if another stays.
-    pub fn remove_if(&self, path: &Path, is_as_it_was: impl FnOnce(fs::File) -> io::Result<bool>) -> bool {
+    /// Moves a file of the project away if it is one that Hysid wrote or took, and nobody changed. True if another stays.
+    pub fn set_aside_if(
+        &self,
+        path: &Path,
+        aside: &Path,
+        is_as_it_was: impl FnOnce(fs::File) -> io::Result<bool>,
+    ) -> bool {
         let is_plain = self.check_file(path).is_ok();
         if is_plain && fs::File::open(path).and_then(is_as_it_was).unwrap_or(false) {
-            let _ = fs::remove_file(path);
+            let _ = fs::rename(path, aside);
         }
         fs::symlink_metadata(path).is_ok()
     }
@@ -235,16 +252,20 @@ fn make_private(folder: &Path) -> Result<()> {
     }
 }
 
-/// Removes uploads of a studio that was killed.
-fn remove_uploads(data: &Path) {
+/// Removes what a studio that was killed left in a folder: uploads, and what had been removed.
+fn remove_ours(folder: &Path) {
     let is_upload = |name: &str| {
         let digits = name.strip_prefix(UPLOAD);
         digits
             .is_some_and(|digits| digits.len() == 16 && digits.bytes().all(|digit| digit.is_ascii_hexdigit()))
     };
-    for entry in fs::read_dir(data).into_iter().flatten().flatten() {
+    let is_removed = |name: &str| {
+        let numbers = name.strip_prefix(REMOVED).and_then(|numbers| numbers.split_once('-'));
+        numbers.is_some_and(|(id, part)| id.parse::<u64>().is_ok() && ["0", "1"].contains(&part))
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        if is_file && entry.file_name().to_str().is_some_and(is_upload) {
+        if is_file && entry.file_name().to_str().is_some_and(|name| is_upload(name) || is_removed(name)) {
             let _ = fs::remove_file(entry.path());
         }
     }

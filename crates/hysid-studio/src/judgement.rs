@@ -29,7 +29,7 @@ pub struct Run {
     is_begun: bool,
     /// Output, and the band if the model has one, of each record.
     pub predicted: Vec<Prediction>,
-    errors: Errors,
+    pub errors: Errors,
 }
 
 impl Run {

@@ -9,6 +9,7 @@
 
 mod choices;
 mod drive;
+mod example;
 mod fitting;
 mod folder;
 mod judgement;

@@ -1,9 +1,12 @@
 //! Content of a project: files, how they are read, models. It is one JSON file in the project's folder.
 
+use hysid::data::rate::RateMethod;
+use hysid::model::Model;
 use hysid::options::chosen::RateChoice;
 use hysid::options::table::{OPTIONS, OptionValues};
 use hysid_document::{Problem, Result, problem};
 use hysid_records::{ColumnChoice, RateOption, ReadingChoice, Roles};
+use hysid_tables::Head;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -11,6 +14,8 @@ use crate::folder::{Folder, plain};
 
 /// Version of the project's file.
 const VERSION: u32 = 1;
+
+const MOST_FILES: usize = 200;
 
 /// Largest number of a file or a model, far below those that a page in a browser rounds.
 const LARGEST_ID: u64 = 1 << 48;
@@ -41,29 +46,33 @@ pub struct Understanding {
     pub columns: Option<ChosenColumns>,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// Columns by their roles. Of the file that determines the roles all are known; of others those that were chosen.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[allow(missing_docs, reason = "each field is the role of its name")]
 pub struct ChosenColumns {
     pub record: Option<String>,
     pub time: Option<String>,
     pub inputs: Vec<String>,
     pub rate: Option<String>,
-    pub output: String,
-}
-
-impl Begun {
-    /// The method of the rate that was asked for; `None` for the default, and for a column.
-    pub fn rate_method(&self) -> Option<&str> {
-        self.request.rate.as_deref().filter(|method| self.columns.rate.is_none() && *method != "auto")
-    }
+    pub output: Option<String>,
 }
 
 impl ChosenColumns {
     pub fn choice(&self) -> ColumnChoice {
         let Self { record, time, inputs, rate, output } = self.clone();
         let rate = rate.map_or_else(RateOption::default, RateOption::Column);
-        ColumnChoice { record, time, input: inputs, output: Some(output), rate }
+        ColumnChoice { record, time, input: inputs, output, rate }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The roles that find the same columns in other tables.
+    pub fn roles(&self) -> Roles {
+        let Self { record, time, inputs, rate, output } = self.clone();
+        Roles { record, time, inputs, rate, output: output.unwrap_or_default(), ..Roles::default() }
     }
 
     pub fn of(roles: &Roles) -> Self {
@@ -72,8 +81,15 @@ impl ChosenColumns {
             time: roles.time.clone(),
             inputs: roles.inputs.clone(),
             rate: roles.rate.clone(),
-            output: roles.output.clone(),
+            output: Some(roles.output.clone()),
         }
+    }
+}
+
+impl Begun {
+    /// The method of the rate that was asked for; `None` for the default, and for a column.
+    pub fn rate_method(&self) -> Option<&str> {
+        self.request.rate.as_deref().filter(|method| self.columns.rate.is_none() && *method != "auto")
     }
 }
 
@@ -87,6 +103,12 @@ pub struct ProjectFile {
     pub checksum: String,
     #[serde(rename = "use")]
     pub usage: Use,
+    /// Columns that were chosen for this file, in place of those that are like the columns of the first.
+    #[serde(default, skip_serializing_if = "ChosenColumns::is_empty")]
+    pub columns: ChosenColumns,
+    /// True for data of the example, which files of the user replace.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_example: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -124,6 +146,12 @@ pub struct Begun {
     /// How they were read.
     pub understanding: Understanding,
     pub columns: ChosenColumns,
+    /// Columns that were chosen for single files; empty if none were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub of_files: Vec<ChosenColumns>,
+    /// Files whose columns have other names than those of the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub renamed: Vec<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -140,6 +168,26 @@ pub struct ProjectModel {
     /// True if the fit did not come to its end, because the studio was ended.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub was_interrupted: bool,
+    /// The name that somebody gave it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+impl ProjectModel {
+    /// The columns of the model in a table, which may have them under other names: those of its fit, whatever is chosen
+    /// now for other files.
+    pub fn columns_in(&self, model: &Model, table: &Head, file: &ProjectFile) -> ColumnChoice {
+        let wanted = self.begun.columns.roles();
+        let (found, _) = wanted.in_table(table, "the training data", &file.columns.choice());
+        let rate = found.rate.filter(|_| model.rate() == Some(RateMethod::Given));
+        ColumnChoice {
+            record: found.record,
+            time: found.time,
+            input: if found.inputs.len() == wanted.inputs.len() { found.inputs } else { Vec::new() },
+            output: Some(found.output).filter(|output| !output.is_empty()),
+            rate: rate.map_or_else(RateOption::default, RateOption::Column),
+        }
+    }
 }
 
 impl Default for Project {
@@ -212,6 +260,14 @@ impl Project {
         serde_json::to_string_pretty(self).expect("a project is plain data") + "\n"
     }
 
+    /// Refuses one more file in a full project.
+    pub fn check_room(&self) -> Result<()> {
+        if self.files.len() >= MOST_FILES {
+            return Err(problem!("a project has at most {MOST_FILES} files: remove some that are not used"));
+        }
+        Ok(())
+    }
+
     /// A number that was not used before.
     pub fn next_id(&mut self) -> u64 {
         self.next += 1;
@@ -233,9 +289,22 @@ impl Project {
         self.files.iter().filter(move |file| file.usage == usage)
     }
 
+    /// The file that determines the columns: models are fitted to training files.
+    pub fn first(&self) -> Option<&ProjectFile> {
+        self.files_for(Use::Training).chain(&self.files).next()
+    }
+
+    /// Columns that were chosen for single training files; empty if none were.
+    pub fn columns_of_files(&self) -> Vec<ChosenColumns> {
+        let all: Vec<ChosenColumns> =
+            self.files_for(Use::Training).map(|file| file.columns.clone()).collect();
+        if all.iter().all(ChosenColumns::is_empty) { Vec::new() } else { all }
+    }
+
     /// True if a fit had other data than the present ones.
     pub fn is_stale(&self, begun: &Begun) -> bool {
         begun.understanding != self.understanding
+            || begun.of_files != self.columns_of_files()
             || !begun.files.iter().eq(self.files_for(Use::Training).map(|file| &file.name))
     }
 }
@@ -295,6 +364,8 @@ mod tests {
             bytes: 1,
             checksum: String::new(),
             usage: Use::Training,
+            columns: ChosenColumns::default(),
+            is_example: false,
         };
         let with = |files: Vec<ProjectFile>| Project { files, ..Project::default() }.checked();
         assert_eq!(with(vec![file(7, "a.csv")]).unwrap().next, 8, "a number is never given twice");
@@ -327,6 +398,8 @@ mod tests {
             bytes: 7,
             checksum: "0".into(),
             usage: Use::Unseen,
+            columns: ChosenColumns::default(),
+            is_example: false,
         });
         folder.write_project(&project.text()).unwrap();
         assert_eq!(Project::of(&folder).unwrap(), project);

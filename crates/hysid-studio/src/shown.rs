@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use hysid::model::Model;
 use hysid::model::selection::CandidateResult;
+use hysid_app::purpose;
 use hysid_document::Result;
-use hysid_document::{object, unit};
+use hysid_document::{count, object, unit};
 use hysid_records::{Data, Roles};
 use serde_json::{Value, json};
 
@@ -15,7 +16,7 @@ use crate::fitting::FitState;
 use crate::folder::Folder;
 use crate::project::{ChosenColumns, Project, ProjectFile, ProjectModel};
 use crate::view::{FileView, View};
-use crate::words::{Said, said};
+use crate::words::{Said, said, shortened};
 
 /// Of a project whose files are read as in the view. `model` gives the model of a stored one.
 pub fn shown(
@@ -30,6 +31,9 @@ pub fn shown(
     let shown_file =
         |file: &ProjectFile| of_file(file, known.get(&file.id).copied(), folder.is_held_back(file.id));
     let roles = view.roles.as_ref();
+    let models: Vec<Result<Arc<Model>>> = project.models.iter().map(model).collect();
+    let titles = titles(project, &models);
+    let stored = project.models.iter().zip(models).zip(titles);
     json!({
         "version": version,
         "name": folder.name(),
@@ -37,7 +41,9 @@ pub fn shown(
         "files": project.files.iter().map(shown_file).collect::<Vec<_>>(),
         "reading": project.understanding.reading,
         "columns": roles.map(ChosenColumns::of),
-        "columns_are_chosen": project.understanding.columns.is_some(),
+        "columns_are_chosen": project.understanding.columns.is_some() || project.files.iter().any(|file| !file.columns.is_empty()),
+        // The file that determines the columns.
+        "first": view.first,
         "problem": view.problem,
         "names": roles.map(|roles| names(roles, str::to_string)),
         "labels": roles.map(|roles| names(roles, unit::label)),
@@ -46,7 +52,7 @@ pub fn shown(
         "rate_label": roles.map(|roles| rate_label(&roles.inputs[0], roles.time.as_deref())),
         // As long as not all files are read.
         "is_reading": !view.is_of(project),
-        "models": project.models.iter().map(|stored| of_model(project, stored, model(stored))).collect::<Vec<_>>(),
+        "models": stored.map(|((stored, model), title)| of_model(project, stored, model, title)).collect::<Vec<_>>(),
         "fit": fit,
     })
 }
@@ -100,14 +106,51 @@ fn records(data: &Data) -> Vec<Value> {
     data.set.records().iter().map(|one| record((one.name(), one.len()))).collect()
 }
 
-fn of_model(project: &Project, stored: &ProjectModel, model: Result<Arc<Model>>) -> Value {
+/// The name of each model: the one that somebody gave it, or one that says what it is. A number tells equal ones apart.
+fn titles(project: &Project, models: &[Result<Arc<Model>>]) -> Vec<String> {
+    let mut counts: HashMap<String, usize> = HashMap::new();
+    let title = |(stored, model): (&ProjectModel, &Result<Arc<Model>>)| {
+        let title = stored.name.clone().unwrap_or_else(|| described(stored, model.as_deref().ok()));
+        let count = counts.entry(title.clone()).or_default();
+        *count += 1;
+        if *count == 1 { title } else { format!("{title} ({count})") }
+    };
+    project.models.iter().zip(models).map(title).collect()
+}
+
+/// A model in words, such as "auto, 3 members, column-test".
+fn described(stored: &ProjectModel, model: Option<&Model>) -> String {
+    let begun = &stored.begun;
+    let asked = begun.request.options.get("model").and_then(Value::as_str).unwrap_or("auto");
+    let members = model.and_then(Model::ensemble).map(|ensemble| ensemble.members().len());
+    let made = model.map(|model| model.name().name()).filter(|made| *made != asked && members.is_none());
+    let options =
+        begun.request.options.iter().filter(|(name, _)| !["model", "members"].contains(&name.as_str()));
+    let option = |(name, value): (&String, &Value)| match value {
+        Value::Bool(true) => name.replace('_', " "),
+        Value::String(text) => format!("{} {text}", name.replace('_', " ")),
+        other => format!("{} {other}", name.replace('_', " ")),
+    };
+    let [first, others @ ..] = begun.files.as_slice() else { return asked.into() };
+    let stem = first.rsplit_once('.').map_or(first.as_str(), |(stem, _)| stem);
+    let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+    let mut parts = vec![asked.to_string()];
+    parts.extend(made.map(String::from));
+    parts.extend(members.map(|members| count(members, "member")));
+    parts.extend(options.map(option));
+    parts.push(format!("{stem}{more}"));
+    parts.extend(stored.was_interrupted.then(|| "interrupted".into()));
+    shortened(&parts.join(", ")).into_owned()
+}
+
+fn of_model(project: &Project, stored: &ProjectModel, model: Result<Arc<Model>>, title: String) -> Value {
     let begun = &stored.begun;
     let name = model.as_ref().map_or("", |model| model.name().name());
-    let end = if stored.was_interrupted { ", interrupted" } else { "" };
     let shown = object! {
         id: begun.id,
         name: name,
-        title: format!("{} {name}{end}", begun.id),
+        title: title,
+        is_named: stored.name.is_some(),
         file: &stored.file,
         made: &stored.made,
         seconds: stored.seconds,
@@ -146,6 +189,7 @@ fn facts(model: &Model) -> Value {
         "chosen": chosen,
         "why": why,
         "notes": model.notes().iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "use": purpose(model),
         "train": provenance.train,
         "validation": provenance.validation,
         "has_band": model.band().is_some(),

@@ -4,15 +4,18 @@
 mod files;
 mod fits;
 mod models;
+mod removal;
 #[cfg(test)]
 mod tests;
+mod use_cases;
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, RwLock};
 
-use hysid_document::Result;
+use hysid_document::{Problem, Result};
 use serde_json::Value;
 use tokio::sync::watch;
 
+use crate::example::Example;
 use crate::fitting::Fits;
 use crate::folder::Folder;
 use crate::judgement::Runs;
@@ -21,6 +24,7 @@ use crate::shown::shown;
 use crate::view::{AtHand, View};
 use fits::Found;
 use models::Models;
+pub use use_cases::{ForceAsked, InverseAsked, PlanAsked, limits};
 
 pub struct Studio {
     folder: Folder,
@@ -37,6 +41,8 @@ pub struct Studio {
     beginning: Mutex<()>,
     runs: Runs,
     models: Models,
+    removed: Mutex<Vec<removal::Removed>>,
+    example: OnceLock<std::result::Result<Arc<Example>, String>>,
     /// Numbers of changes: of the project, and of the fit.
     news: watch::Sender<News>,
 }
@@ -63,6 +69,8 @@ impl Studio {
             beginning: Mutex::default(),
             runs: Runs::default(),
             models: Models::default(),
+            removed: Mutex::default(),
+            example: OnceLock::new(),
             news: watch::Sender::new(News::default()),
         };
         // On a full disk the project opens all the same, and the page says so.
@@ -80,6 +88,17 @@ impl Studio {
 
     fn project(&self) -> MutexGuard<'_, Project> {
         self.project.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn removed(&self) -> MutexGuard<'_, Vec<removal::Removed>> {
+        self.removed.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The example of the first page, which is computed once.
+    pub fn example(&self) -> Result<Arc<Example>> {
+        let made =
+            self.example.get_or_init(|| Example::new().map(Arc::new).map_err(|error| error.to_string()));
+        made.clone().map_err(Problem::from)
     }
 
     fn view(&self) -> Arc<View> {

@@ -8,7 +8,7 @@ use hysid::options::table::{OPTIONS, OptionValues};
 use hysid_core::termination::Termination;
 use hysid_document::shell::{flag, option, shown};
 use hysid_document::{Problem, Result, problem};
-use hysid_export::{Options, Target};
+use hysid_export::{InverseOptions, Options, Target};
 use hysid_records::ReadingChoice;
 use serde_json::{Value, json};
 use zip::result::ZipError;
@@ -16,15 +16,22 @@ use zip::write::{SimpleFileOptions, ZipWriter};
 
 use crate::project::{Begun, ProjectModel};
 
-/// A model for a target, as one archive; and its name.
-pub fn archive(model: &Model, stored: &ProjectModel, target: &str) -> Result<(String, Vec<u8>)> {
+/// A model or its inverse for a target, as one archive; and its name.
+pub fn archive(
+    model: &Model,
+    stored: &ProjectModel,
+    target: &str,
+    inverse: Option<InverseOptions>,
+) -> Result<(String, Vec<u8>)> {
     let to = Target::named(target).ok_or_else(|| problem!("there is no target \"{target}\""))?;
     let name = identifier(&stored.file);
+    let what = if inverse.is_some() { "_inverse" } else { "" };
     let mut options = Options::named(name.clone());
+    options.inverse = inverse;
     options.source = vec![("model file".into(), stored.file.clone())];
     let export =
         hysid_export::export(model, to, &options).map_err(|error| Problem::from(error.to_string()))?;
-    let folder = format!("{name}_{target}");
+    let folder = format!("{name}{what}_{target}");
     let failed = |error: ZipError| problem!("cannot make the archive: {error}");
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let stored = SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
@@ -57,6 +64,12 @@ pub fn lines(stored: &ProjectModel, model: &Model, folder: &Path) -> Value {
         (true, None) => {
             Some("This fit was stopped early. The commands run it to its end, and give another model.")
         }
+    };
+    let note = match stored.begun.renamed.is_empty() {
+        true => note,
+        false => Some(
+            "The training files name their columns differently: give the columns of all files the names of the first, and then run the command.",
+        ),
     };
     json!({"shell": shell(stored, folder), "python": python(&stored.begun, &stored.file), "note": note})
 }
@@ -123,7 +136,8 @@ fn python(begun: &Begun, file: &str) -> Option<String> {
     let text = |text: &str| Value::from(text).to_string();
     let column = |name: &str| format!("table[{}]", text(name));
     let inputs = columns.inputs.iter().map(|name| text(name)).collect::<Vec<String>>().join(", ");
-    let mut arguments = vec![format!("table[[{inputs}]]"), column(&columns.output)];
+    let mut arguments =
+        vec![format!("table[[{inputs}]]"), column(columns.output.as_deref().unwrap_or_default())];
     arguments.extend(columns.time.iter().map(|name| format!("time={}", column(name))));
     arguments.extend(columns.record.iter().map(|name| format!("records={}", column(name))));
     arguments.extend(columns.rate.iter().map(|name| format!("rate={}", column(name))));
@@ -171,6 +185,7 @@ mod tests {
             made: String::new(),
             seconds: 0.0,
             was_interrupted: false,
+            name: None,
         };
         let lines = shell(&stored, Path::new("p;q"));
         let expected = "cd 'p;q'\nhysid fit data/a.csv --output y --input x --rate 'central; touch X #' \

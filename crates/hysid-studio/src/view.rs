@@ -10,7 +10,7 @@ use hysid_records::{Data, Roles, TableOverview};
 use hysid_tables::{Reading, Table};
 
 use crate::folder::Folder;
-use crate::project::{Project, ProjectFile, Understanding, Use};
+use crate::project::{ChosenColumns, Project, ProjectFile, Understanding, Use};
 use crate::words::{Said, said};
 
 /// Time between two views that are shown while files are read.
@@ -23,7 +23,7 @@ pub struct View {
     /// The files of the project, once all are read.
     of: Vec<ProjectFile>,
     /// Number of the file that determines the columns, if they are guessed.
-    first: Option<u64>,
+    pub first: Option<u64>,
     pub files: Vec<Arc<FileView>>,
     /// Which column is what; `None` without a file, or with [`View::problem`].
     pub roles: Option<Roles>,
@@ -47,7 +47,12 @@ pub struct FileView {
     pub data: Option<Arc<Data>>,
     /// Why it cannot be used.
     pub problem: Option<Said>,
-    roles: Option<Roles>,
+    /// The roles of the first file, and the columns that were chosen for this one: with others it is read anew.
+    like: Option<Roles>,
+    chosen: ChosenColumns,
+    is_used: bool,
+    /// The roles of its own columns; some may be missing.
+    pub roles: Option<Roles>,
 }
 
 pub struct TableView {
@@ -68,8 +73,7 @@ impl View {
         show: &dyn Fn(Self),
     ) -> Self {
         let understanding = &project.understanding;
-        // Models are fitted to training files: they tell the columns.
-        let first = project.files_for(Use::Training).chain(&project.files).next();
+        let first = project.first();
         let mut view = Self {
             understanding: understanding.clone(),
             first: first.map(|file| file.id),
@@ -103,17 +107,20 @@ impl View {
             }
             first_table = Some((first.id, table));
         }
-        let known = before.files.iter().filter(|known| is_read_alike && known.roles == view.roles);
+        let known = before.files.iter().filter(|known| is_read_alike && known.like == view.roles);
         let known: HashMap<u64, &Arc<FileView>> = known.map(|known| (known.id, known)).collect();
         let mut shown = Instant::now();
         for file in &project.files {
-            let of_file = known.get(&file.id).map(|known| Arc::clone(known)).unwrap_or_else(|| {
+            let known = known
+                .get(&file.id)
+                .filter(|known| known.chosen == file.columns && known.is_used == (file.usage != Use::Unused));
+            let of_file = known.map(|known| Arc::clone(known)).unwrap_or_else(|| {
                 let table = match first_table.take_if(|(id, _)| *id == file.id) {
                     Some((_, table)) => table,
                     None => table_of(file),
                 };
                 let of = first.map_or("", |first| &first.name);
-                Arc::new(FileView::of(file.id, table, view.roles.as_ref(), of, understanding))
+                Arc::new(FileView::of(file, table, view.roles.as_ref(), of, understanding))
             });
             view.files.push(of_file);
             if shown.elapsed() >= BETWEEN_VIEWS {
@@ -160,6 +167,12 @@ impl View {
         self.files.iter().find(|file| file.id == id).ok_or_else(|| problem!("there is no file {id}"))
     }
 
+    /// True if the columns of a file have other names than those of the first.
+    pub fn is_renamed(&self, id: u64) -> bool {
+        let own = self.file(id).ok().and_then(|file| file.roles.as_ref());
+        own.is_some_and(|own| Some(own.names()) != self.roles.as_ref().map(Roles::names))
+    }
+
     pub fn data(&self, id: u64) -> Result<Arc<Data>> {
         let file = self.file(id)?;
         let problem = file.problem.as_ref().or(self.problem.as_ref());
@@ -182,8 +195,15 @@ impl View {
         let roles = self.roles.clone().ok_or_else(|| Problem::from(problem()))?;
         let reading = &project.understanding.reading;
         let as_read = reading.reading()?;
-        let tables = files.iter().map(|file| read(file, folder, &as_read)).collect::<Result<_>>()?;
-        let data = Arc::new(Data::new(tables, roles, reading.zero)?);
+        let with_roles = |file: &&ProjectFile| {
+            let view = self.file(file.id)?;
+            let own = view.roles.clone().filter(|_| view.problem.is_none());
+            let own =
+                own.ok_or_else(|| view.problem.clone().map_or_else(|| problem().into(), Problem::from))?;
+            Ok((read(file, folder, &as_read)?, own))
+        };
+        let tables = files.iter().map(with_roles).collect::<Result<_>>()?;
+        let data = Arc::new(Data::of_files(tables, roles, reading.zero)?);
         Ok(Arc::clone(self.together.get_or_init(|| data)))
     }
 }
@@ -191,13 +211,23 @@ impl View {
 impl FileView {
     /// `of` is the file that the roles are of.
     fn of(
-        id: u64,
+        file: &ProjectFile,
         table: Result<Table>,
-        roles: Option<&Roles>,
+        like: Option<&Roles>,
         of: &str,
         understanding: &Understanding,
     ) -> Self {
-        let mut view = Self { id, table: None, data: None, problem: None, roles: roles.cloned() };
+        let (id, chosen, is_used) = (file.id, file.columns.clone(), file.usage != Use::Unused);
+        let mut view = Self {
+            id,
+            table: None,
+            data: None,
+            problem: None,
+            like: like.cloned(),
+            chosen,
+            is_used,
+            roles: None,
+        };
         let table = match table {
             Ok(table) => table,
             Err(problem) => {
@@ -205,12 +235,21 @@ impl FileView {
                 return view;
             }
         };
-        let looked = TableOverview::of(&table, roles, Face::Studio);
+        let found = like.map(|like| match file.name == of {
+            true => (like.clone(), None),
+            false => like.in_table(&table, of, &file.columns.choice()),
+        });
+        let (roles, doubt) = found.unzip();
+        let looked = TableOverview::of(&table, roles.as_ref(), Face::Studio);
         view.table = Some(TableView { read_as: table.described(), rows: table.rows(), looked });
-        let Some(roles) = roles else { return view };
-        let data = roles
-            .check_against(&table, of)
-            .and_then(|()| Data::new(vec![table], roles.clone(), understanding.reading.zero));
+        view.roles.clone_from(&roles);
+        let (Some(like), Some(roles)) = (like, roles) else { return view };
+        let data = match doubt.flatten() {
+            // It may be a wanted output, or the motion of a mass.
+            Some(_) if !is_used => return view,
+            Some(problem) => Err(problem),
+            None => Data::of_files(vec![(table, roles)], like.clone(), understanding.reading.zero),
+        };
         match data {
             Ok(data) => view.data = Some(Arc::new(data)),
             Err(problem) => view.problem = Some(said(&problem)),

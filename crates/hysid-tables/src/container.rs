@@ -203,10 +203,22 @@ const FEATHER: &str = "is a Feather or Arrow file (read it in Python with pandas
 const PICTURE: &str = "is a picture (get the numbers that were drawn, or digitise its curves with a program such as WebPlotDigitizer)";
 const PAGE: &str = "is a web page, perhaps one that asks for a login (download the file itself, such as the raw file of GitHub)";
 
+/// Kind of a file that by its beginning is clearly no table, in words; `None` for all others.
+pub fn other_kind(bytes: &[u8]) -> Option<&'static str> {
+    let begins = |(beginning, _): &&(&[u8], &str)| bytes.trim_ascii_start().starts_with(beginning);
+    // WebP; HEIC and AVIF; a bitmap; a drawing after its declaration.
+    let is_at = |place: usize, mark: &[u8]| bytes.get(place..).is_some_and(|rest| rest.starts_with(mark));
+    let is_picture = is_at(0, b"RIFF") && is_at(8, b"WEBP")
+        || ["heic", "mif1", "avif"].iter().any(|kind| is_at(4, b"ftyp") && is_at(8, kind.as_bytes()))
+        || is_at(0, b"BM") && is_at(6, &[0; 4])
+        || is_at(0, b"<?xml") && bytes[..bytes.len().min(1000)].windows(4).any(|letters| letters == b"<svg");
+    let known = OTHER_KINDS.iter().find(begins).map(|(_, kind)| *kind);
+    known.or(is_picture.then_some(PICTURE))
+}
+
 /// Refuses what is clearly no table.
 fn check_kind(bytes: &[u8]) -> Result<(), &'static str> {
-    let begins = |(beginning, _): &&(&[u8], &str)| bytes.trim_ascii_start().starts_with(beginning);
-    if let Some((_, kind)) = OTHER_KINDS.iter().find(begins) {
+    if let Some(kind) = other_kind(bytes) {
         Err(kind)
     } else if is_model(bytes) {
         Err("is a model of Hysid, not data (name the file with the measurement)")
@@ -255,6 +267,9 @@ mod tests {
                 "f: is a pointer of Git LFS",
             ),
             (b"\x89PNG\r\n\x1a\n", "f: is a picture"),
+            (b"RIFF\x24\0\0\0WEBPVP8 ", "f: is a picture"),
+            (b"\0\0\0\x18ftypheic", "f: is a picture"),
+            (b"<?xml version=\"1.0\"?>\n<svg width=\"9\">", "f: is a picture"),
             (b"\n<!DOCTYPE html>", "f: is a web page"),
             (b"[[1, 2], [3]]", "f: is a JSON file that cannot be read: its rows have different lengths"),
             (b"\x89HDF\r\n\x1a\n", "f: is an HDF5 file that cannot be read"),

@@ -29,7 +29,7 @@ mod table;
 mod time;
 
 pub use column::ColumnReader;
-pub use container::{THREAD as CONTAINER_THREAD, is_model};
+pub use container::{THREAD as CONTAINER_THREAD, is_model, other_kind};
 pub use head::Head;
 pub use hysid_document::{Problem, Result};
 pub use layout::{Layout, is_record};

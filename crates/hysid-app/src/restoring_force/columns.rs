@@ -158,10 +158,7 @@ impl MotionColumns {
             inputs: vec![self.displacement.clone()],
             rate: self.velocity.clone(),
             output: self.displacement.clone(),
-            guessed: None,
-            set_aside: Vec::new(),
-            condition: None,
-            note: None,
+            ..Roles::default()
         }
     }
 }

@@ -9,8 +9,8 @@ use hysid::data::unit;
 use hysid_core::significant::Significant;
 use hysid_document::{count, object};
 use hysid_files::{Destination, Kind};
-use hysid_records::{Roles, check_new_columns, header_line};
-use hysid_tables::{Table, push_shortest};
+use hysid_records::Roles;
+use hysid_tables::Table;
 use serde::Serialize;
 
 use crate::Outcome;
@@ -21,15 +21,14 @@ use crate::files::{self, check_outputs};
 use crate::messages::{note_labelled, raw_results, told, warning};
 use crate::terminal::clipped;
 use hysid_app::errors_table::errors_table;
-use hysid_app::inversion::{self, InputBounds, Inverted, Preview, ReferenceOutputs};
+use hysid_app::inversion::{self, DriveTable, InputBounds, Inverted, Preview, ReferenceOutputs};
 
 pub fn run(arguments: &Invert) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     arguments.band.map_or(Ok(()), |_| check_band(&model, &arguments.model))?;
     let table = Table::read(&arguments.reference, &arguments.columns.reading.reading())?;
-    let names = Names::of(&model, &table, arguments.band.is_some())?;
-    let header =
-        header_line(delimiter_of(&table), table.header.iter().chain(names.all()).map(String::as_str));
+    let drive_table = DriveTable::of(&model, &table, arguments.band.is_some())?;
+    let header = drive_table.header(&table);
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     files::check_stdout(out.is_none(), arguments.json)?;
     let force = arguments.overwriting.force;
@@ -51,11 +50,11 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
 
     let understood = understood(arguments, &model, &roles, &inverted);
     note_labelled(&understood);
-    let mut warnings = warnings(&inverted);
+    let mut warnings = inverted.warnings();
     warnings
         .extend(model.stepping_note().map(|note| format!("{note} (simulate with --initial-state virgin)")));
     warnings.iter().for_each(warning);
-    let text = header.into_iter().chain(rows(&table, &wanted, &inverted)?).collect::<Vec<u8>>();
+    let text = [header, drive_table.rows(&table, &wanted, &inverted)].concat();
     match &drive {
         None => raw_results(&String::from_utf8(text)?)?,
         Some(drive) => {
@@ -71,64 +70,6 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     let written = [("drive", &drive), ("report", &page)];
     files::say_written(written.map(|(what, file)| (what, file.as_ref().map(Destination::path))));
     Ok(Outcome::Done)
-}
-
-/// Delimiter of the table that is written.
-fn delimiter_of(table: &Table) -> u8 {
-    table.delimiter().in_a_copy(table.numbers().decimal)
-}
-
-/// Names of the columns that are added.
-struct Names {
-    drive: String,
-    edges: Vec<String>,
-    others: [String; 3],
-}
-
-impl Names {
-    /// The drive is named after the input of the model, so that the table can be simulated; if the table has such a
-    /// column, `_inverse` is appended.
-    fn of(model: &Model, table: &Table, has_band: bool) -> Result<Self> {
-        let input = &model.names().inputs[0];
-        let drive = match table.column(input) {
-            None => input.clone(),
-            Some(_) => format!("{input}_inverse"),
-        };
-        let edges = if has_band { vec![format!("{drive}_low"), format!("{drive}_high")] } else { Vec::new() };
-        let others =
-            [format!("{}_reached", model.names().output), "reach".to_string(), "extrapolated".to_string()];
-        let names = Self { drive, edges, others };
-        check_new_columns(&table.file, |name| table.column(name), names.all())?;
-        Ok(names)
-    }
-
-    fn all(&self) -> impl Iterator<Item = &String> + Clone {
-        std::iter::once(&self.drive).chain(&self.edges).chain(&self.others)
-    }
-}
-
-/// The rows of the table with the columns that are added.
-fn rows(table: &Table, wanted: &ReferenceOutputs, inverted: &Inverted) -> Result<Vec<u8>> {
-    let mut writer = csv::WriterBuilder::new().delimiter(delimiter_of(table)).from_writer(Vec::new());
-    let mut number = String::new();
-    for (record, inversion) in wanted.records.iter().zip(&inverted.records) {
-        for (row, place) in record.rows.clone().enumerate() {
-            for column in 0..table.header.len() {
-                writer.write_field(table.cell(place, column))?;
-            }
-            for column in [&inversion.input, &inversion.low, &inversion.high, &inversion.output] {
-                if let Some(&value) = column.get(row) {
-                    number.clear();
-                    push_shortest(&mut number, value, wanted.sign);
-                    writer.write_field(&number)?;
-                }
-            }
-            writer.write_field(inversion.reach[row].word())?;
-            writer.write_field(if inversion.is_extrapolated[row] { "yes" } else { "no" })?;
-            writer.write_record(None::<&[u8]>)?;
-        }
-    }
-    Ok(writer.into_inner()?)
 }
 
 /// Request and its reading, label and text.
@@ -178,37 +119,6 @@ fn understood(
         lines.push(("preview", format!("{shown}{chosen}")));
     }
     lines.into_iter().map(|(label, text)| (label.to_string(), text)).collect()
-}
-
-/// Deviation of the driven model, in percent of the standard deviation of the wanted output, above which to warn.
-const LARGE: f64 = 5.0;
-
-/// Warnings on the drive.
-fn warnings(inverted: &Inverted) -> Vec<String> {
-    let rows = inverted.rows();
-    let mut all = Vec::new();
-    let missed = inverted.not_reached();
-    if !missed.is_empty() {
-        let counts: Vec<String> = missed.iter().map(|(word, count)| format!("{word} {count}")).collect();
-        let total = rows - inverted.reached();
-        all.push(format!(
-            "{total} of {rows} rows do not reach the wanted output: {} (column reach)",
-            counts.join(", ")
-        ));
-    }
-    let extrapolated = inverted.extrapolated();
-    if extrapolated > 0 {
-        all.push(format!(
-            "{extrapolated} of {rows} rows have an input or a rate outside the range of the training data (column extrapolated)"
-        ));
-    }
-    if let Some(percent) = inverted.errors.nrmse_std_percent.filter(|percent| *percent > LARGE) {
-        all.push(format!(
-            "the RMS deviation of the model output is {percent:.1} % of the standard deviation of the wanted output: \
-             within these bounds the model does not follow the reference"
-        ));
-    }
-    all
 }
 
 /// The error of the model, which is that of the specimen when it is driven: that on held-out rows, or else in training.

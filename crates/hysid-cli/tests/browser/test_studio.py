@@ -23,8 +23,11 @@ STEPS = {
     "identify": "button.main",
     "judge": "td",
     "compare": "td",
-    "take-away": "pre",
     "try": "canvas",
+    "invert": "button.main",
+    "plan": "button.main",
+    "restoring-force": "button.main",
+    "take-away": "pre",
 }
 
 
@@ -55,14 +58,21 @@ class Page:
         """A figure of a step by its heading."""
         return self.page.locator(f"#{step} .figure", has=self.page.get_by_text(title, exact=True)).first
 
+    def choose(self, model: str):
+        """The step Identify with a model other than the default."""
+        identify = self.go("identify")
+        if not identify.get_by_label("Model", exact=True).is_visible():
+            identify.get_by_text("Model and options").click()
+        identify.get_by_label("Model", exact=True).select_option(model)
+        return identify
+
     def fit(self, model: str, **options):
         """Fits a model with the form, and waits for the result."""
-        identify = self.go("identify")
-        identify.get_by_label("Model", exact=True).select_option(model)
+        identify = self.choose(model)
         for name, value in options.items():
             control = identify.locator(f"[data-flag='--{name}']")
             if not control.is_visible():
-                identify.locator("summary").first.click()
+                identify.get_by_text("More options of").click()
             control.fill(str(value))
         identify.get_by_role("button", name="Start").click()
         self.page.get_by_role("link", name="Judge this model").wait_for(timeout=120_000)
@@ -295,7 +305,7 @@ def test_a_malformed_file_is_a_problem_in_words(start, visit, name, content, wor
     problem.wait_for()
     # A good file afterwards is read.
     opened.page.get_by_role("button", name=f"Remove {name}").click()
-    opened.page.get_by_text("Drop CSV").wait_for()
+    opened.page.get_by_text("Drop a file").wait_for()
     good = "t,x,y\n" + "".join(f"{k},{k % 7},{k % 7 + 0.1 * (k % 3)}\n" for k in range(40))
     drop(opened.page, "good.csv", good)
     opened.page.locator("#data canvas").first.wait_for()

@@ -134,6 +134,9 @@ def test_no_other_page_changes_anything(shared, origin):
         ("POST", "/api/fit", {"options": {"model": "pnn"}}),
         ("DELETE", "/api/files/1", None),
         ("DELETE", "/api/models/1", None),
+        ("POST", "/api/removed/1", {}),
+        ("POST", "/api/models/1/name", {"name": "x"}),
+        ("POST", "/api/plan", {"kind": "magnet", "low": 0, "high": 1}),
     ]:
         refused(shared, method, path, body, Origin=origin)
     if origin:
@@ -218,6 +221,13 @@ def test_large_bodies_are_refused_before_they_are_sent(shared):
         ("POST", "/api/files/99/use", b'{"use": "unseen"}'),
         ("POST", "/api/files/x/use", b'{"use": "unseen"}'),
         ("POST", "/api/models/99/run?rows=2", b""),
+        ("POST", "/api/models/99/name", b'{"name": "x"}'),
+        ("POST", "/api/models/99/inverse", b'{"file": 1}'),
+        ("POST", "/api/files/99/columns", b"{}"),
+        ("POST", "/api/removed/99", b"{}"),
+        ("POST", "/api/plan", b'{"length": -1}'),
+        ("POST", "/api/plan", b'{"kind": "magnet", "low": 2, "high": 1}'),
+        ("POST", "/api/restoring-force", b'{"file": 99, "mass": "2 kg"}'),
         ("DELETE", "/api/files/99", None),
         ("GET", "/api/models/99/file", None),
         ("GET", "/api/models/99/export/c", None),
@@ -338,7 +348,7 @@ def test_two_studios_side_by_side(browser, start, tmp_path):
     for studio in (first, second):
         pages.append(context.new_page())
         pages[-1].goto(studio.address)
-        pages[-1].get_by_text("Drop CSV").wait_for()
+        pages[-1].get_by_text("Drop a file").wait_for()
     # Each has its own key.
     for studio, page in zip((first, second), pages):
         page.reload()

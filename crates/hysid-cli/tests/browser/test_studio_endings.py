@@ -17,12 +17,10 @@ def test_the_progress_of_a_single_model_grows_until_it_is_stopped(start, visit):
     studio = start()
     studio.specimen("magnetostrictive-actuator")
     opened = visit(studio)
-    identify = opened.go("identify")
-    identify.get_by_label("Model", exact=True).select_option("xpnn")
+    identify = opened.choose("xpnn")
     epochs = identify.locator("[data-flag='--epochs']")
     if not epochs.is_visible():
-        for summary in identify.locator("summary").all():
-            summary.click()
+        identify.get_by_text("More options of").click()
     epochs.fill("20000")
     opened.page.evaluate(
         """() => {
@@ -139,8 +137,7 @@ def test_a_finished_model_is_not_lost_when_the_disk_is_full(start, visit):  # no
     models.rename(away)
     models.write_text("")
     opened = visit(studio)
-    identify = opened.go("identify")
-    identify.get_by_label("Model", exact=True).select_option("prandtl-ishlinskii")
+    identify = opened.choose("prandtl-ishlinskii")
     identify.get_by_role("button", name="Start").click()
     identify.get_by_text("The model is not stored").wait_for(timeout=60_000)
     with opened.page.expect_download() as download:

@@ -16,7 +16,7 @@ const points = new Points();
 const upper = new Points();
 
 /** The width of the lines of a style, in CSS pixels. */
-export const lineWidth = (style) => (style === "thin" ? 0.8 : 1.4);
+export const lineWidth = (style) => ({ thin: 0.8, wide: 4 })[style] ?? 1.4;
 
 function strokePoints(context, drawn) {
   const { values, length } = drawn;
@@ -100,7 +100,7 @@ export function paint(context, picture) {
     if (trace.style === "points") {
       const rows = rowsOf(trace);
       scatterPoints(trace, rows, place, points, isMoving ? Math.max(1, Math.ceil((rows[1] - rows[0]) / MOVING_ROWS)) : 1);
-      const side = 2 * ratio;
+      const side = (kind === "curve" ? 5 : 2) * ratio;
       for (let k = 0; k < points.length; k += 2) context.fillRect(points.values[k] - side / 2, points.values[k + 1] - side / 2, side, side);
     } else if (kind !== "loop") {
       if (trace.style === "band") fill(context, [bandPolygon(trace, window, place)]);

@@ -49,7 +49,8 @@ export class RecordFigures {
 
   /** Draws these over what was measured. @param {Overlay[]} overlays */
   setOverlays(overlays, keepView = true) {
-    const measured = { name: "measured", role: this.measuredRole, y: this.columns.output };
+    // Wide, so that it is seen below a model that is close to it.
+    const measured = { name: "measured", role: this.measuredRole, style: this.measuredRole === "measured" ? "wide" : "line", y: this.columns.output };
     // Bands lie behind everything.
     const all = [...overlays.filter((one) => one.style === "band"), measured, ...overlays.filter((one) => one.style !== "band")];
     const over = (x) => all.map((one) => ({

@@ -8,7 +8,7 @@ const CHUNK = 256; // Rows with one box around them.
  * @typedef {object} TraceOptions
  * @property {string} name
  * @property {string} role: its colour, see palette.js.
- * @property {"line" | "thin" | "band" | "points"} [style]
+ * @property {"line" | "thin" | "wide" | "band" | "points"} [style]
  * @property {Float64Array} x
  * @property {Float64Array} y: for a band its lower limit.
  * @property {Float64Array} [high]: the upper limit of a band.

@@ -1,22 +1,26 @@
 // Step 5: all models side by side, and some of them over one file.
 
 import { button, element, Region } from "../elements.js";
-import { Notice, failure, problem } from "../notices.js";
+import { failure, problem, removeOne } from "../notices.js";
 import { counted, duration, percent } from "../numbers.js";
 import { RecordFigures } from "../plots/record-figures.js";
 import { project, startsOf } from "../project.js";
-import { remove } from "../server.js";
 import { fileChoice, fileOr, noFile, noModel } from "./model-choice.js";
 
 export class CompareStep {
   constructor(body) {
-    this.notice = new Notice();
     this.table = new Region();
     this.pictures = new Region();
     this.error = new Region();
     /** @type {Set<number> | null} */
     this.shown = null;
-    body.replaceChildren(this.notice.node, this.table.node, this.error.node, this.pictures.node);
+    body.replaceChildren(this.table.node, this.error.node, this.pictures.node);
+  }
+
+  /** Compares the models on a file that was dropped here. */
+  take(file) {
+    this.file = file;
+    this.update();
   }
 
   async update() {
@@ -44,19 +48,19 @@ export class CompareStep {
       ["Training", models.map((model) => model.train.nrmse_std_percent)], ["Cross-validation", models.map((model) => model.validation?.nrmse_std_percent ?? null)],
       ...unseen.map((file, k) => [file.name, judged.map((row) => (row[k] && !row[k].is_training ? row[k].errors.nrmse_std_percent : null))]),
     ];
-    const cells = (k) => columns.map(([, values]) => {
+    const cells = (k) => columns.map(([, values], column) => {
       const isBest = models.length > 1 && values[k] === best(values.filter((value) => value !== null));
-      return element("td", {}, isBest ? element("strong", { text: percent(values[k]) }) : percent(values[k]));
+      return element("td", { "data-label": columns[column][0] }, isBest ? element("strong", { text: percent(values[k]) }) : percent(values[k]));
     });
     const row = (model, k) => element("tr", {},
       element("th", { scope: "row" }, element("label", { class: "tick" }, element("input", {
         type: "checkbox", id: `overlay-${model.id}`, checked: this.shown.has(model.id), on: { change: (event) => { this.shown[event.target.checked ? "add" : "delete"](model.id); this.update(); } },
       }), model.is_stale ? `${model.title} (other data)` : model.title)),
-      ...cells(k), element("td", { text: counted(model.parameters) }), element("td", { text: duration(model.seconds) }),
+      ...cells(k), element("td", { "data-label": "Parameters", text: counted(model.parameters) }), element("td", { "data-label": "Time", text: duration(model.seconds) }),
       element("td", {}, element("a", { href: `#judge/${model.id}`, text: "Judge", "aria-label": `Judge ${model.title}` }), " ",
-        button("Remove", () => this.notice.saying(() => remove(`/api/models/${model.id}`)), { "aria-label": `Remove ${model.title}` })));
+        button("Remove", () => removeOne("models", { id: model.id, name: model.title }), { "aria-label": `Remove ${model.title}` })));
     const heads = ["Model (tick to draw)", ...columns.map(([name]) => name), "Parameters", "Time"];
-    return [element("div", { class: "scroll", role: "region", "aria-label": "Models", tabindex: "0" }, element("table", {},
+    return [element("div", { class: "scroll cards", role: "region", "aria-label": "Models", tabindex: "0" }, element("table", {},
       element("caption", { class: "hidden", text: "Models" }),
       element("thead", {}, element("tr", {}, ...heads.map((text) => element("th", { scope: "col", text })), element("td"))),
       element("tbody", {}, ...models.map(row)))),

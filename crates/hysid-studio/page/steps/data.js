@@ -2,11 +2,13 @@
 
 import { control, choice } from "../controls.js";
 import { button, element, newId, Region, table } from "../elements.js";
-import { Notice, linked, problem } from "../notices.js";
+import { Notice, linked, problem, removeOne } from "../notices.js";
 import { bytes, counted, written } from "../numbers.js";
 import { RecordFigures } from "../plots/record-figures.js";
 import { project, startsOf } from "../project.js";
-import { getJson, post, remove, upload } from "../server.js";
+import { getJson, post } from "../server.js";
+import { sendFiles } from "../uploads.js";
+import { Example } from "./example.js";
 
 const ROLES = ["input", "output", "time", "record", "rate", "unused"];
 const FLAG_OF_ROLE = { input: "--input", output: "--output", time: "--time", record: "--record", rate: "--rate" };
@@ -15,71 +17,36 @@ export class DataStep {
   /** @param {HTMLElement} body */
   constructor(body) {
     this.notice = new Notice();
-    this.uploads = element("div", { role: "status" });
     this.files = new Region();
     this.columns = new Region();
     this.reading = new Region();
     this.view = new Region();
     this.findings = new Region();
-    body.replaceChildren(this.adding(), this.notice.node, this.uploads, this.files.node, this.columns.node, this.reading.node, this.view.node, this.findings.node);
-    this.listenToDrops();
+    this.example = new Example(this.notice);
+    body.replaceChildren(this.adding(), this.notice.node, this.example.node, this.files.node, this.columns.node, this.reading.node, this.view.node, this.findings.node);
   }
 
   adding() {
     const id = newId("files");
-    const file = element("input", { type: "file", id, multiple: true, on: { change: () => { this.add([...file.files]); file.value = ""; } } });
+    const file = element("input", { type: "file", class: "hidden", id, multiple: true, on: { change: () => { sendFiles([...file.files]); file.value = ""; } } });
     const specimens = project.choices.specimens;
     const select = element("select", { "aria-label": "Synthetic specimen" }, ...specimens.map(({ name, what }) => element("option", { value: name, text: `${name}: ${what}` })));
-    this.box = element("div", { class: "empty" },
-      element("p", { text: "Drop CSV, spreadsheet or MATLAB files anywhere on this page, or choose them." }),
-      element("div", { class: "row centre" }, element("label", { for: id, text: "Choose files:" }), file),
-      element("div", { class: "row centre" }, element("span", { text: "No data yet? Take a synthetic specimen:" }), select,
-        button("Add", () => this.notice.during(() => post("/api/specimens", { name: select.value, seed: 1, noise_percent: 1 })))));
+    const add = button("Add", () => this.notice.during(() => post("/api/specimens", { name: select.value, seed: 1, noise_percent: 1 })));
+    this.box = element("div", { class: "empty drop" },
+      element("p", { class: "large", text: "Drop a file with measured input and output here" }),
+      element("div", { class: "row centre" }, file, element("label", { class: "button main", for: id, text: "Choose files" }), element("span", { class: "note", text: "CSV, text, spreadsheet, MATLAB, HDF5 or NumPy. Nothing leaves this computer." })),
+      element("details", {}, element("summary", { text: "Synthetic data of a known specimen" }), element("div", { class: "row centre" }, select, add)));
     return this.box;
   }
 
-  listenToDrops() {
-    const holdsFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
-    addEventListener("dragover", (event) => {
-      if (!holdsFiles(event)) return;
-      event.preventDefault();
-      document.body.classList.add("dropping");
-    });
-    addEventListener("dragleave", (event) => { if (!event.relatedTarget) document.body.classList.remove("dropping"); });
-    addEventListener("drop", (event) => {
-      document.body.classList.remove("dropping");
-      if (!holdsFiles(event)) return;
-      event.preventDefault();
-      location.hash = "data";
-      this.add([...event.dataTransfer.files]);
-    });
-  }
-
-  async add(files) {
-    this.notice.clear();
-    for (const file of files) {
-      if (file.size > project.choices.file_bytes_limit) {
-        this.notice.show(`${file.name} has ${bytes(file.size)}; the studio takes at most ${bytes(project.choices.file_bytes_limit)}. Make it smaller on the command line, such as with hysid look FILE -o SMALLER.csv and every tenth row, or fit there.`);
-        continue;
-      }
-      const bar = element("div");
-      const progress = element("div", { class: "progress", role: "progressbar", "aria-label": `Upload of ${file.name}`, "aria-valuemin": "0", "aria-valuemax": "100" }, bar);
-      const line = element("div", {}, `${file.name}, ${bytes(file.size)}`, progress);
-      this.uploads.append(line);
-      await this.notice.during(() => upload(file, (share) => {
-        bar.style.width = `${100 * share}%`;
-        progress.setAttribute("aria-valuenow", String(Math.round(100 * share)));
-      }));
-      line.remove();
-    }
-  }
-
   update() {
-    const { files, reading, columns, columns_are_chosen: areChosen, problem: whole } = project.state;
+    const { files, first, reading, columns, columns_are_chosen: areChosen, problem: whole } = project.state;
     this.box.classList.toggle("compact", files.length > 0);
+    this.example.update(files.length === 0);
     this.files.update([files, whole], () => this.fileList(files, whole));
-    this.columns.update([files, columns, areChosen], () => this.columnTables(files, areChosen));
-    this.reading.update([reading, files.length > 0, files.some((file) => file.problem)], () => (files.length > 0 ? [this.readingOptions(reading, files.some((file) => file.problem))] : []));
+    this.columns.update([files, first, columns, areChosen], () => this.columnTables(files, first, areChosen));
+    const isUnread = files.some((file) => file.problem && file.columns.length === 0);
+    this.reading.update([reading, files.length > 0, isUnread], () => (files.length > 0 ? [this.readingOptions(reading, isUnread)] : []));
     const shown = project.labels ? project.usable() : [];
     if (!shown.some((file) => file.id === this.shown)) this.shown = shown[0]?.id;
     this.drawView(shown);
@@ -96,7 +63,7 @@ export class DataStep {
       const records = file.records.length > 1 ? `, ${file.records.length} records` : "";
       return element("li", {}, element("span", { class: "name", text: file.name }),
         element("span", { class: "about", text: file.problem ? "not read" : file.read_as === null ? "being read \u2026" : `${counted(file.rows)} rows${records}, ${bytes(file.bytes)}. ${file.read_as}` }), use,
-        button("Remove", () => this.notice.saying(() => remove(`/api/files/${file.id}`)), { "aria-label": `Remove ${file.name}` }),
+        button("Remove", () => removeOne("files", file), { "aria-label": `Remove ${file.name}` }),
         file.is_held_back ? button("Read again", () => this.notice.during(() => post(`/api/files/${file.id}/read`, {})), { "aria-label": `Read ${file.name} again` }) : null,
         file.problem ? problem(file.problem) : null,
         file.warnings.length > 0 ? element("ul", { class: "warnings" }, ...file.warnings.map((words) => element("li", {}, linked(words)))) : null);
@@ -105,38 +72,41 @@ export class DataStep {
       whole ? problem(whole) : null];
   }
 
-  columnTables(files, areChosen) {
-    const readable = files.filter((file) => file.columns.length > 0);
+  columnTables(files, first, areChosen) {
+    // The file that tells the roles comes first; then one whose columns are doubtful, which is shown open.
+    const readable = files.filter((file) => file.columns.length > 0).sort((a, b) => (b.id === first) - (a.id === first));
     if (readable.length === 0) return [];
+    // Roles that a problem names lead to the table that it is about.
+    const asked = readable.find((file) => file.id !== first && file.problem) ?? readable[0];
     const flagged = new Set();
-    const row = (file, isFirst) => (column) => {
+    const row = (file) => (column) => {
       const id = `role-${file.id}-${file.columns.indexOf(column)}`;
       const role = element("select", { id, "aria-label": `Role of ${column.name} in ${file.name}`, on: { change: () => this.chooseRole(file, column.name, role.value) } },
         ...ROLES.map((name) => element("option", { value: name, text: name })));
       role.value = column.role ?? "unused";
-      // A role that a problem names leads to the select of the first column that has it.
       const flag = FLAG_OF_ROLE[column.role];
-      if (isFirst && flag && !flagged.has(flag)) { role.dataset.flag = flag; flagged.add(flag); }
+      if (file === asked && flag && !flagged.has(flag)) { role.dataset.flag = flag; flagged.add(flag); }
       return [column.name, role, column.unit ?? "", written(column.minimum), written(column.maximum), counted(column.missing ?? 0), column.note ?? ""];
     };
     const words = { text: "Note", class: "words" };
     const text = (name) => ({ text: name, class: "text" });
     const tables = readable.map((file, k) => {
-      const build = () => table(`Columns of ${file.name}`, ["Column", text("Role"), text("Unit"), "Minimum", "Maximum", "Missing", words], file.columns.map(row(file, k === 0)));
-      if (k > 0) {
+      const build = () => table(`Columns of ${file.name}`, ["Column", text("Role"), text("Unit"), "Minimum", "Maximum", "Missing", words], file.columns.map(row(file)));
+      if (k > 0 && file !== asked) {
         // Built when it is opened: there may be many.
         const details = element("details", { on: { toggle: () => { if (details.childElementCount === 1) details.append(build()); } } }, element("summary", { text: `Columns of ${file.name}` }));
         return details;
       }
       const made = build();
-      // A role that no column has leads to the first select.
-      for (const flag of Object.values(FLAG_OF_ROLE)) {
-        if (!flagged.has(flag)) made.querySelector("select:not([data-flag])")?.setAttribute("data-flag", flag);
-      }
-      return made;
+      // A role that no column has leads to the first select of a column without one.
+      const free = [...made.querySelectorAll("select")].find((select) => select.value === "unused") ?? made.querySelector("select");
+      const missing = Object.values(FLAG_OF_ROLE).filter((flag) => !flagged.has(flag));
+      if (file === asked && !free.dataset.flag) free.dataset.flag = missing.join(" ");
+      return k > 0 ? element("div", {}, element("h3", { text: file.name }), made) : made;
     });
+    const others = readable.length > 1 ? " Other files have the same roles: their columns are found by name and unit, and a role that you change in one of them is changed there alone." : "";
     return [element("h2", { text: "Columns" }),
-      element("p", { class: "note", text: areChosen ? "Roles as you chose them. A record column separates runs; a rate column has the measured rate of the first input. All files have the same roles." : "Roles were detected from names and values. A record column separates runs; a rate column has the measured rate of the first input. All files have the same roles." }),
+      element("p", { class: "note", text: `${areChosen ? "Roles as you chose them." : "Roles were detected from names and values."} A record column separates runs; a rate column has the measured rate of the first input.${others}` }),
       ...tables, areChosen ? button("Detect again", () => this.notice.during(() => post("/api/columns", null))) : null];
   }
 
@@ -147,8 +117,9 @@ export class DataStep {
     roles.set(name, role);
     const all = (wanted) => [...roles].filter(([, had]) => had === wanted).map(([column]) => column);
     const one = (wanted) => all(wanted)[0] ?? null;
-    const choiceOfAll = { record: one("record"), time: one("time"), inputs: all("input"), rate: one("rate"), output: one("output") };
-    return this.notice.during(() => post("/api/columns", choiceOfAll)).then((answer) => {
+    const chosen = { record: one("record"), time: one("time"), inputs: all("input"), rate: one("rate"), output: one("output") };
+    const address = file.id === project.state.first ? "/api/columns" : `/api/files/${file.id}/columns`;
+    return this.notice.during(() => post(address, chosen)).then((answer) => {
       if (answer?.note) this.notice.show(`${answer.note}.`);
       return project.load();
     });

@@ -1,4 +1,4 @@
-// Step 3: choose a model and its options, start the fit, follow it, stop it.
+// Step 3: start the fit, follow it, stop it; the model and its options are behind the button.
 
 import { choice, control } from "../controls.js";
 import { button, element, emptyState, newId, Region } from "../elements.js";
@@ -15,7 +15,7 @@ export class IdentifyStep {
     this.notice = new Notice();
     this.form = new Region();
     this.progress = new FitProgress(this.notice);
-    this.model = project.models.at(-1)?.options?.model ?? "auto";
+    this.model = "auto";
     /** Values that were chosen, by option: they stay when the model changes. */
     this.values = {};
     this.rate = "auto";
@@ -54,14 +54,18 @@ export class IdentifyStep {
     const rate = choice("Rate of the input", RATES.map(([value, text]) => ({ value, text })), this.rate, (value) => { this.rate = value; }, { "data-flag": "--rate" });
     const facts = [model.rate === "needed" ? "Needs the rate of the input." : null, model.several_inputs ? "Takes several inputs." : null].filter(Boolean).join(" ");
     const modelChoice = choice("Model", models.map(({ name }) => ({ value: name, text: name })), model.name, (name) => { this.model = name; this.update(); }, { id: "fit-model", "data-flag": "--model" });
-    const start = button("Start", () => this.start(model, controls), { class: "main", id: "fit-start", disabled: isRunning });
-    const what = `${model.what.charAt(0).toUpperCase()}${model.what.slice(1)}.`;
-    return [element("div", { class: "row" }, modelChoice, model.rate === "no" ? null : project.state.columns.rate ? element("p", { text: `Rate of the input: column ${project.state.columns.rate}.` }) : rate,
-      element("div", { class: "choice" }, element("label", { for: limit.id, text: "Time limit, s" }), limit), start),
-    element("p", { text: `${what} ${facts}` }),
-    common.length > 0 ? nodes(common) : null,
-    headings.length > 0 ? element("details", {}, element("summary", { text: `More options of ${model.name}` }),
-      ...headings.map((heading) => element("fieldset", {}, element("legend", { text: heading }), nodes(rest.filter((option) => option.heading === heading))))) : null];
+    const start = button("Start", () => this.start(model, controls), { class: "main large", id: "fit-start" });
+    const files = project.usable("training").map(({ name }) => name);
+    const what = model.name === "auto" ? "Hysid cross-validates networks and classical models, and combines the best" : `${model.name}: ${model.what}`;
+    const behind = element("details", { open: this.behind?.open ?? false }, element("summary", { text: "Model and options" }),
+      element("div", { class: "row" }, modelChoice, model.rate === "no" ? null : project.state.columns.rate ? element("p", { text: `Rate of the input: column ${project.state.columns.rate}.` }) : rate,
+        element("div", { class: "choice" }, element("label", { for: limit.id, text: "Time limit, s" }), limit)),
+      facts ? element("p", { text: facts }) : null,
+      common.length > 0 ? nodes(common) : null,
+      headings.length > 0 ? element("details", {}, element("summary", { text: `More options of ${model.name}` }),
+        ...headings.map((heading) => element("fieldset", {}, element("legend", { text: heading }), nodes(rest.filter((option) => option.heading === heading))))) : null);
+    this.behind = behind;
+    return isRunning ? [] : [element("div", { class: "begin" }, start, element("p", { text: `${what}. Training data: ${files.join(", ")}.` })), behind];
   }
 
   start(model, controls) {

@@ -7,7 +7,7 @@ import { counted, duration, percent, sentence, written } from "../numbers.js";
 import { Figure } from "../plots/figure.js";
 import { goingOn, RecordFigures } from "../plots/record-figures.js";
 import { project, startsOf } from "../project.js";
-import { fileChoice, fileOr, modelChoice, modelOr, noFile, noModel, stale } from "./model-choice.js";
+import { fileChoice, fileOr, modelChoice, modelOr, noFile, noModel, renaming, stale } from "./model-choice.js";
 
 export class JudgeStep {
   constructor(body) {
@@ -22,6 +22,11 @@ export class JudgeStep {
   }
 
   choose(id) { this.model = id; }
+  /** Judges the model by a file that was dropped here. */
+  take(file) {
+    this.file = file;
+    this.update();
+  }
 
   update() {
     const model = modelOr(this.model);
@@ -33,11 +38,13 @@ export class JudgeStep {
       return;
     }
     const choose = (what) => (id) => { this[what] = id; this.update(); };
-    this.head.update([model, project.usable().map(({ id, name, use }) => [id, name, use]), file.id, this.withMembers], () => [
-      element("div", { class: "row" }, modelChoice("judge", model, choose("model")), fileChoice("judge", file, choose("file")),
+    const unread = project.files.find(({ id, problem: why }) => id === this.file && why);
+    this.head.update([model, unread, project.usable().map(({ id, name, use }) => [id, name, use]), file.id, this.withMembers], () => [
+      element("div", { class: "row" }, modelChoice("judge", model, choose("model")), renaming(model), fileChoice("judge", file, choose("file")),
         tick("Members as thin lines", this.withMembers, (is) => { this.withMembers = is; this.update(); })),
+      unread ? element("p", { class: "problem" }, linked(unread.problem)) : null,
       stale(model), model.chosen ? element("p", { class: "verdict", text: sentence(model.chosen) }) : null, model.why ? element("p", { class: "note", text: sentence(model.why) }) : null,
-      project.usable("unseen").length === 0 ? element("p", { class: "problem", text: "There are no unseen data. Drop a second measurement on this page to estimate the error on new data." }) : null]);
+      project.usable("unseen").length === 0 ? element("p", { class: "problem", text: "There are no unseen data. Drop a second measurement here to estimate the error on new data." }) : null]);
     this.draw(model, file);
   }
 
@@ -107,7 +114,8 @@ export class JudgeStep {
     others.forEach((other, k) => rows.push(of(other, unseen[k])));
     const records = judged.records.length > 1 ? element("details", {}, element("summary", { text: `Errors of the ${judged.records.length} records of ${file.name}` }),
       table("Errors of records", ["Record", "Samples", inUnit("RMSE"), inUnit("Largest error"), "NRMSE, % of std", "Fit"], judged.records.filter(({ errors }) => errors).map(({ name, errors }) => row(name, errors)))) : null;
-    return [element("h2", { text: "Errors" }),
+    return [element("h2", { text: "What this model may be used for" }), element("ul", { class: "use" }, ...model.use.map((text) => element("li", { text }))),
+      element("h2", { text: "Errors" }),
       table("Errors", ["Data", "Samples", inUnit("RMSE"), inUnit("Largest error"), "NRMSE, % of std", "Fit"], rows),
       element("p", { class: "note", text: "Errors of a free run: the model gets only the input. NRMSE: the root mean square error in % of the standard deviation of the output. Fit: 100 % minus that error. Cross-validation: all rows held out, together; the sentence above the figures has the geometric mean over the folds." }),
       judged.inside_band_percent === null ? null : element("p", { text: `${percent(judged.inside_band_percent)} of the measured outputs of ${file.name} lie in the ${percent(100 * project.choices.band)} prediction band. On average over data sets it holds ${percent(100 * project.choices.band)}; a single file may deviate.` }),

@@ -2,9 +2,11 @@
 
 import { button, element, Region } from "../elements.js";
 import { Notice, failure, problem } from "../notices.js";
+import { written } from "../numbers.js";
 import { download } from "../plots/save.js";
 import { project } from "../project.js";
 import { getFile } from "../server.js";
+import { field } from "./use-case.js";
 import { modelChoice, modelOr, noModel, stale } from "./model-choice.js";
 
 function copyable(title, text, note = null) {
@@ -40,6 +42,19 @@ export class TakeAwayStep {
     });
   }
 
+  /** The inverse of a model within bounds of its input, for the targets that have one. */
+  inverse(model, address) {
+    const [range] = model.ranges;
+    const [label] = model.input_labels;
+    const fields = { low: field(`Lowest ${label}`, written(range[0])), high: field(`Highest ${label}`, written(range[1])), slew: field("Largest rate of it", "none") };
+    const query = () => Object.entries(fields).map(([name, one]) => [name, one.read()]).filter(([, value]) => value !== null).map(([name, value]) => `&${name}=${value}`).join("");
+    const targets = project.choices.targets.filter(({ has_inverse: has }) => has);
+    return element("div", {}, element("h2", { text: "Inverse" }),
+      element("p", { class: "note" }, "The input for a wanted output, sample by sample. It keeps these limits; without others, those of the training data. ", element("a", { href: `#invert/${model.id}`, text: "Try it on a wanted output" }), "."),
+      element("div", { class: "row" }, ...Object.values(fields).map(({ node }) => node),
+        ...targets.map(({ name }) => button(`Download inverse, ${name}`, () => this.save(`${address}/export/${encodeURIComponent(name)}?inverse=true${query()}`)))));
+  }
+
   async update() {
     const model = modelOr(this.model);
     if (!model) {
@@ -55,6 +70,7 @@ export class TakeAwayStep {
       element("div", { class: "row" }, button("Model file", () => this.save(`${address}/file`)),
         model.has_report ? element("a", { class: "button", href: `/report#${model.id}`, target: "_blank", text: "Report (new tab)" }) : null),
       element("p", { class: "note" }, "This model is also in the project's folder: ", element("code", { text: `${folder}/models/${model.file}` })),
+      this.inverse(model, address),
       element("h2", { text: "Source code and exports" }),
       element("ul", { class: "files" }, ...project.choices.targets.map(({ name, what }) => element("li", {},
         element("span", { class: "about", text: what }), button(`Download ${name}`, () => this.save(`${address}/export/${encodeURIComponent(name)}`), { "aria-label": `Download ${name}: ${what}` }))))]);

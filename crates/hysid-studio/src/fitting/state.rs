@@ -29,6 +29,10 @@ pub struct FitState {
     pub error_percent: Option<f64>,
     /// Seconds, and the lowest error until then.
     pub curve: Vec<(f64, f64)>,
+    /// Seconds, and the error of a candidate on the folds that were held out until then.
+    pub tried: Vec<(f64, f64)>,
+    /// Seconds, and the training error of the candidate that is being fitted.
+    pub running: Vec<(f64, f64)>,
     /// Kind of the errors of the curve.
     pub curve_is: &'static str,
     /// Candidates of `auto`, the lowest error first.
@@ -102,14 +106,19 @@ impl FitState {
         let lowest = self.curve.last().map_or(f64::INFINITY, |(_, lowest)| *lowest);
         self.error_percent = Some(percent.min(lowest));
         self.curve.push((second, percent.min(lowest)));
-        if self.curve.len() > MOST_POINTS {
-            let last = self.curve.len() - 1;
-            let mut place = 0;
-            self.curve.retain(|_| {
-                place += 1;
-                (place - 1) % 2 == 0 || place - 1 == last
-            });
-        }
+        thin(&mut self.curve);
+    }
+
+    /// Takes the training error of a candidate that is being fitted.
+    pub(super) fn add_running(&mut self, second: f64, percent: f64) {
+        self.running.push((second, percent));
+        thin(&mut self.running);
+    }
+
+    /// Takes the error of a candidate on some of the folds.
+    pub(super) fn add_tried(&mut self, second: f64, percent: f64) {
+        self.tried.push((second, percent));
+        thin(&mut self.tried);
     }
 
     /// Takes what has become known of a candidate.
@@ -137,6 +146,15 @@ impl FitState {
             FitEnd::Stored(model) => self.made = Some(model),
             FitEnd::Unsaved(problem) | FitEnd::Failed(problem) => self.problem = Some(said(&problem)),
         }
+    }
+}
+
+/// Leaves out every other one of too many points, but not the last.
+fn thin(points: &mut Vec<(f64, f64)>) {
+    let last = points.len().saturating_sub(1);
+    if last >= MOST_POINTS {
+        let mut places = 0..;
+        points.retain(|_| places.next().is_some_and(|place| place % 2 == 0 || place == last));
     }
 }
 

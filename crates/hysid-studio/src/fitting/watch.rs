@@ -111,6 +111,9 @@ impl<'c> Watch<'c> {
             state.remaining_seconds = remaining;
             state.remaining = remaining.map(in_words);
             state.part = part;
+            if progress.is_part && progress.train_nrmse_percent.is_finite() {
+                state.add_running(seconds, progress.train_nrmse_percent);
+            }
             errors.iter().for_each(|(second, error)| state.add_error(*second, *error));
         });
     }
@@ -136,6 +139,7 @@ impl<'c> Watch<'c> {
         let seconds = self.began.elapsed().as_secs_f64();
         self.course.change(|state| {
             state.seconds = seconds;
+            error.iter().for_each(|error| state.add_tried(seconds, *error));
             // The first error is on few folds; what counts is that of a candidate which was tried on all.
             if candidate.state == state::Standing::Complete {
                 error.iter().for_each(|error| state.add_error(seconds, *error));

@@ -20,17 +20,20 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::Shared;
-use super::answer::{Answer, Arrays, Refusal, at_once, computed, diagnosed, done, value};
+use super::answer::{Answer, Arrays, Refusal, at_once, computed, diagnosed, done, encoded, value};
 use crate::choices::MOST_FILE_BYTES;
 use crate::project::{ChosenColumns, Use};
+use crate::studio::{ForceAsked, PlanAsked};
 
 /// Longest pause of an upload.
 const LONGEST_PAUSE: Duration = Duration::from_secs(60);
 
-/// The name of a file that comes in.
+/// The name of a file that comes in, and its use if that is chosen.
 #[derive(Deserialize)]
 pub struct Named {
     name: String,
+    #[serde(rename = "use")]
+    usage: Option<Use>,
 }
 
 /// A file on its way: removed unless it arrives.
@@ -77,7 +80,10 @@ pub async fn upload(
     }
     drop(file);
     let id = computed(shared, move |studio| {
-        let usage = studio.usage_of_next();
+        if named.usage.is_none() {
+            studio.leave_example()?;
+        }
+        let usage = named.usage.unwrap_or_else(|| studio.usage_of_next());
         let id = studio.take_file(&named.name, &place, usage)?;
         Ok(id)
     })
@@ -96,6 +102,21 @@ fn too_large() -> Refusal {
 pub async fn remove(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
     let kept = at_once(shared, move |studio| studio.remove_file(id)).await?;
     Ok(value(json!({"kept": kept.into_iter().collect::<Vec<String>>()})))
+}
+
+/// Brings back a file or a model that was removed.
+pub async fn undo(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
+    computed(shared, move |studio| studio.undo_removal(id)).await?;
+    Ok(done())
+}
+
+/// The example of the first page.
+pub async fn example(State(shared): State<Shared>) -> Answer<Arrays> {
+    computed(shared, |studio| {
+        let example = studio.example()?;
+        Ok(Arrays::of(&example.columns).with("x-facts", encoded(&example.facts.to_string())))
+    })
+    .await
 }
 
 /// Reads a file that was held back.
@@ -128,6 +149,8 @@ pub struct Specimen {
     seed: u64,
     #[serde(default)]
     noise_percent: f64,
+    #[serde(default)]
+    is_example: bool,
 }
 
 fn one() -> u64 {
@@ -137,7 +160,12 @@ fn one() -> u64 {
 /// Takes the data of a specimen.
 pub async fn specimen(State(shared): State<Shared>, Json(asked): Json<Specimen>) -> Answer<Response> {
     let take = move |studio: &std::sync::Arc<crate::studio::Studio>| {
-        studio.take_specimen(&asked.name, asked.seed, asked.noise_percent)
+        studio.leave_example()?;
+        let ids = studio.take_specimen(&asked.name, asked.seed, asked.noise_percent)?;
+        if asked.is_example {
+            studio.mark_example(&ids)?;
+        }
+        Ok(ids)
     };
     let ids = computed(shared, take).await?;
     Ok(value(json!({"ids": ids})))
@@ -149,53 +177,48 @@ pub async fn reading(State(shared): State<Shared>, Json(reading): Json<ReadingCh
     Ok(done())
 }
 
-/// Columns by their names, while they are being chosen.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AskedColumns {
-    record: Option<String>,
-    time: Option<String>,
-    inputs: Vec<String>,
-    rate: Option<String>,
-    output: Option<String>,
-}
-
-impl AskedColumns {
-    fn chosen(self) -> hysid_document::Result<ChosenColumns> {
-        let Self { record, time, inputs, rate, output } = self;
-        let missing = |role| {
+/// Refuses columns of the first file without an input or an output.
+fn complete(chosen: ChosenColumns) -> hysid_document::Result<ChosenColumns> {
+    let missing = [("input", chosen.inputs.is_empty()), ("output", chosen.output.is_none())];
+    match missing.iter().find(|(_, is_missing)| *is_missing) {
+        Some((role, _)) => {
             let words = Words::from(format!("no column has the role {role}: choose one"));
-            Problem::Request(words.advised(Hint::Option(role)))
-        };
-        if inputs.is_empty() {
-            return Err(missing("input"));
+            Err(Problem::Request(words.advised(Hint::Option(role))))
         }
-        let output = output.ok_or_else(|| missing("output"))?;
-        Ok(ChosenColumns { record, time, inputs, rate, output })
+        None => Ok(chosen),
     }
 }
 
 /// Sets the roles of columns; returns a note if one of them stays what it was.
 pub async fn columns(
     State(shared): State<Shared>,
-    Json(asked): Json<Option<AskedColumns>>,
+    Json(asked): Json<Option<ChosenColumns>>,
 ) -> Answer<Response> {
-    let note =
-        computed(shared, move |studio| studio.choose_columns(asked.map(AskedColumns::chosen).transpose()?));
+    let note = computed(shared, move |studio| studio.choose_columns(asked.map(complete).transpose()?));
     Ok(value(json!({"note": note.await?})))
+}
+
+/// Sets columns of one file that have the roles of the first file's.
+pub async fn columns_of(
+    State(shared): State<Shared>,
+    Path(id): Path<u64>,
+    Json(asked): Json<ChosenColumns>,
+) -> Answer<Response> {
+    computed(shared, move |studio| studio.choose_columns_of(id, asked)).await?;
+    Ok(done())
 }
 
 /// The numbers of a file.
 pub async fn numbers(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Arrays> {
     computed(shared, move |studio| {
         let data = studio.data_of(id)?;
-        Ok(Arrays::of(&columns_of(&data)))
+        Ok(Arrays::of(&arrays_of(&data)))
     })
     .await
 }
 
 /// Time or numbers of rows, inputs, rate where there is time, output: over all records.
-fn columns_of(data: &Data) -> Vec<(&'static str, Vec<f64>)> {
+fn arrays_of(data: &Data) -> Vec<(&'static str, Vec<f64>)> {
     let records = data.set.records();
     let joined = |column: &dyn Fn(&Record) -> Vec<f64>| records.iter().flat_map(column).collect::<Vec<f64>>();
     let mut columns = Vec::new();
@@ -225,6 +248,19 @@ pub async fn findings(State(shared): State<Shared>) -> Answer<Response> {
 /// The diagnosis of the training data.
 pub async fn diagnosis(State(shared): State<Shared>) -> Answer<Response> {
     Ok(value(json!({"html": diagnosed(shared, |studio| studio.diagnosis()).await?})))
+}
+
+/// A plan of the next test.
+pub async fn plan(State(shared): State<Shared>, Json(asked): Json<PlanAsked>) -> Answer<Response> {
+    Ok(value(computed(shared, move |studio| studio.plan(&asked)).await?))
+}
+
+/// The restoring force from the motion of a mass.
+pub async fn restoring_force(
+    State(shared): State<Shared>,
+    Json(asked): Json<ForceAsked>,
+) -> Answer<Response> {
+    Ok(value(computed(shared, move |studio| studio.restoring_force(&asked)).await?))
 }
 
 /// The cycles of the training data.

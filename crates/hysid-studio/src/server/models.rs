@@ -5,6 +5,7 @@ use axum::body::Bytes;
 use axum::extract::{Path, Query, State};
 use axum::response::Response;
 use hysid::model::Model;
+use hysid_export::InverseOptions;
 use serde::Deserialize;
 use serde_json::json;
 
@@ -14,6 +15,7 @@ use super::assets::report_text;
 use crate::drive;
 use crate::judgement;
 use crate::project::FitRequest;
+use crate::studio::{InverseAsked, limits};
 use crate::take_away;
 
 /// Begins a fit.
@@ -109,6 +111,15 @@ pub async fn run(
     .await
 }
 
+/// The input that drives a model along a wanted output.
+pub async fn inverse(
+    State(shared): State<Shared>,
+    Path(id): Path<u64>,
+    Json(asked): Json<InverseAsked>,
+) -> Answer<Response> {
+    Ok(value(computed(shared, move |studio| studio.inverse(id, &asked)).await?))
+}
+
 /// Facts of a model.
 pub async fn facts(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
     Ok(value(json!({"html": diagnosed(shared, move |studio| studio.facts(id)).await?})))
@@ -117,6 +128,22 @@ pub async fn facts(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<
 /// Removes a model.
 pub async fn remove(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
     Ok(value(json!({"kept": at_once(shared, move |studio| studio.remove_model(id)).await?})))
+}
+
+/// The name of a model; an empty one for the name that says what it is.
+#[derive(Deserialize)]
+pub struct ModelTitle {
+    name: String,
+}
+
+/// Gives a model a name.
+pub async fn rename(
+    State(shared): State<Shared>,
+    Path(id): Path<u64>,
+    Json(title): Json<ModelTitle>,
+) -> Answer<Response> {
+    at_once(shared, move |studio| studio.rename_model(id, &title.name)).await?;
+    Ok(done())
 }
 
 /// The file of a model.
@@ -133,13 +160,27 @@ pub async fn report(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer
     Ok(report_text(at_once(shared, move |studio| studio.report(id)).await?))
 }
 
-/// A model for a target, as an archive.
+/// The bounds of an inverse to be exported in place of the model.
+#[derive(Deserialize)]
+pub struct Exported {
+    #[serde(default)]
+    inverse: bool,
+    low: Option<f64>,
+    high: Option<f64>,
+    slew: Option<f64>,
+}
+
+/// A model or its inverse for a target, as an archive.
 pub async fn export(
     State(shared): State<Shared>,
     Path((id, target)): Path<(u64, String)>,
+    Query(asked): Query<Exported>,
 ) -> Answer<Response> {
     computed(shared, move |studio| {
-        let (name, content) = take_away::archive(&*studio.model(id)?, &studio.stored_model(id)?, &target)?;
+        let model = studio.model(id)?;
+        let bounds = InverseOptions { limits: limits(&model, asked.low, asked.high), slew: asked.slew };
+        let inverse = asked.inverse.then_some(bounds);
+        let (name, content) = take_away::archive(&model, &studio.stored_model(id)?, &target, inverse)?;
         Ok(download(&name, "application/zip", content))
     })
     .await

@@ -15,29 +15,20 @@ use hysid_document::visible::clipped;
 use hysid_document::{Face, Problem, html, object};
 use hysid_document::{Result, problem};
 use hysid_records::{Data, ReadingChoice, Roles, csv_text, summarised, understanding};
-use hysid_tables::Table;
+use hysid_tables::{Table, other_kind};
 use serde_json::{Value, json};
 
 use super::Studio;
+use super::removal::Removed;
 use crate::folder::{ProjectFolder, UPLOAD, cannot_read};
-use crate::project::{ChosenColumns, Project, ProjectFile, Use};
+use crate::project::{ChosenColumns, Project, ProjectFile, ProjectModel, Use};
 use crate::view::{View, read};
 use crate::words::{Said, said};
-
-const MOST_FILES: usize = 200;
-
-/// Refuses one more file in a full project.
-fn check_room(project: &Project) -> Result<()> {
-    if project.files.len() >= MOST_FILES {
-        return Err(problem!("a project has at most {MOST_FILES} files: remove some that are not used"));
-    }
-    Ok(())
-}
 
 impl Studio {
     /// Where a file with this name that comes in is put, before it is [taken](Self::take_file).
     pub fn place_for_upload(&self) -> Result<PathBuf> {
-        check_room(&self.project())?;
+        self.project().check_room()?;
         let mut random = [0; 8];
         getrandom::fill(&mut random).map_err(|error| problem!("no random name: {error}"))?;
         Ok(self.folder.data(&format!("{UPLOAD}{:016x}", u64::from_le_bytes(random))))
@@ -49,19 +40,24 @@ impl Studio {
         let reading = self.project().understanding.reading.clone();
         let name = self.folder.free_name(ProjectFolder::Data, given)?;
         let content = fs::read(place).map_err(|error| cannot_read(Path::new(&name), &error))?;
+        // A picture is no file of a project: it is refused, and the page says so.
+        if let Some(kind) = other_kind(&content) {
+            return Err(Problem::in_file(&name, kind.to_string()));
+        }
         let bytes = content.len() as u64;
         let checksum = hysid_files::checksum(&content[..]).map_err(|error| problem!("{name}: {error}"))?;
         let table = Table::from_bytes(Path::new(&name), content, &reading.reading()?);
         let mut stored = None;
         let entered = self.change(|project| {
-            check_room(project)?;
+            project.check_room()?;
             let name = self.folder.free_name(ProjectFolder::Data, given)?;
             let path = self.folder.data(&name);
             fs::rename(place, &path)
                 .map_err(|error| problem!("{name}: cannot be stored: {}", hysid_files::reason(&error)))?;
             stored = Some(path);
             let id = project.next_id();
-            project.files.push(ProjectFile { id, name, bytes, checksum, usage });
+            let columns = ChosenColumns::default();
+            project.files.push(ProjectFile { id, name, bytes, checksum, usage, columns, is_example: false });
             Ok((id, project.understanding.reading == reading))
         });
         if entered.is_err() {
@@ -98,6 +94,30 @@ impl Studio {
         self.take_content(&name, &content, usage).map(drop)
     }
 
+    /// Marks files as data of the example.
+    pub fn mark_example(&self, ids: &[u64]) -> Result<()> {
+        self.change(|project| {
+            project.files.iter_mut().for_each(|file| file.is_example |= ids.contains(&file.id));
+            Ok(())
+        })
+    }
+
+    /// Removes the example, before files of the user come in its place.
+    pub fn leave_example(&self) -> Result<()> {
+        let project = self.project().clone();
+        let (example, own): (Vec<_>, Vec<_>) = project.files.iter().partition(|file| file.is_example);
+        if !own.is_empty() || self.fits.state().is_some_and(|fit| fit.is_running) {
+            return Ok(());
+        }
+        let is_of_it = |model: &&ProjectModel| {
+            model.begun.files.iter().all(|name| example.iter().any(|file| file.name == *name))
+        };
+        for model in project.models.iter().filter(is_of_it) {
+            self.remove_model(model.begun.id)?;
+        }
+        example.iter().try_for_each(|file| self.remove_file(file.id).map(drop))
+    }
+
     /// Use of the next file: the first are for training; once there is a model, a file is unseen.
     pub fn usage_of_next(&self) -> Use {
         if self.project().models.is_empty() { Use::Training } else { Use::Unseen }
@@ -105,16 +125,18 @@ impl Studio {
 
     /// Removes a file from the project. Gives its name if it stays in the folder, because it is no longer the one that came.
     pub fn remove_file(&self, id: u64) -> Result<Option<String>> {
-        let removed = self.change(|project| {
-            let removed = project.file(id)?.clone();
-            project.files.retain(|file| file.id != id);
-            Ok(removed)
+        let (removed, place) = self.change(|project| {
+            project.file(id)?;
+            let place = project.files.iter().position(|file| file.id == id).unwrap_or_default();
+            Ok((project.files.remove(place), place))
         })?;
         // A model that was made of it keeps its line.
         let path = self.folder.data(&removed.name);
-        let kept = self.folder.remove_if(&path, |file| {
+        let aside = self.folder.removed(ProjectFolder::Data, id, 0);
+        let kept = self.folder.set_aside_if(&path, &aside, |file| {
             Ok(file.metadata()?.len() == removed.bytes && hysid_files::checksum(file)? == removed.checksum)
         });
+        self.keep_removed(Removed::File(removed.clone(), place));
         self.folder.release(id);
         self.read_files();
         Ok(kept.then_some(removed.name))
@@ -168,8 +190,7 @@ impl Studio {
     /// Returns a note on a column that has a role by its name although none was chosen for it.
     pub fn choose_columns(&self, columns: Option<ChosenColumns>) -> Result<Option<String>> {
         let before = self.project().clone();
-        let first = before.files_for(Use::Training).chain(&before.files).next();
-        let note = match (&columns, first) {
+        let note = match (&columns, before.first()) {
             (Some(chosen), Some(first)) => self.check_columns(&before, first, chosen)?,
             _ => None,
         };
@@ -179,10 +200,26 @@ impl Studio {
                     "the files or their reading changed meanwhile: choose the columns again"
                 ));
             }
+            if columns.is_none() {
+                project.files.iter_mut().for_each(|file| file.columns = ChosenColumns::default());
+            }
             project.understanding.columns = columns;
             Ok(())
         })?;
         Ok(note)
+    }
+
+    /// Says which columns of a file have the roles of the first; those that are not chosen are found.
+    pub fn choose_columns_of(&self, id: u64, columns: ChosenColumns) -> Result<()> {
+        self.change_reading(|project| {
+            project.file(id)?;
+            project
+                .files
+                .iter_mut()
+                .filter(|file| file.id == id)
+                .for_each(|file| file.columns = columns.clone());
+            Ok(())
+        })
     }
 
     /// Checks columns by the first file; gives a note on one that keeps its role.

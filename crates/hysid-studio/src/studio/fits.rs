@@ -44,9 +44,14 @@ impl Studio {
             .and_then(|()| self.take_up_the_unfinished())
             .map_err(|problem| problem.within("the model of the last fit cannot be stored"))?;
         let request = request.with_values()?;
-        let (seen, _) = self.current();
+        let (seen, view) = self.current();
         let data = self.training_data()?;
         let spec = self.spec(&request, &data)?;
+        let renamed = seen
+            .files_for(Use::Training)
+            .filter(|file| view.is_renamed(file.id))
+            .map(|file| file.name.clone());
+        let renamed: Vec<String> = renamed.collect();
         // What can be refused is refused before anything is stored.
         let beforehand = Beforehand::of(&data, &spec, Face::Studio)?;
         let best = self.folder.best_so_far();
@@ -59,7 +64,8 @@ impl Studio {
             let files = project.files_for(Use::Training).map(|file| file.name.clone()).collect();
             let understanding = project.understanding.clone();
             let columns = ChosenColumns::of(&data.roles);
-            let begun = Begun { id, request, files, understanding, columns };
+            let of_files = project.columns_of_files();
+            let begun = Begun { id, request, files, understanding, columns, of_files, renamed };
             project.unfinished = Some(begun.clone());
             Ok(begun)
         })?;
@@ -113,6 +119,7 @@ impl Studio {
     /// A model that cannot be stored; the error names the place of a copy.
     pub fn end(&self) -> Result<()> {
         self.folder.end_readings();
+        self.forget_removed();
         self.fits.end();
         self.save_again().map_err(|problem| {
             let place = self.unsaved().as_ref().and_then(|found| found.rescued.clone());
@@ -172,6 +179,7 @@ impl Studio {
             made: date::now(),
             seconds: found.identified.seconds.unwrap_or_default(),
             was_interrupted: false,
+            name: None,
         })
     }
 
@@ -252,6 +260,7 @@ impl Studio {
             made: date::now(),
             seconds: 0.0,
             was_interrupted,
+            name: None,
         })
     }
 

@@ -9,16 +9,22 @@ use std::time::SystemTime;
 
 use hysid::model::Model;
 use hysid_app::diagnosis::DiagnosedModel;
+use hysid_document::visible::is_hidden;
 use hysid_document::{Page, Problem, html};
 use hysid_document::{Result, problem};
-use hysid_records::{ColumnChoice, Data};
+use hysid_records::Data;
 use serde_json::Value;
 
 use super::Studio;
+use super::removal::Removed;
+use crate::folder::ProjectFolder;
 use crate::judgement::Run;
 use crate::project::ProjectModel;
 use crate::take_away;
 use crate::view::read;
+
+/// Longest name of a model.
+const LONGEST_NAME: usize = 80;
 
 /// Models that are kept in memory.
 const MOST_MODELS: usize = 200;
@@ -103,29 +109,46 @@ impl Studio {
     /// Removes a model from the project. Gives the names of its files that stay in the folder, because Hysid did not write
     /// them or somebody changed them.
     pub fn remove_model(&self, id: u64) -> Result<Vec<String>> {
-        let removed = self.change(|project| {
-            let removed = project.model(id)?.clone();
-            project.models.retain(|model| model.begun.id != id);
-            Ok(removed)
+        let (removed, place) = self.change(|project| {
+            project.model(id)?;
+            let place = project.models.iter().position(|model| model.begun.id == id).unwrap_or_default();
+            Ok((project.models.remove(place), place))
         })?;
+        self.keep_removed(Removed::Model(Box::new(removed.clone()), place));
+        let aside = |part| self.folder.removed(ProjectFolder::Models, id, part);
         let text = |file| hysid_files::read_from("", file).map_err(io::Error::other);
         let is_model = |file| {
             let text = String::from_utf8(text(file)?);
             Ok(text.is_ok_and(|text| Model::from_json(&text).is_ok()))
         };
         let mut kept = Vec::new();
-        if self.folder.remove_if(&self.folder.models(&removed.file), is_model) {
+        if self.folder.set_aside_if(&self.folder.models(&removed.file), &aside(0), is_model) {
             kept.push(removed.file);
         }
         if let Some(report) = removed.report {
             let is_page = |file| Ok(hysid_files::is_page_as_written(&text(file)?));
-            if self.folder.remove_if(&self.folder.models(&report), is_page) {
+            if self.folder.set_aside_if(&self.folder.models(&report), &aside(1), is_page) {
                 kept.push(report);
             }
         }
         self.models.kept().remove(&id);
         self.runs.clear();
         Ok(kept)
+    }
+
+    /// Gives a model a name; without one, its name says what it is.
+    pub fn rename_model(&self, id: u64, name: &str) -> Result<()> {
+        let name: String = name.chars().filter(|letter| !is_hidden(*letter)).take(LONGEST_NAME).collect();
+        let name = Some(name.trim().to_string()).filter(|name| !name.is_empty());
+        self.change(|project| {
+            project.model(id)?;
+            project
+                .models
+                .iter_mut()
+                .filter(|model| model.begun.id == id)
+                .for_each(|model| model.name.clone_from(&name));
+            Ok(())
+        })
     }
 
     /// The free run of a model over a file.
@@ -138,9 +161,7 @@ impl Studio {
                 (project.model(model)?.clone(), file, project.understanding.reading.clone())
             };
             let table = read(&file, &self.folder, &reading.reading()?)?;
-            // The model knows the names of its columns, whatever is chosen now.
-            let record = stored.begun.columns.record.filter(|name| table.column(name).is_some());
-            let columns = ColumnChoice { record, ..ColumnChoice::default() };
+            let columns = stored.columns_in(&fitted, &table, &file);
             let data = Data::of_model(vec![table], &fitted, &columns, reading.zero)?;
             Run::of(&fitted, data.set)
         })

@@ -248,6 +248,14 @@ fn what_somebody_changed_or_others_wrote_stays_when_it_is_removed_from_the_proje
     assert_eq!(studio.remove_file(1).unwrap(), Some("ferromagnet-train.csv".into()));
     assert_eq!(studio.remove_file(2).unwrap(), None);
     assert!(data.exists() && !studio.folder.data("ferromagnet-test.csv").exists());
+    // Both come back: the one that stayed, and the one that was put aside, under a free name if its own is taken.
+    fs::write(studio.folder.data("ferromagnet-test.csv"), "mine").unwrap();
+    for (id, name) in [(1, "ferromagnet-train.csv"), (2, "ferromagnet-test (2).csv")] {
+        studio.undo_removal(id).unwrap();
+        assert!(studio.project().file(id).unwrap().name == name && studio.data_of(id).is_ok());
+    }
+    assert!(studio.undo_removal(1).is_err() && studio.undo_removal(second).is_ok());
+    assert!(ours.iter().all(|file| file.exists()) && studio.model(second).is_ok());
 }
 
 #[cfg(unix)]
@@ -272,6 +280,7 @@ fn temporary_files_of_killed_studios_go_at_the_next_start() {
         ".project.json.AbCdEf12.hysid-partial",
         "models/.1-pnn.json.AbCdEf12.hysid-partial",
         "data/.upload-0123456789abcdef",
+        "data/.removed-7-0",
     ];
     left.iter().for_each(|name| fs::write(path.join(name), "half").unwrap());
     fs::write(path.join("models/.mine.hysid-partial"), "mine").unwrap();
