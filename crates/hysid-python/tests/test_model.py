@@ -403,6 +403,20 @@ def test_a_model_is_diagnosed(spring_and_slider):
     assert diagnosis.verdict("masing") == "yes"
     assert diagnosis.content["model"] == "prandtl-ishlinskii"
     assert "<table>" in diagnosis._repr_html_() and "masing" in str(diagnosis)
+    assert "verdicts from equations" in str(diagnosis) and "width of the loop over the whole range" in str(diagnosis)
+
+
+def test_a_diagnosis_of_data_is_printed_as_the_program_prints_it(program, spring_and_slider, tmp_path):
+    x, y = spring_and_slider
+    pandas.DataFrame({"u_mm": x, "f_kN": y}).to_csv(tmp_path / "data.csv", index=False)
+    found = hysid.diagnose({"u_mm": x}, {"f_kN": y})
+    done = program("diagnose", "data.csv", "--no-report", folder=tmp_path)
+    tables, _, _ = done.stdout.partition("\nnext:\n")
+    assert str(found) == f"{tables}\nnext:\n  model = hysid.fit(x, y)"
+    assert "advice\n    The simplest model" in tables
+    (tmp_path / "model.json").write_text(hysid.fit({"u_mm": x}, {"f_kN": y}, model="masing").to_json())
+    done = program("diagnose", "model.json", "--no-report", folder=tmp_path)
+    assert done.stdout == str(hysid.Model.load(tmp_path / "model.json").diagnose()) + "\n"
 
 
 def test_a_model_is_invertible_or_not(spring_and_slider):

@@ -34,6 +34,7 @@ fn all_parts() -> Vec<Part> {
         Part::chart(chart.clone()),
         Part::chart(chart.clone().sized(560.0, 400.0)),
         Part::Charts(vec![chart.clone(), chart]),
+        Part::Columns(vec![vec![Part::paragraph(text())], vec![Part::note(text())]]),
     ];
     let card = Card { anchor: HOSTILE.into(), heading: text(), parts: content.clone() };
     vec![

@@ -12,6 +12,7 @@ import numpy as np
 from hysid import _hysid
 from hysid._arguments import real, whole
 from hysid._data import columns
+from hysid._model_set import fitted_set
 from hysid._progress import Listener, of_native
 from hysid._progress_line import told
 from hysid._warning import warn
@@ -105,8 +106,15 @@ def fit(
     records : array of shape (n,), name of a column, or list of names, optional
         A label for each row; where the label changes, a new record starts in the initial state. Of a list of records, a
         name for each, by default ``"1"``, ``"2"`` and so on.
+
+    Model
+    -----
     model : str, optional
-        Model to fit. `auto` cross-validates networks and classical models and combines the best. Default: auto.
+        Model to fit. `auto` cross-validates networks and classical models and combines the best. One of "auto", "pnn",
+        "gpnn", "preisach-nn", "xpnn", "xpnn+", "masing", "prandtl-ishlinskii", "modified-prandtl-ishlinskii",
+        "generalized-prandtl-ishlinskii", "rate-dependent-prandtl-ishlinskii", "dynamic-prandtl-ishlinskii", "preisach",
+        "neuro-madelung", "bouc-wen", "peak-oriented", "menegotto-pinto", "ramberg-osgood", "jiles-atherton", "lugre",
+        "duhem-nn", "hysteretic-oscillator", "hysteretic-state-space", "random-stops". Default: auto.
     members : int, optional
         Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts that are
         combined. Default: 6 for auto; otherwise 1.
@@ -133,6 +141,9 @@ def fit(
     rate_companding : float, optional
         Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all rows stay
         below; 0 for off. Default: off.
+
+    Training
+    --------
     warm_up : int, optional
         Rows at the beginning of each record that drive the memory and are not trained on, for records that do not begin
         in the virgin state. Default: chosen by cross-validation for auto; otherwise 0.
@@ -141,8 +152,9 @@ def fit(
         end of the input range, demagnetised, periodic (each record is a period of a steady state), unknown (one of 11
         pasts, found for each record before the fit), or free (found for each record during the fit, for records that
         are cut out of a longer past). With free, duhem-nn finds its internal states, models with inertia find
-        displacements and velocities, and other models find up to three turning points before the first row. Default:
-        chosen by cross-validation for auto; otherwise virgin.
+        displacements and velocities, and other models find up to three turning points before the first row. One of
+        "virgin", "saturated-up", "saturated-down", "demagnetised", "periodic", "unknown", "free". Default: chosen by
+        cross-validation for auto; otherwise virgin.
     known : int | str, optional
         Measured beginning of the records on which the model will be used, as in `hysid evaluate --known`. Errors are
         then those after this beginning of each record, and `auto` also tries initial_state free. Default with free: the
@@ -180,6 +192,9 @@ def fit(
     decay : float, optional
         Penalty on the squared weights of stops and tanh neurons. Default: 1e-7 (nearly 0 where that lowers the
         cross-validation error) for networks; chosen by cross-validation for auto.
+
+    Classical models
+    ----------------
     operators : int, optional
         Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of duhem-nn
         (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none). Default: set by each
@@ -229,6 +244,9 @@ def fit(
         Error that the fit of duhem-nn minimises: `row`, the mean square error of all rows; `record`, the mean over the
         records of the error relative to the record's root mean square output. Default: record with free initial states,
         or if the root mean squares of the records differ by more than 5 times; otherwise row.
+
+    Run
+    ---
     time_limit : float, optional
         Time in seconds after which to stop and keep the best model so far.
     threads : int, optional
@@ -259,6 +277,9 @@ def fit(
     True
     """
     keywords = locals()
+    models = fitted_set(x, y, lambda x, y: fit(**{**keywords, "x": x, "y": y}))
+    if models is not None:
+        return models  # type: ignore[return-value]  # The type of `y` does not tell how many columns it has.
     given = {name: keywords[name] for name in _hysid.option_names()}
     named = isinstance(rate, str)
     arranged = columns(x, y, time, None if named else rate, records)

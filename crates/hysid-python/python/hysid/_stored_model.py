@@ -53,6 +53,8 @@ class StoredModel:
             except UnicodeDecodeError:
                 text = "?"
         try:
+            if text.startswith("PK"):
+                raise ValueError("an archive of several models is read by hysid.ModelSet.load")
             return cls.from_json(text)
         except ValueError as error:
             raise ValueError(f"{os.fspath(path)}: {error}") from None

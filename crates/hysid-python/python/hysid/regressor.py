@@ -15,6 +15,7 @@ from hysid._columns import Column, place_of, without_mask
 from hysid._data import Columns, check_indexes, continued, runs, warn_of_order
 from hysid._fitting import identified
 from hysid._tables import is_frame, with_column
+from hysid._warning import training_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -207,7 +208,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         output = Column(np.ascontiguousarray(measured), None if output_name is None else str(output_name))
         options = {name: getattr(self, name) for name in _hysid.option_names() if name != "seed"}
         columns = self._columns(X, values)
-        warn_of_order(X, [rows for _, rows in columns.records])
+        time = None if columns.time is None else columns.time.values
+        warn_of_order(X, [rows for _, rows in columns.records], time, training_rows(len(values)))
         self._trained = columns if self.continue_records else None
         self.model_ = identified(
             columns._replace(output=output),
