@@ -129,6 +129,10 @@ impl Identified {
 
 /// Quantities and model: `Force over displacement: bouc-wen`.
 fn title_of(model: &Model) -> String {
+    let name = match model.ensemble() {
+        Some(ensemble) => format!("ensemble of {} models", ensemble.members().len()),
+        None => model.name().name().into(),
+    };
     let [x, y] = [&model.names().inputs[0], &model.names().output].map(|name| unit::split(name).0);
-    capitalised(&format!("{y} over {x}: {}", model.name().name()))
+    capitalised(&format!("{y} over {x}: {name}"))
 }

@@ -99,7 +99,11 @@ pub fn section(report: &Report) -> Option<Part> {
             None => of_law,
             Some(weight) => {
                 let heading = format!("{}, weight {} %", law.name().name(), number(100.0 * weight, 3));
-                vec![Part::Folded(heading, of_law)]
+                // Without intervals, parameters are many, or weights without a physical meaning.
+                match intervals(place) {
+                    Some(_) => [vec![Part::heading(heading)], of_law].concat(),
+                    None => vec![Part::Folded(heading, of_law)],
+                }
             }
         });
     }

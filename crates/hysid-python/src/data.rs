@@ -35,9 +35,20 @@ pub struct Dataset {
 #[pymethods]
 impl Dataset {
     #[new]
-    fn new(names: Names, records: Vec<Parts<Column<'_>>>) -> PyResult<Self> {
+    #[pyo3(signature = (names, records, weights=None))]
+    fn new(
+        names: Names,
+        records: Vec<Parts<Column<'_>>>,
+        weights: Option<Vec<Column<'_>>>,
+    ) -> PyResult<Self> {
         let (time, inputs, rate, output) = names;
-        let records = records.into_iter().map(record).collect::<PyResult<_>>()?;
+        let mut records: Vec<Record> = records.into_iter().map(record).collect::<PyResult<_>>()?;
+        if let Some(weights) = weights {
+            let weighted = |(record, weights): (Record, &Column<'_>)| {
+                record.with_weights(values(weights)?).map_err(refused)
+            };
+            records = records.into_iter().zip(&weights).map(weighted).collect::<PyResult<_>>()?;
+        }
         let names = ColumnNames { time, inputs, rate, output };
         let set = record::Dataset::new(names, records).map_err(refused)?;
         Ok(Self { set: Arc::new(set) })

@@ -56,6 +56,19 @@ fn whatever_a_part_says_is_text() {
     assert_eq!(page.matches("<svg class=\"plot\"").count(), 12);
 }
 
+/// A short table stays on one printed page, a long one is split between rows.
+#[test]
+fn a_table_that_fits_a_page_is_not_split() {
+    let table = |rows: usize| {
+        let rows = (0..rows).map(|row| vec![Cell::from(row)]);
+        parts(&[Part::Table(Table::new(["row"]).with_rows(rows))])
+    };
+    assert!(table(ROWS_OF_A_PAGE).contains("class=\"scroll whole\""));
+    assert!(table(ROWS_OF_A_PAGE + 1).contains("class=\"scroll\""));
+    let print = STYLE.split("@media print").nth(1).unwrap();
+    assert!(print.contains(".whole { break-inside: avoid; }"), "{print}");
+}
+
 #[test]
 fn a_section_without_content_is_not_shown() {
     assert_eq!(parts(&[Part::section("Empty", [])]), "");

@@ -29,6 +29,8 @@ class Columns(NamedTuple):
     rate: Column | None
     output: Column | None
     records: list[tuple[str, slice]]
+    weights: np.ndarray | None = None
+    """Of each row in the sum of squares that a fit minimises."""
 
     @property
     def rows(self) -> int:
@@ -55,6 +57,7 @@ class Columns(NamedTuple):
                 )
                 for name, rows in self.records
             ],
+            None if self.weights is None else [self.weights[rows] for _, rows in self.records],
         )
 
     def names(self) -> list[str | None]:
@@ -66,6 +69,33 @@ class Columns(NamedTuple):
         if len(self.inputs) == 1:
             return [self.inputs[0].name or "x"]
         return [column.name or f"x{place + 1}" for place, column in enumerate(self.inputs)]
+
+
+def weighted(arranged: Columns, weights: Any) -> Columns:
+    """The columns with a weight of each row; a row with the weight 0 loses its output.
+
+    Weights that are all alike change nothing, so that every model takes them.
+    """
+    if weights is None or arranged.output is None:
+        return arranged
+    parts = weights if is_record_list(weights) else [weights]
+    try:
+        found = np.concatenate([np.asarray(part, dtype=np.float64) for part in parts])
+    except (TypeError, ValueError):
+        raise ValueError("sample_weight: a number for each row is needed") from None
+    if found.shape != (arranged.rows,):
+        raise ValueError(f"sample_weight: one weight for each of the {arranged.rows} rows is needed, not {found.shape}")
+    if not np.isfinite(found).all() or (found < 0).any():
+        row = int(np.flatnonzero(~np.isfinite(found) | (found < 0))[0])
+        raise ValueError(f"sample_weight: row {row + 1} has {found[row]}: a finite number, 0 or above, is needed")
+    counted = found > 0
+    output = arranged.output._replace(values=np.where(counted, arranged.output.values, np.nan))
+    used = found[counted & ~np.isnan(arranged.output.values)]
+    if len(used) == 0:
+        raise ValueError("sample_weight: the weights of all rows with an output are zero")
+    if used.min() == used.max():
+        return arranged._replace(output=output)
+    return arranged._replace(output=output, weights=np.where(counted, found, 1.0))
 
 
 def in_units_of(arranged: Columns, trained: Mapping[str, Any]) -> Columns:

@@ -11,7 +11,7 @@ import numpy as np
 
 from hysid import _hysid
 from hysid._arguments import real, whole
-from hysid._data import columns
+from hysid._data import columns, weighted
 from hysid._model_set import fitted_set
 from hysid._progress import Listener, of_native
 from hysid._progress_line import told
@@ -77,6 +77,7 @@ def fit(
     time_limit: float | None = None,
     threads: int | None = None,
     progress: Listener = True,
+    sample_weight: ArrayLike | None = None,
 ) -> Model:
     """Identify a model from measured data.
 
@@ -95,11 +96,13 @@ def fit(
         the unit from the attribute ``units``) and from a dict. A list has an array, table or dict of each record; then `y`,
         `time` and `rate` are lists too.
     y : array of shape (n,), name of a column, or list of arrays
-        The measured output in the user's unit. NaN or a mask means no measurement: such a row drives the memory, but
+        The measured output in the user's unit. Several outputs are an array of shape (n, outputs), a table, or a list of
+        names of columns: each is fitted by itself, and the result is a `ModelSet`. NaN or a mask means no measurement: such a row drives the memory, but
         is neither trained on nor scored. Rows are taken by position: pandas objects must have the same index. A name is
         that of a column of the table `x`; the columns that are not named are the inputs.
     time : array of shape (n,), name of a column, or list of arrays, optional
-        Time stamps, increasing within each record; dates and times become seconds since the first.
+        Time stamps, increasing within each record; dates and times, also as text of ISO 8601 such as
+        ``"2024-05-31T12:00:00.25"``, become seconds since the first.
     rate : str or array of shape (n,), default "auto"
         Method for the rate of the first input: ``"auto"``, ``"none"``, ``"central"``, ``"backward"``,
         ``"savitzky-golay"``, or the measured rate itself.
@@ -255,11 +258,15 @@ def fit(
         True shows one line with the share done and the remaining time while the fit runs, if stderr is a terminal or in a
         notebook; False shows nothing. A callable is called with a `Progress` up to twenty times a second. If it returns
         true, the fit ends with the best model so far. `hysid.tqdm_progress` shows a progress bar of tqdm.
+    sample_weight : array of shape (n,), or list of arrays, optional
+        Weight of each row in the sum of squares that the fit minimises: a weight of 2 counts as the row twice, and a row
+        with 0 only drives the memory. Every model takes weights that are 0 or all alike; others are for classical models
+        fitted by least squares, and an error names them. The errors in `Model.train` count all rows alike.
 
     Returns
     -------
     Model
-        The fitted model.
+        The fitted model; of several outputs a `ModelSet`.
 
     Raises
     ------
@@ -275,6 +282,22 @@ def fit(
     >>> model = hysid.fit(x, y, model="prandtl-ishlinskii", operators=8)
     >>> model.evaluate(x, y).nrmse_std_percent < 5
     True
+
+    A table with time stamps and a unit in each name, and the records in one of its columns:
+
+    >>> frame = hysid.specimen("piezo-actuator").data()[0].frame()
+    >>> list(frame)
+    ['record', 't_s', 'voltage_V', 'displacement_um']
+    >>> stage = hysid.fit(frame, "displacement_um", "t_s", records="record", model="masing")
+    >>> stage.inputs, stage.output
+    (['voltage_V'], 'displacement_um')
+
+    Several outputs, and rows that count more than others:
+
+    >>> models = hysid.fit(x, {"force": y, "slip": x - y}, model="masing")
+    >>> list(models)
+    ['force', 'slip']
+    >>> weighted = hysid.fit(x, y, model="masing", sample_weight=np.where(abs(x) > 3, 4.0, 1.0))
     """
     keywords = locals()
     models = fitted_set(x, y, lambda x, y: fit(**{**keywords, "x": x, "y": y}))
@@ -282,7 +305,7 @@ def fit(
         return models  # type: ignore[return-value]  # The type of `y` does not tell how many columns it has.
     given = {name: keywords[name] for name in _hysid.option_names()}
     named = isinstance(rate, str)
-    arranged = columns(x, y, time, None if named else rate, records)
+    arranged = weighted(columns(x, y, time, None if named else rate, records), sample_weight)
     return identified(
         arranged,
         str(rate) if named else "given",

@@ -60,7 +60,7 @@ def seconds(values: Any) -> np.ndarray:
 def _of_text(stamps: Sequence[Any]) -> np.ndarray:
     """Whole seconds and decimals apart, so that no digit is lost."""
     whole, decimals, zoned = [], [], []
-    for row, stamp in enumerate(stamps, 1):
+    for row, stamp in enumerate(map(_plain, stamps), 1):
         found = ISO.fullmatch(stamp.strip()) if isinstance(stamp, str) else None
         if found is None:
             raise ValueError(f"row {row}: {stamp!r} is no time of ISO 8601, such as 2024-05-31T12:00:00.25")
@@ -79,6 +79,11 @@ def _of_text(stamps: Sequence[Any]) -> np.ndarray:
         raise ValueError(f"row {zoned.index(not zoned[0]) + 1}: some times have a time zone and others have none")
     since = (np.array(whole) - whole[0]) / SECOND
     return np.ascontiguousarray(since + (np.array(decimals) - decimals[0]), dtype=np.float64)
+
+
+def _plain(stamp: Any) -> Any:
+    """Text of NumPy as that of Python."""
+    return str(stamp) if isinstance(stamp, str) else stamp
 
 
 def _of_objects(stamps: Sequence[Any]) -> np.ndarray:

@@ -12,7 +12,7 @@ from sklearn.utils.validation import check_is_fitted, column_or_1d, validate_dat
 
 from hysid import _hysid
 from hysid._columns import Column, place_of, without_mask
-from hysid._data import Columns, check_indexes, continued, runs, warn_of_order
+from hysid._data import Columns, check_indexes, continued, runs, warn_of_order, weighted
 from hysid._fitting import identified
 from hysid._tables import is_frame, with_column
 from hysid._warning import training_rows
@@ -175,7 +175,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.threads = threads
         self.random_state = random_state
 
-    def fit(self, X: Any, y: Any) -> HysteresisRegressor:  # noqa: N803 - scikit-learn's name
+    def fit(self, X: Any, y: Any, sample_weight: Any = None) -> HysteresisRegressor:  # noqa: N803 - scikit-learn's name
         """Identify a model.
 
         Parameters
@@ -185,6 +185,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         y : array of shape (n,)
             The measured output. NaN means no measurement: such a row drives the memory, but is neither trained on
             nor scored.
+        sample_weight : array of shape (n,), optional
+            As of `hysid.fit`.
 
         Returns
         -------
@@ -212,7 +214,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         warn_of_order(X, [rows for _, rows in columns.records], time, training_rows(len(values)))
         self._trained = columns if self.continue_records else None
         self.model_ = identified(
-            columns._replace(output=output),
+            weighted(columns._replace(output=output), sample_weight),
             self.rate,
             {**options, "seed": self._seed()},
             time_limit=self.time_limit,
