@@ -27,7 +27,8 @@ pub fn of_records(set: &ReportSet) -> Vec<Vec<Part>> {
 /// Which records are drawn, if not all are.
 pub fn left_out(set: &ReportSet) -> Option<Part> {
     let all = set.data.records().len();
-    let words = format!("Histories are those of the {MOST_RECORDS} of {all} records with the largest errors.");
+    let words =
+        format!("Histories are those of the {MOST_RECORDS} of {all} records with the largest errors.");
     (all > MOST_RECORDS).then(|| Part::note(words))
 }
 

@@ -83,12 +83,7 @@ impl Identified {
     ///
     /// # Errors
     /// Data that the model cannot be run on, or without a measured output.
-    pub fn page(
-        &self,
-        title: Option<&str>,
-        file: Option<&Path>,
-        sets: &[(&str, &Dataset)],
-    ) -> Result<Page> {
+    pub fn page(&self, title: Option<&str>, file: Option<&Path>, sets: &[(&str, &Dataset)]) -> Result<Page> {
         let mut residuals = Vec::new();
         let mut intervals = Vec::new();
         for &(name, data) in sets {

@@ -107,7 +107,8 @@ pub fn section(report: &Report) -> Option<Part> {
             }
         });
     }
-    let chosen = report.model.provenance().selection.is_some() && report.intervals.iter().any(Option::is_some);
+    let chosen =
+        report.model.provenance().selection.is_some() && report.intervals.iter().any(Option::is_some);
     parts.extend(chosen.then(|| {
         Part::note("The laws were chosen on the same data. The intervals do not allow for this choice.")
     }));

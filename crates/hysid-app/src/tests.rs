@@ -124,13 +124,19 @@ fn the_headline_is_the_error_on_new_data_with_its_doubt() {
     };
     let in_unit = |errors: &Errors| {
         let percent = hysid_document::number(errors.nrmse_std_percent.unwrap(), 3);
-        format!("force is {} kN off (root mean square error), {percent} %", hysid_document::number(errors.rmse, 3))
+        format!(
+            "force is {} kN off (root mean square error), {percent} %",
+            hysid_document::number(errors.rmse, 3)
+        )
     };
     let training = || vec![set("training", &fitted, &data)];
     let provenance = fitted.provenance();
     let held_out = provenance.validation.clone().unwrap();
     let (lead, _) = headline(&fitted, training());
-    assert!(lead.starts_with("On held-out data, the simulated ") && lead.contains(&in_unit(&held_out)), "{lead}");
+    assert!(
+        lead.starts_with("On held-out data, the simulated ") && lead.contains(&in_unit(&held_out)),
+        "{lead}"
+    );
     // Data that the model never saw come first.
     let (lead, _) = headline(&fitted, vec![set("training", &fitted, &data), set("unseen", &fitted, &data)]);
     assert!(lead.starts_with("On the unseen data, "), "{lead}");
@@ -138,10 +144,20 @@ fn the_headline_is_the_error_on_new_data_with_its_doubt() {
         fitted.clone().with_provenance(Provenance { validation, ..provenance.clone() })
     };
     let (lead, doubts) = headline(&with(None), training());
-    assert!(lead.starts_with("On the training data, ") && lead.contains(&in_unit(&provenance.train)), "{lead}");
-    assert_eq!(doubts, ["The error on new data was not measured, because there were too few to hold any out."]);
-    let (_, doubts) = headline(&with(Some(Errors { rmse: 3.0 * provenance.train.rmse, ..held_out })), training());
-    assert!(doubts[0].starts_with("The error on held-out data is 3 times that on the training data"), "{doubts:?}");
+    assert!(
+        lead.starts_with("On the training data, ") && lead.contains(&in_unit(&provenance.train)),
+        "{lead}"
+    );
+    assert_eq!(
+        doubts,
+        ["The error on new data was not measured, because there were too few to hold any out."]
+    );
+    let (_, doubts) =
+        headline(&with(Some(Errors { rmse: 3.0 * provenance.train.rmse, ..held_out })), training());
+    assert!(
+        doubts[0].starts_with("The error on held-out data is 3 times that on the training data"),
+        "{doubts:?}"
+    );
 }
 
 /// Each law among the members has its parameters and intervals, as the law alone has them.
@@ -157,8 +173,7 @@ fn an_ensemble_shows_the_parameters_of_its_laws() {
         hysid::fit::identify(&data, &spec, &mut |_| ControlFlow::Continue(())).unwrap().model
     };
     let laws = [law(&[0.4]), law(&[0.2, 0.6])];
-    let alone: Vec<_> =
-        laws.iter().map(|law| ParameterIntervals::of(law, &data).unwrap().unwrap()).collect();
+    let alone: Vec<_> = laws.iter().map(|law| ParameterIntervals::of(law, &data).unwrap().unwrap()).collect();
     let node = |(member, inside): (usize, f64)| Node {
         weights: Weights { inside, outside: 0.5 },
         kind: NodeKind::Member(member),
@@ -223,7 +238,12 @@ fn many_short_records_have_tables_of_cycles_without_gaps() {
         assert!(!table.rows.iter().flatten().any(is_missing), "{:?}", table.columns);
     }
     // Each level has one cycle: a table of levels would be the table of cycles again.
-    assert!(!page.parts.iter().any(|part| matches!(part, Part::Section(heading, _) if heading.starts_with("Levels"))));
+    assert!(
+        !page
+            .parts
+            .iter()
+            .any(|part| matches!(part, Part::Section(heading, _) if heading.starts_with("Levels")))
+    );
 }
 
 /// A long record, a single row, a constant output: nothing panics, nothing grows without bound.

@@ -1,6 +1,6 @@
 //! The page: pictures, the whole table, first-order reversal curves, and how the data were read.
 
-use hysid::diagnosis::cycles::{CycleRow, LEVEL_FIGURES, RecordFigure};
+use hysid::diagnosis::cycles::{CycleRow, Figure, LEVEL_FIGURES, RecordFigure};
 use hysid_document::{Colour, Page, Part, Text, number, unit};
 
 use super::table::{has_backbone, levels, losses, notes, present, record_figures, shown};
@@ -9,6 +9,9 @@ use super::{Cycles, curves, over_amplitude, pictures};
 
 /// Rows of a long table at each end.
 const AT_EACH_END: usize = 100;
+
+/// Share of the incomplete cycles that have a figure which is shown.
+const MOST_PARTS: f64 = 0.9;
 
 /// Figures that the page leaves to the file: when and where a cycle is, and the deviation of its energy.
 const PLACES: [&str; 5] = ["start_time", "input_min", "input_max", "energy_deviation", "width_deviation"];
@@ -44,18 +47,27 @@ fn table_section(cycles: &Cycles) -> Part {
     let names: Vec<&str> =
         cycles.figures().map(|figure| figure.name).filter(|name| !PLACES.contains(name)).collect();
     // Parts of cycles have other figures than whole ones: together, half of the cells would be empty.
-    let table = |is_shown: fn(&CycleRow) -> bool| {
-        let rows: Vec<&CycleRow> = cycles.table.cycles.iter().filter(|row| is_shown(row)).collect();
-        let table = shown(cycles, &rows, &present(&rows, &names), AT_EACH_END, unit::label);
+    let table = |is_complete: bool| {
+        let is_it = |row: &&CycleRow| row.complete == is_complete;
+        let rows: Vec<&CycleRow> = cycles.table.cycles.iter().filter(is_it).collect();
+        let mut figures = present(&rows, &names);
+        if !is_complete {
+            let known = |figure: &Figure| rows.iter().filter(|row| (figure.of)(row).is_some()).count();
+            figures.retain(|figure| known(figure) as f64 >= MOST_PARTS * rows.len() as f64);
+        }
+        let table = shown(cycles, &rows, &figures, AT_EACH_END, unit::label);
         (!table.rows.is_empty()).then_some(Part::Table(table))
     };
-    let whole = table(|row| row.complete);
+    let whole = table(true);
     let mut parts: Vec<Part> = Vec::new();
     // Reversal curves alone are no cycles, and have a section of their own.
     if (cycles.curves.is_none() || whole.is_some())
-        && let Some(incomplete) = table(|row| !row.complete)
+        && let Some(incomplete) = table(false)
     {
-        let words = Part::note("The record begins or ends within the cycle: what needs a whole cycle is not given.");
+        let words = Part::note(
+            "The record begins or ends within the cycle: what needs a whole cycle, or a peak or valley that few of them \
+             have, is left out.",
+        );
         let parts_of_cycles = vec![words, incomplete];
         parts.extend(match whole.is_some() {
             true => vec![Part::Folded("Incomplete parts".into(), parts_of_cycles)],

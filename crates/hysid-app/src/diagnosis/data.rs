@@ -66,7 +66,8 @@ impl<'a> DataDiagnosis<'a> {
             Part::section("Property by property", [Part::Cards(cards), Part::note(EXPLANATION)]),
         ]);
         parts.extend(loops::cycles_section(&diagnosis.cycles, quantities, several));
-        let understood = [Part::Definitions(understood.to_vec()), Part::paragraph(noise(&data.set, diagnosis))];
+        let understood =
+            [Part::Definitions(understood.to_vec()), Part::paragraph(noise(&data.set, diagnosis))];
         parts.push(Part::section("How the data were read", understood));
         Page { title: format!("Diagnosis: {}", data.source.tables[0].file), parts }
     }
