@@ -677,6 +677,10 @@ def test_an_inverse_of_a_record_refuses_what_is_invalid(actuator, quick_model):
     assert quick_model.invert([]).input.shape == (0,)
 
 
+def _hysid_number(value):
+    return f"{value:.3g}"
+
+
 def test_a_report_is_a_page_of_the_model_on_these_data(quick_model, spring_and_slider, tmp_path):
     x, y = spring_and_slider
     page = tmp_path / "page.html"
@@ -688,6 +692,12 @@ def test_a_report_is_a_page_of_the_model_on_these_data(quick_model, spring_and_s
     error = quick_model.evaluate(x, y).nrmse_std_percent
     assert f"{error:.3g}" in text
     quick_model.report(page, x, y, name="training")
+    text = page.read_text(encoding="utf-8")
+    # Without a title, the quantities and the model.
+    assert "<h1>Y over x: xpnn+</h1>" in text
+    rmse = f"the simulated y is {_hysid_number(quick_model.train.rmse)} off (root mean square error)"
+    assert rmse in text and "The error on new data was not measured, because none were held out." in text
+    assert '<div class="columns">' in text and "Loops and histories: training data" in text
     assert "training" in page.read_text(encoding="utf-8")
     other = tmp_path / "other.html"
     other.write_text("mine", encoding="utf-8")

@@ -23,13 +23,14 @@ if TYPE_CHECKING:
 
     from hysid import _options
     from hysid._data import Columns, Values
+    from hysid._types import RateName
 
 
 def fit(
     x: Values,
     y: Values | str,
     time: ArrayLike | str | None = None,
-    rate: str | ArrayLike = "auto",
+    rate: RateName | ArrayLike = "auto",
     records: ArrayLike | str | None = None,
     *,
     # Model

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from hysid._data import Values
     from hysid._options import Options
+    from hysid._types import RateName
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ def validate(
     x: Values,
     y: Values | str,
     time: ArrayLike | str | None = None,
-    rate: str | ArrayLike = "auto",
+    rate: RateName | ArrayLike = "auto",
     records: ArrayLike | str | None = None,
     *,
     folds: int = 5,
