@@ -9,7 +9,7 @@ use hysid_document::chart::Track;
 use hysid_document::chart::thin::thin_path;
 use hysid_document::{Chart, Colour, Curve, Part, convergence, count, unit};
 
-use crate::{ReportSet, histories};
+use crate::ReportSet;
 
 /// Points of all curves of a colour together in a chart of loops.
 const LOOP_POINTS: usize = 6000;
@@ -26,13 +26,13 @@ const MOST_RECORDS: usize = 200;
 /// Most small charts, one a record.
 const MOST_MULTIPLES: usize = 12;
 
-/// Loops of a set beside the histories of its records.
-pub fn section(set: &ReportSet) -> Part {
+/// Loops of a set beside the histories of its records, which have this note.
+pub fn section(set: &ReportSet, histories: Vec<Vec<Part>>, note: Option<Part>) -> Part {
     let records = set.data.records();
     let mut columns = vec![vec![Part::chart(loops(set))]];
-    columns.extend(histories::of_records(set));
+    columns.extend(histories);
     let mut parts = vec![Part::Columns(columns)];
-    parts.extend(histories::left_out(set));
+    parts.extend(note);
     if (2..=MOST_MULTIPLES).contains(&records.len()) {
         let charts = (0..records.len()).map(|index| record_loops(set, index)).collect();
         parts.extend([Part::heading("Record by record"), Part::Charts(charts)]);

@@ -140,7 +140,8 @@ pub fn page_text(page: &Page) -> String {
 
 pub fn page(report: &Report) -> Page {
     let mut parts = errors::verdict(report);
-    parts.extend(report.sets.iter().map(figures::section));
+    let figures = |set| figures::section(set, histories::of_records(set), histories::left_out(set));
+    parts.extend(report.sets.iter().map(figures));
     parts.push(errors::section(report));
     parts.extend(provenance::notes(report));
     parts.push(provenance::warnings(report));

@@ -217,7 +217,7 @@ fn an_ensemble_shows_the_parameters_of_its_laws() {
 fn many_short_records_have_tables_of_cycles_without_gaps() {
     let record = |k: usize| {
         let size = 1.0 + 0.1 * k as f64;
-        let rows = if k % 3 == 0 { 60 } else { 150 };
+        let rows = if k.is_multiple_of(3) { 60 } else { 150 };
         let x: Vec<f64> = (0..rows).map(|row| size * sin(0.0785 * row as f64)).collect();
         let y = Stop::new(0.5).unwrap().run(&x);
         Record::new(format!("r{k}"), vec![x], y).unwrap()
