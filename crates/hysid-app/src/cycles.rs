@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use hysid::Model;
 use hysid::data::record::Dataset;
 use hysid::diagnosis::cycles::{
-    Correction, CycleOptions, CycleTable, FIGURES, Figure, LEVEL_FIGURES, corrected,
+    Correction, CycleOptions, CycleRow, CycleTable, FIGURES, Figure, LEVEL_FIGURES, corrected,
 };
 use hysid::diagnosis::model::{MagnetisationNode, ModelCycles};
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves, without_calibration_points};
@@ -106,6 +106,11 @@ impl<'a> Cycles<'a> {
             magnetisation: driven.magnetisation,
             understood,
         })
+    }
+
+    /// All rows of the table, those of incomplete cycles too.
+    pub(crate) fn rows(&self) -> Vec<&CycleRow> {
+        self.table.cycles.iter().collect()
     }
 
     pub fn figures(&self) -> impl Iterator<Item = &'static Figure> + use<'_> {

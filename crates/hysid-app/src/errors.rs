@@ -1,4 +1,4 @@
-//! The verdict and the table of errors.
+//! The headline and the table of errors.
 
 use hysid::data::metrics::Errors;
 use hysid_document::{Cell, Part, Table, number, unit};
@@ -19,49 +19,82 @@ fn grade(percent: f64) -> &'static str {
     found.map_or("no match", |(_, words)| words)
 }
 
-/// One sentence: how good is it?
-pub fn verdict(report: &Report) -> Part {
+/// The error on new data, or on the training data if there are no others, in the unit of the output; and what is doubtful
+/// about it.
+pub fn verdict(report: &Report) -> Vec<Part> {
     let provenance = report.model.provenance();
-    let mut parts = vec![format!("{} on the training data", judged(&provenance.train))];
-    let behind = provenance.train_after_warm_up.as_ref();
-    parts.extend(behind.map(|errors| format!("{} on the training data without the warm-up", judged(errors))));
-    parts.push(match &provenance.validation {
-        Some(errors) => {
-            format!("{} on held-out data (cross-validation)", judged(errors))
-        }
-        None if provenance.options.starts() == 1 => {
-            "not measured on new data, because none were held out".into()
-        }
-        None => "not measured on new data, because there were too few to hold any out".into(),
-    });
     let unseen = report.sets.iter().filter(|set| set.name != "training");
-    parts.extend(unseen.map(|set| format!("{} on the {} data", judged(&set.errors), set.name)));
-    let is_one_loop = provenance.selection.as_ref().is_some_and(|selection| selection.one_loop);
-    let doubt = if is_one_loop {
-        " The data are one loop: the error on smaller loops is not known, and may be many times larger."
-    } else {
-        ""
-    };
-    Part::Lead(
-        format!(
-            "Error of a free run, in percent of the standard deviation of the output: {}.{doubt}",
-            joined(&parts)
-        )
-        .into(),
-    )
+    let mut found: Vec<(String, &Errors)> =
+        unseen.map(|set| (format!("the {} data", set.name), &set.errors)).collect();
+    found.extend(provenance.validation.as_ref().map(|errors| ("held-out data".into(), errors)));
+    let is_new = !found.is_empty();
+    let without_warm_up = provenance.train_after_warm_up.as_ref();
+    found.extend(without_warm_up.map(|errors| ("the training data without the warm-up".into(), errors)));
+    found.push(("the training data".into(), &provenance.train));
+    let mut found = found.into_iter();
+    let lead = found.next().map_or_else(String::new, |(data, errors)| in_words(&data, errors));
+    let others = found.map(|(data, errors)| format!("on {data}: {}", judged(errors)));
+    let others = others.collect::<Vec<String>>().join("; ");
+    let mut parts = vec![Part::Lead(lead.into())];
+    parts.extend((!others.is_empty()).then(|| Part::note(format!("Error {others}."))));
+    let doubts = doubts(report, is_new);
+    parts.extend((!doubts.is_empty()).then(|| Part::warnings(&doubts)));
+    parts
 }
 
-fn judged(errors: &Errors) -> String {
+/// Root mean square error, its size beside the motion of the output, and how good that is.
+fn in_words(data: &str, errors: &Errors) -> String {
+    let rmse = unit::with(&number(errors.rmse, 3), &errors.output);
+    let (name, _) = unit::split(&errors.output);
     match errors.nrmse_std_percent {
-        Some(percent) => format!("{} % ({})", number(percent, 3), grade(percent)),
-        None => "not defined (the output is constant)".into(),
+        Some(percent) => format!(
+            "On {data}, the simulated {name} is {rmse} off (root mean square error), {} % of its standard deviation: {}.",
+            number(percent, 3),
+            grade(percent)
+        ),
+        None => format!(
+            "On {data}, the simulated {name} is {rmse} off (root mean square error); the measured one is constant."
+        ),
     }
 }
 
-fn joined(parts: &[String]) -> String {
-    match parts {
-        [all @ .., last] if !all.is_empty() => format!("{}, and {last}", all.join(", ")),
-        _ => parts.concat(),
+/// Held-out errors so many times as large as those of the training are doubtful.
+const OVERFITTED: f64 = 2.0;
+
+/// Why the error on other data may be larger.
+fn doubts(report: &Report, is_new: bool) -> Vec<String> {
+    let provenance = report.model.provenance();
+    let mut doubts = Vec::new();
+    if provenance.selection.as_ref().is_some_and(|selection| selection.one_loop) {
+        doubts.push(
+            "The data are one loop: the error on smaller loops is not known, and may be many times larger."
+                .into(),
+        );
+    }
+    if !is_new {
+        let why = match provenance.options.starts() {
+            1 => "none were held out",
+            _ => "there were too few to hold any out",
+        };
+        doubts.push(format!("The error on new data was not measured, because {why}."));
+    }
+    let trained = provenance.train_after_warm_up.as_ref().unwrap_or(&provenance.train).rmse;
+    let times = provenance.validation.as_ref().map(|errors| errors.rmse / trained);
+    doubts.extend(times.filter(|times| *times >= OVERFITTED && times.is_finite()).map(|times| {
+        format!(
+            "The error on held-out data is {} times that on the training data: the training data do not determine the \
+             model, or the held-out data differ from them.",
+            number(times, 2)
+        )
+    }));
+    doubts
+}
+
+fn judged(errors: &Errors) -> String {
+    let rmse = unit::with(&number(errors.rmse, 3), &errors.output);
+    match errors.nrmse_std_percent {
+        Some(percent) => format!("{rmse} ({} % of std)", number(percent, 3)),
+        None => rmse,
     }
 }
 

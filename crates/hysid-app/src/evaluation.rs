@@ -13,7 +13,7 @@ use hysid_tables::Rows;
 use crate::errors_table::{AFTER_WARM_UP, errors_table};
 use crate::gathered::Gatherer;
 use crate::table_run::{self, KeptColumns, Simulated};
-use crate::{BandCoverage, residual_tests};
+use crate::{BandCoverage, residual_tests, residual_words};
 
 pub struct EvaluateRequest<'a> {
     pub model: &'a Model,
@@ -109,7 +109,7 @@ impl Evaluation {
             text += &format!("({AFTER_WARM_UP}: without the first {} rows of each record)\n", self.warm_up);
         }
         text += &self.band.as_ref().map_or_else(String::new, |band| format!("\n{}\n", band.words()));
-        let residuals = self.residuals.as_ref().map(|found| format!("\n{}", residual_tests::text(found)));
+        let residuals = self.residuals.as_ref().map(|found| format!("\n{}", residual_words::text(found)));
         text + &residuals.unwrap_or_default()
     }
 }

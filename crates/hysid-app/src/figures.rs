@@ -26,10 +26,13 @@ const MOST_RECORDS: usize = 200;
 /// Most small charts, one a record.
 const MOST_MULTIPLES: usize = 12;
 
-/// Charts of a set's loops.
-pub fn loops_section(set: &ReportSet) -> Part {
+/// Loops of a set beside the histories of its records, which have this note.
+pub fn section(set: &ReportSet, histories: Vec<Vec<Part>>, note: Option<Part>) -> Part {
     let records = set.data.records();
-    let mut parts = vec![Part::chart(loops(set))];
+    let mut columns = vec![vec![Part::chart(loops(set))]];
+    columns.extend(histories);
+    let mut parts = vec![Part::Columns(columns)];
+    parts.extend(note);
     if (2..=MOST_MULTIPLES).contains(&records.len()) {
         let charts = (0..records.len()).map(|index| record_loops(set, index)).collect();
         parts.extend([Part::heading("Record by record"), Part::Charts(charts)]);
@@ -46,7 +49,7 @@ pub fn loops_section(set: &ReportSet) -> Part {
     if set.data.names().inputs.len() > 1 {
         parts.push(Part::note("The model has further inputs, which these charts do not show."));
     }
-    Part::section(format!("Loops: {} data", set.name), parts)
+    Part::section(format!("Loops and histories: {} data", set.name), parts)
 }
 
 pub fn loops(set: &ReportSet) -> Chart {

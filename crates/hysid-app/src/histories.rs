@@ -17,16 +17,19 @@ const POINTS: usize = 4000;
 
 const MOST_INPUTS: usize = 4;
 
-pub fn section(set: &ReportSet) -> Part {
-    let (shown, all) = (shown_records(set), set.data.records().len());
-    let mut parts = Vec::new();
-    if shown.len() < all {
-        let words = format!("Of {all} records the {} with the largest errors are drawn.", shown.len());
-        parts.push(Part::note(words));
-    }
+/// The charts of each record that is drawn.
+pub fn of_records(set: &ReportSet) -> Vec<Vec<Part>> {
+    let shown = shown_records(set);
     let points = POINTS / shown.len().max(1);
-    parts.extend(shown.iter().flat_map(|&index| record(set, index, points)));
-    Part::section(format!("Histories: {} data", set.name), parts)
+    shown.iter().map(|&index| record(set, index, points)).collect()
+}
+
+/// Which records are drawn, if not all are.
+pub fn left_out(set: &ReportSet) -> Option<Part> {
+    let all = set.data.records().len();
+    let words =
+        format!("Histories are those of the {MOST_RECORDS} of {all} records with the largest errors.");
+    (all > MOST_RECORDS).then(|| Part::note(words))
 }
 
 fn shown_records(set: &ReportSet) -> Vec<usize> {

@@ -9,9 +9,10 @@ use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
 use hysid::fit::progress::HeldOutRows;
 use hysid::model::Model;
-use hysid_document::{Page, Result};
+use hysid_document::{Page, Result, capitalised, unit};
 use hysid_files::GENERATOR;
 
+use crate::parameters::laws;
 use crate::{Report, ReportSet, loops, page};
 
 /// Reading of the data, and warnings, before a fit.
@@ -79,18 +80,20 @@ impl Identified {
         Self { model, evaluations: 0, held_out: None, seconds: None, beforehand: Beforehand::default() }
     }
 
-    /// The report on the model with some data: those called "training" are what it was fitted to.
+    /// The report on the model with some data: those called "training" are what it was fitted to. Without a title, the
+    /// quantities and the model are its title.
     ///
     /// # Errors
     /// Data that the model cannot be run on, or without a measured output.
-    pub fn page(&self, title: &str, file: Option<&Path>, sets: &[(&str, &Dataset)]) -> Result<Page> {
+    pub fn page(&self, title: Option<&str>, file: Option<&Path>, sets: &[(&str, &Dataset)]) -> Result<Page> {
         let mut residuals = Vec::new();
-        let mut intervals = None;
+        let mut intervals = Vec::new();
         for &(name, data) in sets {
             match name {
                 "training" => {
                     residuals.extend(self.residuals(data)?);
-                    intervals = self.intervals(data)?;
+                    let of_law = |(law, _): (&Model, _)| Ok(ParameterIntervals::of(law, data)?);
+                    intervals = laws(&self.model).into_iter().map(of_law).collect::<Result<_>>()?;
                 }
                 _ => residuals.extend(self.residuals_of(name, data)?),
             }
@@ -102,11 +105,11 @@ impl Identified {
         let training = reported.iter().find(|set| set.name == "training" && self.model.has_inertia());
         let responses = training.map(|set| ModelResponses::of(&self.model, set.data, &set.simulated));
         Ok(page(&Report {
-            title: title.into(),
+            title: title.map_or_else(|| title_of(&self.model), String::from),
             model: &self.model,
             sets: reported,
             residuals: &residuals,
-            intervals: intervals.as_ref(),
+            intervals: &intervals,
             frequency_response: responses.transpose()?,
             warnings: &self.beforehand.warnings,
             understood: &self.beforehand.understood,
@@ -119,4 +122,14 @@ impl Identified {
     pub fn loops(&self, name: &str, data: &Dataset) -> Result<String> {
         Ok(loops(&ReportSet::of(&self.model, name, &*self.model.as_judged(data)?)?).file(GENERATOR))
     }
+}
+
+/// Quantities and model: `Force over displacement: bouc-wen`.
+fn title_of(model: &Model) -> String {
+    let name = match model.ensemble() {
+        Some(ensemble) => format!("ensemble of {} models", ensemble.members().len()),
+        None => model.name().name().into(),
+    };
+    let [x, y] = [&model.names().inputs[0], &model.names().output].map(|name| unit::split(name).0);
+    capitalised(&format!("{y} over {x}: {name}"))
 }

@@ -24,6 +24,7 @@ pub mod errors_table;
 #[cfg(feature = "tables")]
 pub mod evaluation;
 mod figures;
+pub mod folds_text;
 mod frequency_response;
 #[cfg(feature = "tables")]
 pub mod gathered;
@@ -85,8 +86,8 @@ pub struct Report<'a> {
     pub sets: Vec<ReportSet<'a>>,
     /// Tests of the residual, with the name of the data.
     pub residuals: &'a [(String, Residuals)],
-    /// Confidence intervals of the parameters, for a law that has them.
-    pub intervals: Option<&'a ParameterIntervals>,
+    /// Confidence intervals of the parameters of each law in the model, for those that have them.
+    pub intervals: &'a [Option<ParameterIntervals>],
     /// Frequency responses on the training data, of a model with inertia; or why the data have none.
     pub frequency_response: Option<std::result::Result<ModelResponses, NoResponse>>,
     pub warnings: &'a [String],
@@ -139,13 +140,13 @@ pub fn page_text(page: &Page) -> String {
 }
 
 pub fn page(report: &Report) -> Page {
-    let mut parts = vec![errors::verdict(report)];
-    parts.extend(report.sets.iter().map(figures::loops_section));
+    let mut parts = errors::verdict(report);
+    let figures = |set| figures::section(set, histories::of_records(set), histories::left_out(set));
+    parts.extend(report.sets.iter().map(figures));
     parts.push(errors::section(report));
     parts.extend(provenance::notes(report));
     parts.push(provenance::warnings(report));
     parts.extend(report.sets.iter().filter_map(cycle_comparison::section));
-    parts.extend(report.sets.iter().map(histories::section));
     parts.extend(frequency_response::section(report));
     parts.extend(usage::sections(report));
     parts.extend(residuals::section(report));

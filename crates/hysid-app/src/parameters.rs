@@ -73,17 +73,58 @@ pub fn left_out(model: &Model) -> Option<String> {
     (all > MOST_ROWS).then(|| format!("{} are in the model file.", count(all - MOST_ROWS, "more parameter")))
 }
 
-/// The section on the parameters; `None` for a network.
+/// The laws in a model, each with its weight before the input leaves the trained range: the law itself, without a weight,
+/// or those among the members of an ensemble.
+pub fn laws(model: &Model) -> Vec<(&Model, Option<f64>)> {
+    let Some(ensemble) = model.ensemble() else {
+        return model.law().map(|_| (model, None)).into_iter().collect();
+    };
+    let shares = ensemble.group().shares();
+    let weight = |place: usize| shares.iter().filter(|one| one.0 == place).map(|one| one.1.inside).sum();
+    let members = ensemble.members().iter().enumerate();
+    let laws = members.filter(|(_, member)| member.law().is_some());
+    let mut laws: Vec<(&Model, Option<f64>)> = laws.map(|(place, law)| (law, Some(weight(place)))).collect();
+    laws.sort_by(|a, b| b.1.unwrap_or(0.0).total_cmp(&a.1.unwrap_or(0.0)));
+    laws
+}
+
+/// The section on the parameters of all laws; `None` without laws.
 pub fn section(report: &Report) -> Option<Part> {
-    let model = report.model;
-    let mut parts = vec![Part::Table(table(model, report.intervals)?)];
-    parts.extend(left_out(model).map(Part::note));
-    parts.extend(report.intervals.map(explanation));
-    if model.input_transform().companding.is_some() {
-        let seen = seen_label(model);
+    let laws = laws(report.model);
+    let intervals = |place: usize| report.intervals.get(place).and_then(Option::as_ref);
+    let mut parts = Vec::new();
+    for (place, &(law, weight)) in laws.iter().enumerate() {
+        let Some(of_law) = of_law(law, intervals(place)) else { continue };
+        parts.extend(match weight {
+            None => of_law,
+            Some(weight) => {
+                let heading = format!("{}, weight {} %", law.name().name(), number(100.0 * weight, 3));
+                // Without intervals, parameters are many, or weights without a physical meaning.
+                match intervals(place) {
+                    Some(_) => [vec![Part::heading(heading)], of_law].concat(),
+                    None => vec![Part::Folded(heading, of_law)],
+                }
+            }
+        });
+    }
+    let chosen =
+        report.model.provenance().selection.is_some() && report.intervals.iter().any(Option::is_some);
+    parts.extend(chosen.then(|| {
+        Part::note("The laws were chosen on the same data. The intervals do not allow for this choice.")
+    }));
+    (!parts.is_empty()).then(|| Part::section("Parameters", parts))
+}
+
+/// The parameters of a law, and what they refer to.
+fn of_law(law: &Model, intervals: Option<&ParameterIntervals>) -> Option<Vec<Part>> {
+    let mut parts = vec![Part::Table(table(law, intervals)?)];
+    parts.extend(left_out(law).map(Part::note));
+    parts.extend(intervals.map(explanation));
+    if law.input_transform().companding.is_some() {
+        let seen = seen_label(law);
         parts.push(Part::note(format!(
             "The input of the law is {seen}, which has no unit; its parameters refer to this input."
         )));
     }
-    Some(Part::section("Parameters", parts))
+    Some(parts)
 }

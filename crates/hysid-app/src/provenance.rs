@@ -70,6 +70,9 @@ pub fn of_model(model: &Model) -> Vec<(String, String)> {
         say("Initial state", state);
     }
     say("Rate", rate.into());
+    if provenance.weighted {
+        say("Weights of rows", "given; errors count all rows alike".into());
+    }
     say(
         "Trained on",
         format!("{} in {}", count(provenance.samples, "sample"), count(provenance.records, "record")),

@@ -1,6 +1,6 @@
 //! Tests of the residual, for training and other data apart.
 
-use hysid::diagnosis::residuals::{GroupedResiduals, ResidualFinding, ResidualTest, Residuals};
+use hysid::diagnosis::residuals::{GroupedResiduals, ResidualFinding, Residuals};
 use hysid_document::{Axis, Chart, Colour, Curve, Item, Part, Table, count, number, unit};
 
 use crate::Report;
@@ -39,21 +39,22 @@ fn of_data(data: &str, residuals: &Residuals) -> Vec<Part> {
         "Residual on the {data} data: {tested}, RMS {}",
         unit::with(&number(residuals.rms, 3), &residuals.output)
     );
-    let mut parts = vec![Part::heading(heading), Part::Table(table)];
+    let mut parts = vec![Part::Table(table)];
     parts.extend((!found.is_empty()).then_some(Part::List(found)));
     parts.extend(residuals.caution.as_deref().map(Part::note));
+    let mut charts = Vec::new();
     if let Some(chart) = autocorrelation(data, residuals) {
         let words = format!("Autocorrelation of the residual on the {data} data; band: 95 % of white noise.");
-        parts.extend([Part::note(words), Part::chart(chart)]);
+        charts.extend([Part::note(words), Part::chart(chart)]);
     }
     if let Some(chart) = by_place(data, residuals) {
         let words = format!(
             "Root mean square of the residual on the {data} data in groups of rows, from the left to the right in the order \
              of the legend; line: all rows."
         );
-        parts.extend([Part::note(words), Part::chart(chart)]);
+        charts.extend([Part::note(words), Part::chart(chart)]);
     }
-    parts
+    vec![Part::heading(heading), Part::Columns(vec![parts, charts])]
 }
 
 /// Autocorrelations with the bound of white noise.
@@ -99,7 +100,7 @@ fn by_place(data: &str, residuals: &Residuals) -> Option<Chart> {
         at += 0.8;
         curves.push(Curve::new(points, Colour::Series(index), 9.0));
         let groups: Vec<&str> = place.groups.iter().map(|group| short(&group.name)).collect();
-        legend.push((Colour::Series(index), format!("{}: {}", short_test(place.test), groups.join(", "))));
+        legend.push((Colour::Series(index), format!("{}: {}", place.test.name(), groups.join(", "))));
     }
     let rms = vec![(0.3, residuals.rms), (at, residuals.rms)];
     curves.insert(0, Curve::new(rms, Colour::Faint, 1.0));
@@ -111,15 +112,4 @@ fn by_place(data: &str, residuals: &Residuals) -> Option<Chart> {
 
 fn short(group: &str) -> &str {
     if group.starts_with("first ") { "after" } else { group.strip_suffix(" input").unwrap_or(group) }
-}
-
-fn short_test(test: ResidualTest) -> &'static str {
-    match test {
-        ResidualTest::TurningPoints => "turning points",
-        ResidualTest::Speed => "speed",
-        ResidualTest::Amplitude => "amplitude",
-        ResidualTest::Distance => "distance from mean",
-        ResidualTest::Direction => "direction",
-        _ => "time",
-    }
 }

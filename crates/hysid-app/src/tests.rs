@@ -4,6 +4,9 @@ use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Record};
 use hysid::diagnosis::resonance::ComparedSignal;
 use hysid::fit::network::fit;
+use hysid::model::{Ensemble, Group, Node, NodeKind, Predictor, Provenance, Weights};
+use hysid::options::FitSpec;
+use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::options::network::FitOptions;
 use hysid_core::elementary::sin;
 use hysid_core::network::Sizes;
@@ -57,7 +60,7 @@ fn report<'a>(model: &'a Model, data: &'a Dataset, warnings: &'a [String]) -> Re
         model,
         sets: vec![set("training", model, data), set("unseen", model, data)],
         residuals: &[],
-        intervals: None,
+        intervals: &[],
         frequency_response: None,
         warnings,
         understood: &[],
@@ -101,8 +104,145 @@ fn the_figures_of_the_errors_are_there() {
             assert!(page.contains(&format!(">{}</td>", hysid_document::number(figure, 4))), "{figure}");
         }
     }
+    assert!(page.contains("RMSE (kN)") && page.contains("Validation"));
+}
+
+/// The headline has the error on data held out in the unit of the output, and what is doubtful about it.
+#[test]
+fn the_headline_is_the_error_on_new_data_with_its_doubt() {
+    let data = data(true);
+    let fitted = model(&data);
+    let headline = |model: &Model, sets: Vec<ReportSet>| -> (String, Vec<String>) {
+        let report = Report { sets, ..report(model, &data, &[]) };
+        let parts = errors::verdict(&report);
+        let Part::Lead(lead) = &parts[0] else { panic!("no headline") };
+        let doubts = parts.iter().filter_map(|part| match part {
+            Part::List(items) => Some(items.iter().map(|item| item.text.plain()).collect::<Vec<_>>()),
+            _ => None,
+        });
+        (lead.plain(), doubts.flatten().collect())
+    };
+    let in_unit = |errors: &Errors| {
+        let percent = hysid_document::number(errors.nrmse_std_percent.unwrap(), 3);
+        format!(
+            "force is {} kN off (root mean square error), {percent} %",
+            hysid_document::number(errors.rmse, 3)
+        )
+    };
+    let training = || vec![set("training", &fitted, &data)];
+    let provenance = fitted.provenance();
+    let held_out = provenance.validation.clone().unwrap();
+    let (lead, _) = headline(&fitted, training());
     assert!(
-        page.contains("RMSE (kN)") && page.contains("Validation") && page.contains("Error of a free run")
+        lead.starts_with("On held-out data, the simulated ") && lead.contains(&in_unit(&held_out)),
+        "{lead}"
+    );
+    // Data that the model never saw come first.
+    let (lead, _) = headline(&fitted, vec![set("training", &fitted, &data), set("unseen", &fitted, &data)]);
+    assert!(lead.starts_with("On the unseen data, "), "{lead}");
+    let with = |validation: Option<Errors>| {
+        fitted.clone().with_provenance(Provenance { validation, ..provenance.clone() })
+    };
+    let (lead, doubts) = headline(&with(None), training());
+    assert!(
+        lead.starts_with("On the training data, ") && lead.contains(&in_unit(&provenance.train)),
+        "{lead}"
+    );
+    assert_eq!(
+        doubts,
+        ["The error on new data was not measured, because there were too few to hold any out."]
+    );
+    let (_, doubts) =
+        headline(&with(Some(Errors { rmse: 3.0 * provenance.train.rmse, ..held_out })), training());
+    assert!(
+        doubts[0].starts_with("The error on held-out data is 3 times that on the training data"),
+        "{doubts:?}"
+    );
+}
+
+/// Each law among the members has its parameters and intervals, as the law alone has them.
+#[test]
+fn an_ensemble_shows_the_parameters_of_its_laws() {
+    let data = data(false);
+    let law = |thresholds: &[f64]| {
+        let options = ClassicalOptions {
+            thresholds: Some(thresholds.to_vec()),
+            ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii)
+        };
+        let spec = FitSpec::Classical(options);
+        hysid::fit::identify(&data, &spec, &mut |_| ControlFlow::Continue(())).unwrap().model
+    };
+    let laws = [law(&[0.4]), law(&[0.2, 0.6])];
+    let alone: Vec<_> = laws.iter().map(|law| ParameterIntervals::of(law, &data).unwrap().unwrap()).collect();
+    let node = |(member, inside): (usize, f64)| Node {
+        weights: Weights { inside, outside: 0.5 },
+        kind: NodeKind::Member(member),
+    };
+    let group = Group { name: "laws".into(), nodes: [(0, 0.3), (1, 0.7)].map(node).to_vec() };
+    let ensemble = Ensemble::new(laws.to_vec(), group, data.input_range(0)).unwrap();
+    let found = hysid::model::ProvenanceDraft::from(laws[0].provenance().clone());
+    let whole = Model::new(
+        Predictor::Ensemble(ensemble),
+        hysid::model::input_transform::InputTransform::default(),
+        None,
+        &data,
+        found,
+    );
+    let page = Identified::before(whole.unwrap()).page(None, None, &[("training", &data)]).unwrap();
+    assert!(page.title.starts_with("Force over "), "{}", page.title);
+    let section = page.parts.iter().find_map(|part| match part {
+        Part::Section(heading, parts) if heading == "Parameters" => Some(parts),
+        _ => None,
+    });
+    let parts = section.unwrap();
+    let headings: Vec<String> = parts
+        .iter()
+        .filter_map(|part| match part {
+            Part::Heading(text) => Some(text.plain()),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(headings, ["prandtl-ishlinskii, weight 70 %", "prandtl-ishlinskii, weight 30 %"]);
+    let tables: Vec<_> = parts.iter().flat_map(Part::tables).collect();
+    for (table, intervals) in tables.iter().zip(alone.iter().rev()) {
+        let constant = &intervals.parameters[0];
+        let [low, high] = [constant.low, constant.high].map(|end| hysid_document::number(end.unwrap(), 4));
+        assert_eq!(table.rows[0][2].shown(), format!("{low} to {high}"));
+        assert_eq!(table.rows.len(), intervals.parameters.len());
+    }
+}
+
+/// Records of one and a half cycles: the table of cycles has a figure in every cell, and the parts have a table of their own.
+#[test]
+fn many_short_records_have_tables_of_cycles_without_gaps() {
+    let record = |k: usize| {
+        let size = 1.0 + 0.1 * k as f64;
+        let rows = if k.is_multiple_of(3) { 60 } else { 150 };
+        let x: Vec<f64> = (0..rows).map(|row| size * sin(0.0785 * row as f64)).collect();
+        let y = Stop::new(0.5).unwrap().run(&x);
+        Record::new(format!("r{k}"), vec![x], y).unwrap()
+    };
+    let names = ColumnNames::of(None, &["x_mm"], "force_kN");
+    let data = Dataset::new(names, (0..12).map(record).collect()).unwrap();
+    let cycles = cycles::Cycles::of_data(&data, &Default::default(), &[], (None, 1.0), ("f.csv", Vec::new()));
+    let page = cycles::page(&cycles.unwrap());
+    let section = page.parts.iter().find_map(|part| match part {
+        Part::Section(heading, parts) if heading == "Cycles" => Some(parts),
+        _ => None,
+    });
+    let tables: Vec<_> = section.unwrap().iter().flat_map(Part::tables).collect();
+    assert_eq!(tables.len(), 2);
+    assert_eq!(tables[0].rows.len(), 8);
+    for table in tables {
+        let is_missing = |cell: &Cell| matches!(cell, Cell::Missing);
+        assert!(!table.rows.iter().flatten().any(is_missing), "{:?}", table.columns);
+    }
+    // Each level has one cycle: a table of levels would be the table of cycles again.
+    assert!(
+        !page
+            .parts
+            .iter()
+            .any(|part| matches!(part, Part::Section(heading, _) if heading.starts_with("Levels")))
     );
 }
 

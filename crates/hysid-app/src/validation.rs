@@ -4,20 +4,17 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use hysid::Error;
-use hysid::data::metrics::Errors;
-use hysid::data::unit;
 use hysid::fit::identify;
 use hysid::fit::progress::Progress;
 use hysid::options::FitSpec;
-use hysid::validation::{CrossValidation, CrossValidator, FoldErrors};
-use hysid_core::significant::Significant;
+use hysid::validation::{CrossValidation, CrossValidator};
 use hysid_core::termination::Termination;
-use hysid_document::plain::{WIDTH, aligned, wrapped};
 use hysid_document::{Result, problem};
 use hysid_records::Data;
 use serde::Serialize;
 
 use crate::check_memory;
+use crate::folds_text::{folds_text, percent};
 
 /// A model to cross-validate, and the data for it.
 pub struct ValidateRequest<'a> {
@@ -106,28 +103,9 @@ pub fn validate(
 }
 
 impl ValidateOutcome {
-    /// The folds as a table, in 80 columns where units are short.
+    /// The folds as a table, and the cost.
     pub fn text(&self) -> String {
-        let unit = unit::of_column(&self.errors.unseen.output).unwrap_or_else(|| "RMSE".into());
-        let headings =
-            ["%".to_string(), unit].map(|unit| [format!("train {unit}"), format!("unseen {unit}")]);
-        let row = |name: &str, numbers: [String; 4]| [vec![name.to_string()], numbers.to_vec()].concat();
-        let mut rows = vec![row("held out", headings.concat().try_into().expect("two times two"))];
-        rows.extend(self.errors.folds.iter().map(|fold| row(&fold.held_out, cells(fold))));
-        let blank = String::new;
-        let all = &self.errors.unseen;
-        rows.push(row("all folds", [blank(), percent(all), blank(), number(all.rmse)]));
-        shorten_names(&mut rows);
-        let mut text = aligned(&rows).join("\n") + "\n\n";
-        text += &wrapped(
-            "Errors of free runs: RMSE, and RMSE in % of the standard deviation of the output. Unseen rows \
-             are those held out of the fit. A single record is cut in time, and parts of it are held out \
-             more than once.",
-            WIDTH,
-        )
-        .join("\n");
-        text += &format!("\n{}: {} in {:.1} s\n", self.model, self.count(), self.seconds);
-        text
+        format!("{}\n{}: {} in {:.1} s\n", folds_text(&self.errors), self.model, self.count(), self.seconds)
     }
 
     /// How many of the folds have a result, in words.
@@ -143,33 +121,6 @@ impl ValidateOutcome {
         match self.folds_stopped {
             0 => done,
             stopped => format!("{done}, {stopped} of them ended by the time limit,"),
-        }
-    }
-}
-
-fn cells(fold: &FoldErrors) -> [String; 4] {
-    [percent(&fold.train), percent(&fold.unseen), number(fold.train.rmse), number(fold.unseen.rmse)]
-}
-
-fn percent(errors: &Errors) -> String {
-    errors.nrmse_std_percent.map_or_else(|| "-".into(), number)
-}
-
-fn number(value: f64) -> String {
-    format!("{:.4}", Significant(value))
-}
-
-/// Cuts names off where a line would be too long for a terminal.
-fn shorten_names(rows: &mut [Vec<String>]) {
-    const FEWEST: usize = 20;
-    let letters = |text: &String| text.chars().count();
-    let numbers: usize = (1..rows[0].len())
-        .map(|column| 2 + rows.iter().map(|row| letters(&row[column])).max().unwrap_or(0))
-        .sum();
-    let room = WIDTH.saturating_sub(numbers).max(FEWEST);
-    for name in rows.iter_mut().map(|row| &mut row[0]) {
-        if letters(name) > room {
-            *name = name.chars().take(room - 1).chain(['…']).collect();
         }
     }
 }

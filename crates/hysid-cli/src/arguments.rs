@@ -326,6 +326,9 @@ pub struct Fit {
     /// Write no report
     #[arg(long, help_heading = RUN)]
     pub no_report: bool,
+    /// Title of the report [default: the quantities and the model]
+    #[arg(long, value_name = "TEXT", help_heading = RUN, hide_short_help = true, conflicts_with = "no_report")]
+    pub title: Option<String>,
 }
 
 #[derive(Debug, Args)]

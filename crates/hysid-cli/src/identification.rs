@@ -78,16 +78,15 @@ pub fn save(identified: &Identified, model: &Destination) -> Result<()> {
     files::write_or_rescue(model, "model", identified.model.to_json().as_bytes())
 }
 
-/// Writes the report on the model, which is written already.
+/// Writes the report on the model, which is written already, with a title of its own if there is one.
 pub fn write_report(
     identified: &Identified,
-    page: &Destination,
+    (page, title): (&Destination, Option<&str>),
     model: &Path,
     sets: &[(&str, &Dataset)],
     inputs: &[impl AsRef<Path>],
 ) -> Result<()> {
-    let title = model.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    write_page(page, identified.page(&title, Some(model), sets)?, inputs)
+    write_page(page, identified.page(title, Some(model), sets)?, inputs)
         .context("the model was written, but not its report")
 }
 

@@ -58,6 +58,12 @@ pub enum Error {
     /// A bound of an inverse that cannot be used, or a row that it cannot take.
     #[error(transparent)]
     Inverse(#[from] InverseError),
+    /// A model that cannot be fitted with weights of rows.
+    #[error(
+        "{model} takes no weights of rows: use one of {}, or blank the outputs of rows that are not to count",
+        .takers.join(", ")
+    )]
+    Weights { model: &'static str, takers: Vec<&'static str> },
     /// Options of `auto` that leave no model to try.
     #[error("these options leave no candidate: remove one of them")]
     NoCandidate,
@@ -166,6 +172,9 @@ pub enum DataProblem {
     /// A column of another length than the first input.
     #[error("has {found} values where the first input has {expected}")]
     Length { expected: usize, found: usize },
+    /// A weight of a row that cannot be used.
+    #[error("has the weight {found}: a finite number above 0 is needed")]
+    Weight { found: f64 },
     /// A column of another length than the displacement.
     #[error("has {found} values where the displacement has {expected}")]
     LengthOf { expected: usize, found: usize },

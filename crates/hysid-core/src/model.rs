@@ -242,6 +242,9 @@ pub struct Provenance {
     /// Penalties that a network was trained with; `None` for other models.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub penalties: Option<Regularisation>,
+    /// True if the rows had weights in the fit; errors count all rows alike.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub weighted: bool,
     /// Every training run.
     pub runs: Vec<Run>,
     /// The candidates and their errors, if the model was chosen among several; otherwise `None`.
@@ -307,6 +310,7 @@ impl ProvenanceDraft {
             train_after_warm_up,
             validation,
             penalties,
+            weighted: data.is_weighted(),
             runs,
             selection,
             lead_ins: lead_ins(data),

@@ -28,6 +28,7 @@ library they are arguments of `fit`.
 | `--out` (`-o`) | model file; the report has the same name with `.html` | name of the first table with `.json` |
 | `--force` | replace files even if Hysid did not write them; each is kept as `NAME.bak` | off |
 | `--no-report` | write no report | off |
+| `--title` | title of the report | the quantities and the model |
 | `--json` | print the result as one JSON object | off |
 | `--quiet` (`-q`) | only warnings and errors on stderr | off |
 | `--time` | column of time stamps | a column that is named like time |

@@ -70,8 +70,7 @@ impl Default for ResidualOptions {
 }
 
 /// A test of the residual.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ResidualTest {
     /// Its mean is 0.
     Bias,
@@ -96,20 +95,26 @@ pub enum ResidualTest {
 }
 
 impl ResidualTest {
-    /// Its name in a table.
+    /// Its name in tables, in JSON and in Python, in words joined by hyphens.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bias => "mean",
             Self::Whiteness => "whiteness",
-            Self::Input => "correlation with the input",
-            Self::Rate => "correlation with the rate",
-            Self::TurningPoints => "after turning points",
-            Self::Speed => "by speed",
-            Self::Amplitude => "by amplitude",
-            Self::Distance => "by distance from the mean",
-            Self::Direction => "by direction",
-            Self::Time => "over time",
+            Self::Input => "input-correlation",
+            Self::Rate => "rate-correlation",
+            Self::TurningPoints => "after-turning-points",
+            Self::Speed => "by-speed",
+            Self::Amplitude => "by-amplitude",
+            Self::Distance => "by-distance",
+            Self::Direction => "by-direction",
+            Self::Time => "over-time",
         }
+    }
+}
+
+impl Serialize for ResidualTest {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
     }
 }
 

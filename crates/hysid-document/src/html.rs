@@ -13,6 +13,9 @@ const STYLE: &str = include_str!("html/style.css");
 /// A table of so many columns fits a narrow screen.
 const NARROW_COLUMNS: usize = 3;
 
+/// A table of so many rows fits a printed page, and is not split.
+const ROWS_OF_A_PAGE: usize = 25;
+
 /// Script by which figures react to pointer and keys. A page is complete without it.
 const SCRIPT: &str = concat!("\n", include_str!("html/page.js"));
 
@@ -94,6 +97,10 @@ fn part(part: &Part) -> String {
         Part::Cards(cards) => {
             format!("<div class=\"cards\">\n{}</div>\n", cards.iter().map(card).collect::<String>())
         }
+        Part::Columns(columns) => {
+            let column = |content: &Vec<Part>| format!("<div>\n{}</div>\n", parts(content));
+            format!("<div class=\"columns\">\n{}</div>\n", columns.iter().map(column).collect::<String>())
+        }
         Part::Folded(summary, content) => {
             format!("<details>\n<summary>{}</summary>\n{}</details>\n", escape(summary), parts(content))
         }
@@ -171,8 +178,9 @@ fn table(table: &Table) -> String {
     let body: String = table.rows.iter().map(|row| table_row(row, &table.columns, &of_words)).collect();
     // On a narrow screen, each row of a wide table becomes a list with the names of the columns.
     let class = if table.columns.len() > NARROW_COLUMNS { " class=\"many\"" } else { "" };
+    let whole = if table.rows.len() <= ROWS_OF_A_PAGE { " whole" } else { "" };
     format!(
-        "{heading}<div class=\"scroll\" role=\"region\" aria-label=\"table\" tabindex=\"0\"><table{class}>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
+        "{heading}<div class=\"scroll{whole}\" role=\"region\" aria-label=\"table\" tabindex=\"0\"><table{class}>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
     )
 }
 

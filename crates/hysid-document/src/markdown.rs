@@ -28,6 +28,7 @@ fn part(part: &Part) -> String {
         }
         Part::Table(content) => table(content),
         Part::Chart(_) | Part::Charts(_) => String::new(),
+        Part::Columns(columns) => columns.iter().map(|column| parts(column)).collect(),
         Part::Cards(cards) => cards.iter().map(card).collect(),
         Part::Folded(summary, content) => format!("### {summary}\n\n{}", parts(content)),
     }

@@ -32,6 +32,8 @@ pub enum Part {
     /// Small charts side by side.
     Charts(Vec<Chart>),
     Cards(Vec<Card>),
+    /// Columns side by side, each of parts; on a narrow screen and in text, one below the other.
+    Columns(Vec<Vec<Part>>),
     /// Parts that are hidden until the reader opens them, below a summary.
     Folded(String, Vec<Part>),
 }
@@ -107,6 +109,7 @@ impl Part {
         match self {
             Part::Section(_, parts) | Part::Folded(_, parts) => parts.iter().collect(),
             Part::Cards(cards) => cards.iter().flat_map(|card| &card.parts).collect(),
+            Part::Columns(columns) => columns.iter().flatten().collect(),
             _ => Vec::new(),
         }
     }

@@ -37,6 +37,7 @@ fn block(part: &Part) -> Vec<String> {
         }
         Part::Table(content) => vec![table(content)],
         Part::Chart(_) | Part::Charts(_) => Vec::new(),
+        Part::Columns(columns) => columns.iter().flat_map(|parts| blocks(parts)).collect(),
         Part::Cards(cards) => {
             let card = |card: &Card| below(&card.heading.plain(), &card.parts);
             cards.iter().flat_map(card).collect()

@@ -6,6 +6,7 @@ use hysid::data::record::{self, ColumnNames, Record};
 use hysid::data::summary::Summary;
 use hysid::data::unit::Conversion;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions, before_a_fit};
+use hysid_app::diagnosis::data_text;
 use hysid_document::Face;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -34,9 +35,20 @@ pub struct Dataset {
 #[pymethods]
 impl Dataset {
     #[new]
-    fn new(names: Names, records: Vec<Parts<Column<'_>>>) -> PyResult<Self> {
+    #[pyo3(signature = (names, records, weights=None))]
+    fn new(
+        names: Names,
+        records: Vec<Parts<Column<'_>>>,
+        weights: Option<Vec<Column<'_>>>,
+    ) -> PyResult<Self> {
         let (time, inputs, rate, output) = names;
-        let records = records.into_iter().map(record).collect::<PyResult<_>>()?;
+        let mut records: Vec<Record> = records.into_iter().map(record).collect::<PyResult<_>>()?;
+        if let Some(weights) = weights {
+            let weighted = |(record, weights): (Record, &Column<'_>)| {
+                record.with_weights(values(weights)?).map_err(refused)
+            };
+            records = records.into_iter().zip(&weights).map(weighted).collect::<PyResult<_>>()?;
+        }
         let names = ColumnNames { time, inputs, rate, output };
         let set = record::Dataset::new(names, records).map_err(refused)?;
         Ok(Self { set: Arc::new(set) })
@@ -105,11 +117,17 @@ pub fn unit_factor(found: &str, trained: &str) -> PyResult<Option<f64>> {
     }
 }
 
-/// Diagnoses data; gives the object that `hysid diagnose --json` prints of it.
+/// Diagnoses data; gives the object that `hysid diagnose --json` prints of it, and its text.
 #[pyfunction]
-pub fn diagnose(py: Python<'_>, data: &Dataset, smallest_reversal: f64, smoothing: bool) -> PyResult<String> {
+pub fn diagnose(
+    py: Python<'_>,
+    data: &Dataset,
+    smallest_reversal: f64,
+    smoothing: bool,
+) -> PyResult<(String, String)> {
     let options = DiagnosisOptions { smallest_reversal, smoothing };
     let set = Arc::clone(&data.set);
     let diagnosis = interruptible(py, move || Diagnosis::of(&set, &options))?;
-    serde_json::to_string(&diagnosis).map_err(refused)
+    let text = data_text(&data.set, &diagnosis, "model = hysid.fit(x, y)", Face::Python);
+    Ok((serde_json::to_string(&diagnosis).map_err(refused)?, text))
 }

@@ -16,6 +16,7 @@ use hysid::options::table::OPTIONS;
 use hysid::options::{self, ModelName};
 use hysid_app::check_memory;
 use hysid_app::compare::{CompareObserver, CompareRequest, CompareRow};
+use hysid_app::folds_text::folds_text;
 use hysid_document::Face;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
@@ -157,8 +158,8 @@ pub fn identify(
     Ok((Model::new(fitted.model), fitted.evaluations, interrupted))
 }
 
-/// Cross-validates a request. Gives what came of it as JSON, and whether Ctrl-C ended it; otherwise as
-/// [`identify`].
+/// Cross-validates a request. Gives the errors of the folds as JSON and as text, and whether Ctrl-C ended it; otherwise
+/// as [`identify`].
 #[pyfunction]
 pub fn validate(
     py: Python<'_>,
@@ -168,14 +169,14 @@ pub fn validate(
     threads: Option<usize>,
     time_limit: Option<f64>,
     progress: Option<Bound<'_, PyAny>>,
-) -> PyResult<(String, bool)> {
+) -> PyResult<(String, String, bool)> {
     let (set, request) = (Arc::clone(&data.set), request.request.clone());
     let work = move |exchange: &Exchange| {
         check_memory(&set, &request, rayon::current_num_threads())?;
         cross_validate(&set, &request, folds, &mut |progress| exchange.observe(progress))
     };
     let (validation, interrupted) = attended(py, threads, time_limit, progress, work)?;
-    Ok((serde_json::to_string(&validation).map_err(refused)?, interrupted))
+    Ok((serde_json::to_string(&validation).map_err(refused)?, folds_text(&validation), interrupted))
 }
 
 /// A row of a comparison: label, model, errors on the test data as JSON, seconds of the fit, and why there is no model.

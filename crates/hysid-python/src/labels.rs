@@ -1,7 +1,9 @@
-//! Names of columns and figures as axes and tables show them.
+//! Names of columns and figures as axes and tables show them, and the table of errors.
 
+use hysid::data::metrics::Errors;
 use hysid::data::record::ColumnNames;
 use hysid::diagnosis::cycles::{FIGURES, Quantities};
+use hysid_app::errors_table::errors_table;
 use hysid_document::unit::{label, split};
 use pyo3::prelude::*;
 
@@ -29,4 +31,11 @@ pub fn figure_label(figure: &str, input: String, output: String, time: Option<St
     };
     let names = ColumnNames { time, inputs: vec![input], rate: None, output };
     Ok(label(&Quantities::of(&names).as_figure(found.label, found.quantity)))
+}
+
+/// Errors, as JSON, in the table that `hysid evaluate` prints.
+#[pyfunction]
+pub fn errors_text(errors: &str) -> PyResult<String> {
+    let errors: Errors = serde_json::from_str(errors).map_err(refused)?;
+    Ok(errors_table(&[("free run", &errors)]))
 }

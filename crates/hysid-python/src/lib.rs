@@ -34,9 +34,9 @@ mod _hysid {
     #[pymodule_export]
     use crate::inverse::Inverse;
     #[pymodule_export]
-    use crate::labels::{axis_label, figure_label, name_and_unit};
+    use crate::labels::{axis_label, errors_text, figure_label, name_and_unit};
     #[pymodule_export]
-    use crate::model::{Model, RecordState, Stepper, Tracking};
+    use crate::model::{Model, RecordState, Stepper, Tracking, write_models};
     #[pymodule_export]
     use crate::plan::{Plan, plan};
     #[pymodule_export]

@@ -1,17 +1,17 @@
 //! Fitted models.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use hysid::data::initial_state::InitialState;
 use hysid::data::known_beginning::KnownSpan;
 use hysid::data::record::{self, Excitation};
-use hysid::diagnosis::ModelDiagnosis;
 use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::selection::Selection;
 use hysid::model::{self, ADAPTATION_ROWS, BandLevel, ParameterInUnits, Prediction};
-use hysid_app::{Identified, origin, page_text};
+use hysid_app::diagnosis::DiagnosedModel;
+use hysid_app::{Identified, origin, page_text, residual_words};
 use hysid_export::description::RateSource;
 use hysid_export::{FmiVersion, InverseOptions, MANIFEST, Options, Precision, Target, files_of};
 use hysid_files::{Destination, Folder, Kind};
@@ -65,7 +65,7 @@ impl Model {
         &self,
         py: Python<'_>,
         path: PathBuf,
-        title: String,
+        title: Option<String>,
         sets: Vec<(String, PyRef<'_, Dataset>)>,
         force: bool,
     ) -> PyResult<()> {
@@ -79,7 +79,7 @@ impl Model {
                 let warnings = identified.model.range_warnings(data)?;
                 identified.beforehand.warnings.extend(warnings.iter().map(ToString::to_string));
             }
-            Ok(identified.page(&title, None, &sets).map(|mut page| {
+            Ok(identified.page(title.as_deref(), None, &sets).map(|mut page| {
                 page.parts.push(origin::section("hysid.Model.report", &[]));
                 page_text(&page)
             }))
@@ -241,8 +241,13 @@ impl Model {
         serde_json::to_string(&errors).map_err(refused)
     }
 
-    /// Tests of the residual of free runs over all records, as JSON.
-    fn residuals(&self, py: Python<'_>, data: &Dataset, initial_state: Option<&str>) -> PyResult<String> {
+    /// Tests of the residual of free runs over all records, as JSON and as text.
+    fn residuals(
+        &self,
+        py: Python<'_>,
+        data: &Dataset,
+        initial_state: Option<&str>,
+    ) -> PyResult<(String, String)> {
         let set = Arc::clone(&data.set);
         let model = self.begun(initial_state)?;
         let test = move || {
@@ -250,7 +255,8 @@ impl Model {
             let options = ResidualOptions { is_training, ..ResidualOptions::default() };
             Residuals::of_model(&model, &set, &options)
         };
-        serde_json::to_string(&interruptible(py, test)?).map_err(refused)
+        let found = interruptible(py, test)?;
+        Ok((serde_json::to_string(&found).map_err(refused)?, residual_words::text(&found)))
     }
 
     /// Confidence intervals of the parameters of a law, from its training data, as JSON; `None` for another model.
@@ -276,11 +282,15 @@ impl Model {
         Ok(warnings.iter().map(ToString::to_string).collect())
     }
 
-    /// Properties of its hysteresis, as JSON.
-    fn diagnose(&self, py: Python<'_>) -> PyResult<String> {
+    /// Properties of its hysteresis, as JSON and as text.
+    fn diagnose(&self, py: Python<'_>) -> PyResult<(String, String)> {
         let model = Arc::clone(&self.model);
-        let diagnosis = interruptible(py, move || ModelDiagnosis::of(&model))?;
-        serde_json::to_string(&diagnosis).map_err(refused)
+        let diagnosed = interruptible(py, move || {
+            Ok(DiagnosedModel::of(Path::new("model"), &model)
+                .map(|found| (serde_json::to_string(found.diagnosis()), found.text())))
+        })?;
+        let (json, text) = diagnosed.map_err(|problem| explained(&problem))?;
+        Ok((json.map_err(refused)?, text))
     }
 
     /// Its cycles and first-order reversal curves, as JSON.
@@ -323,6 +333,24 @@ impl Model {
         let begun = |name: &str| model::Model::clone(&self.model).with_initial_state(name.parse()?);
         begun(name).map(Arc::new).map_err(refused)
     }
+}
+
+/// Writes an archive of several models, which begins with its first so many bytes as all of them do.
+#[pyfunction]
+pub fn write_models(
+    py: Python<'_>,
+    path: PathBuf,
+    content: Vec<u8>,
+    beginning: usize,
+    force: bool,
+) -> PyResult<()> {
+    let mark = content.get(..beginning).unwrap_or(&content).to_vec();
+    let destination = Destination::new(path, Kind::Beginning(mark), force);
+    let written = py.detach(|| {
+        destination.check()?;
+        destination.write(&content)
+    });
+    written.map(drop).map_err(not_written)
 }
 
 /// Runs over the known rows in the search of a state, about so many.

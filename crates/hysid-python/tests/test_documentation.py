@@ -6,12 +6,14 @@ import inspect
 import json
 import pkgutil
 import re
+import typing
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import hysid
+from hysid import _options
 
 MODULES = ["hysid", *(f"hysid.{module.name}" for module in pkgutil.iter_modules(hysid.__path__))]
 
@@ -50,6 +52,17 @@ def test_everything_public_is_explained():
                     assert parameter in ("self", "cls") or parameter in names, (part, parameter)
                 seen += 1
     assert seen > 30
+
+
+def test_options_of_a_fit_are_in_groups_with_their_names():
+    text = inspect.getdoc(hysid.fit)
+    groups = ["Parameters", "Model", "Training", "Classical models", "Run", "Returns", "Raises", "Examples"]
+    places = [text.index(f"\n{group}\n{'-' * len(group)}\n") for group in groups]
+    assert places == sorted(places)
+    literals = [value for name, value in vars(_options).items() if name.endswith("Name")]
+    names = [name for literal in literals for name in typing.get_args(literal)]
+    assert len(literals) == 6 and "xpnn+" in names and "saturated-up" in names
+    assert all(f'"{name}"' in text for name in names)
 
 
 @pytest.mark.parametrize("page", ["docs/python.md", "docs/tutorials/data-science.md", "crates/hysid-python/README.md"])

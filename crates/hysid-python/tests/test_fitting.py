@@ -318,3 +318,77 @@ def test_warnings_are_those_of_the_caller(spring_and_slider, quick_model):
         quick_model.evaluate(10 * x, y)
     assert [warning.filename for warning in warned] == [__file__] * 2
     assert all("outside the trained range" in str(warning.message) for warning in warned)
+
+
+def noisy_records(rows=400):
+    """A spring and slider in three records, with noise, and whole weights."""
+    random = np.random.default_rng(3)
+    x = [size * np.sin(np.linspace(0, 20, rows)) for size in (2.0, 3.0, 4.0)]
+    y = [0.2 * one + hysid.operators.stop(one, r=1.0) + 0.1 * random.normal(size=rows) for one in x]
+    return x, y, [random.integers(0, 5, size=rows) for _ in x]
+
+
+@pytest.mark.parametrize(
+    ("options", "tolerance"),
+    [
+        ({"model": "masing", "thresholds": [0.5, 1.0, 2.0]}, 1e-9),
+        ({"model": "prandtl-ishlinskii", "thresholds": [0.5, 1.0, 2.0]}, 1e-9),
+        ({"model": "ramberg-osgood", "starts": 2, "epochs": 30}, 1e-5),
+    ],
+)
+def test_a_weight_counts_a_row_as_many_times(options, tolerance):
+    """A row that is repeated moves nothing in a rate-independent law: its fit is that with weights."""
+    x, y, weights = noisy_records()
+    # The first row stays, because the memory begins there.
+    for weight in weights:
+        weight[0] = 1
+    weighted = hysid.fit(x, y, sample_weight=weights, **options)
+    repeated = hysid.fit(
+        [np.repeat(one, np.maximum(weight, 1)) for one, weight in zip(x, weights)],
+        [np.repeat(np.where(weight > 0, one, np.nan), np.maximum(weight, 1)) for one, weight in zip(y, weights)],
+        **options,
+    )
+    plain = hysid.fit(x, y, **options)
+    outputs = [np.concatenate(model.simulate(x)) for model in (weighted, repeated, plain)]
+    size = np.abs(outputs[0]).max()
+    assert np.abs(outputs[0] - outputs[1]).max() < tolerance * size
+    assert np.abs(outputs[0] - outputs[2]).max() > 1e-4 * size
+    assert weighted.train.samples == sum(np.count_nonzero(weight) for weight in weights)
+    assert "of rows, in the fit" in str(weighted.summary()) and "of rows, in the fit" not in str(plain.summary())
+    blanked = [np.where(weight > 0, one, np.nan) for one, weight in zip(y, weights)]
+    assert weighted.parameter_intervals(x, blanked) is None
+
+
+def test_weights_that_only_choose_rows_are_for_every_model():
+    x, y, weights = noisy_records()
+    x, y, chosen = x[2], y[2], weights[2] > 0
+    options = {"model": "xpnn", "stops": 3, "hidden": 2, "starts": 1, "epochs": 3}
+    alike = hysid.fit(x, y, sample_weight=np.full(len(x), 7.0), **options)
+    assert alike == hysid.fit(x, y, **options)
+    assert hysid.fit(x, y, sample_weight=3.0 * chosen, **options) == hysid.fit(x, np.where(chosen, y, np.nan), **options)
+    with pytest.raises(ValueError, match="xpnn takes no weights of rows: use one of masing, prandtl-ishlinskii, .*blank"):
+        hysid.fit(x, y, sample_weight=weights[2], **options)
+    with pytest.raises(ValueError, match="auto takes no weights of rows"):
+        hysid.fit(x, y, sample_weight=weights[2])
+    law = hysid.HysteresisRegressor(model="masing", thresholds=[0.5, 1.0])
+    fitted = law.fit(x.reshape(-1, 1), y, sample_weight=weights[2]).model_
+    same = hysid.fit(x, y, sample_weight=weights[2], model="masing", thresholds=[0.5, 1.0])
+    assert fitted.description["law"] == same.description["law"]
+
+
+@pytest.mark.parametrize(
+    ("weights", "text"),
+    [
+        (np.ones(399), r"sample_weight: one weight for each of the 400 rows is needed, not \(399,\)"),
+        (np.ones((400, 1)), r"sample_weight: one weight for each of the 400 rows is needed, not \(400, 1\)"),
+        (np.r_[np.ones(399), -1], "sample_weight: row 400 has -1.0: a finite number, 0 or above, is needed"),
+        (np.r_[np.nan, np.ones(399)], "sample_weight: row 1 has nan"),
+        (np.zeros(400), "sample_weight: the weights of all rows with an output are zero"),
+        (["a"] * 400, "sample_weight: a number for each row is needed"),
+        (1.0, "sample_weight: a number for each row is needed"),
+    ],
+)
+def test_weights_that_cannot_be_used_are_named(weights, text):
+    x, y, _ = noisy_records()
+    with pytest.raises(ValueError, match=text):
+        hysid.fit(x[0], y[0], model="masing", sample_weight=weights)

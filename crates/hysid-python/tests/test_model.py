@@ -403,6 +403,20 @@ def test_a_model_is_diagnosed(spring_and_slider):
     assert diagnosis.verdict("masing") == "yes"
     assert diagnosis.content["model"] == "prandtl-ishlinskii"
     assert "<table>" in diagnosis._repr_html_() and "masing" in str(diagnosis)
+    assert "verdicts from equations" in str(diagnosis) and "width of the loop over the whole range" in str(diagnosis)
+
+
+def test_a_diagnosis_of_data_is_printed_as_the_program_prints_it(program, spring_and_slider, tmp_path):
+    x, y = spring_and_slider
+    pandas.DataFrame({"u_mm": x, "f_kN": y}).to_csv(tmp_path / "data.csv", index=False)
+    found = hysid.diagnose({"u_mm": x}, {"f_kN": y})
+    done = program("diagnose", "data.csv", "--no-report", folder=tmp_path)
+    tables, _, _ = done.stdout.partition("\nnext:\n")
+    assert str(found) == f"{tables}\nnext:\n  model = hysid.fit(x, y)"
+    assert "advice\n    The simplest model" in tables
+    (tmp_path / "model.json").write_text(hysid.fit({"u_mm": x}, {"f_kN": y}, model="masing").to_json())
+    done = program("diagnose", "model.json", "--no-report", folder=tmp_path)
+    assert done.stdout == str(hysid.Model.load(tmp_path / "model.json").diagnose()) + "\n"
 
 
 def test_a_model_is_invertible_or_not(spring_and_slider):
@@ -663,6 +677,10 @@ def test_an_inverse_of_a_record_refuses_what_is_invalid(actuator, quick_model):
     assert quick_model.invert([]).input.shape == (0,)
 
 
+def _hysid_number(value):
+    return f"{value:.3g}"
+
+
 def test_a_report_is_a_page_of_the_model_on_these_data(quick_model, spring_and_slider, tmp_path):
     x, y = spring_and_slider
     page = tmp_path / "page.html"
@@ -674,6 +692,12 @@ def test_a_report_is_a_page_of_the_model_on_these_data(quick_model, spring_and_s
     error = quick_model.evaluate(x, y).nrmse_std_percent
     assert f"{error:.3g}" in text
     quick_model.report(page, x, y, name="training")
+    text = page.read_text(encoding="utf-8")
+    # Without a title, the quantities and the model.
+    assert "<h1>Y over x: xpnn+</h1>" in text
+    rmse = f"the simulated y is {_hysid_number(quick_model.train.rmse)} off (root mean square error)"
+    assert rmse in text and "The error on new data was not measured, because none were held out." in text
+    assert '<div class="columns">' in text and "Loops and histories: training data" in text
     assert "training" in page.read_text(encoding="utf-8")
     other = tmp_path / "other.html"
     other.write_text("mine", encoding="utf-8")

@@ -1,12 +1,13 @@
 """Arrays and pandas objects of all kinds give the right numbers, or an error or a warning."""
 
+import re
 import warnings
 from datetime import datetime, timedelta, timezone
 
 import numpy as np
 import pandas
 import pytest
-from sklearn.model_selection import KFold, ShuffleSplit
+from sklearn.model_selection import GridSearchCV, KFold, ShuffleSplit, TimeSeriesSplit, cross_val_score
 
 import hysid
 from hysid import HysteresisRegressor
@@ -47,6 +48,8 @@ def stamps():
         "python with a zone": [
             datetime(2024, 3, 1, tzinfo=timezone.utc) + timedelta(milliseconds=20 * k) for k in range(600)
         ],
+        "text": [f"2024-03-01T12:00:{0.02 * k:09.6f}Z" for k in range(600)],
+        "text of pandas": pandas.Series([f"2024-03-01 12:00:{0.02 * k:05.2f}+01:30" for k in range(600)]),
         "python durations": [timedelta(milliseconds=20 * k) for k in range(600)],
         "objects": series.astype(object),
     }
@@ -59,6 +62,29 @@ def test_dates_and_times_are_seconds(plain, kind):
     assert np.allclose(found.simulate(x, stamps()[kind]), model.simulate(x, plain[2]), rtol=0, atol=1e-6)
     expected = "timestamp [s]" if kind in ("series", "zone", "objects") else "t_s"
     assert found.description["columns"]["time"] == expected
+
+
+@pytest.mark.parametrize(
+    ("times", "text"),
+    [
+        (["2024-03-01", "01.03.2024"], "row 2: '01.03.2024' is no time of ISO 8601, such as 2024-05-31T12:00:00.25"),
+        (["2024-03-01", "2024-02-30"], "row 2: '2024-02-30': Day out of range"),
+        (["2024-03-01T12:00Z", "2024-03-01T12:01"], "row 2: some times have a time zone and others have none"),
+        (["2024-03-01", None], "row 2: None is no time"),
+        (["01.03.2024", "02.03.2024"], "other dates than ISO 8601 are read by pandas.to_datetime"),
+    ],
+)
+def test_text_that_is_no_time_is_named(times, text):
+    with pytest.raises(ValueError, match="time: .*" + re.escape(text)):
+        hysid.fit(np.arange(2.0), np.arange(2.0), times)
+
+
+def test_dates_of_text_keep_their_seconds():
+    """A day with a leap year, a time zone before midnight, and digits below those of a float's nanoseconds."""
+    times = ["2024-02-28T23:00:00+02:00", "2024-02-29T00:00:00.123456789Z", "2024-03-01"]
+    found = hysid._time.seconds(times[:2])
+    assert found.tolist() == [0.0, 3 * 3600 + 0.123456789]
+    assert hysid._time.seconds(["2024-02-28", times[2]]).tolist() == [0.0, 2 * 86400.0]
 
 
 def test_dates_and_times_are_no_inputs(plain):
@@ -128,6 +154,36 @@ def test_shuffled_rows_are_warned_of(plain):
         estimator.predict(frame.iloc[shuffled])
     in_order, _ = next(KFold(4).split(x))
     estimator.fit(frame.iloc[in_order], y[in_order])
+
+
+def test_left_out_rows_are_warned_of_once_in_a_cross_validation(plain):
+    x, y, time, _ = plain
+    estimator = HysteresisRegressor(model="masing", operators=4)
+    timed = HysteresisRegressor(model="masing", operators=4, time=1)
+    shuffled = KFold(5, shuffle=True, random_state=0)
+    for one, table in [
+        (estimator, x.reshape(-1, 1)),
+        (estimator, pandas.DataFrame({"x": x})),
+        (timed, np.column_stack([x, time])),
+    ]:
+        # Twice, because each cross-validation has its own warnings.
+        for _ in range(2):
+            told = warned(lambda: cross_val_score(one, table, y, cv=shuffled))
+            assert len([text for text in told if "rows are missing" in text]) == 1, told
+        told = warned(lambda: GridSearchCV(one, {"operators": [3, 4]}, cv=shuffled).fit(table, y))
+        assert len([text for text in told if "rows are missing" in text]) == 1, told
+        told = warned(lambda: cross_val_score(one, table, y, cv=TimeSeriesSplit(4)))
+        assert not any("rows are missing" in text for text in told)
+        # The folds have larger inputs than those that were fitted to: the numbers of the warnings differ.
+        assert len([text for text in told if "outside the trained range" in text]) == 1, told
+    frame = pandas.DataFrame({"x": x, "y": y})
+    told = warned(lambda: hysid.fit(frame.drop(index=range(50, 60)), "y", model="masing", operators=4))
+    assert sum("rows are missing (1 gaps in the index)" in text for text in told) == 1
+    regular = frame.iloc[::2]
+    # Uneven numbers that are no multiples of a step, such as times in milliseconds, are no gaps.
+    uneven = frame.set_index(np.cumsum(2 + np.arange(len(x)) % 3))
+    for whole in (frame, regular, uneven):
+        assert not warned(lambda: hysid.fit(whole, "y", model="masing", operators=4))
 
 
 def test_units_are_converted_or_refused(spring_and_slider):

@@ -56,6 +56,25 @@ def test_loops_and_histories_show_measured_and_model(actuator):
         plot.loops(None, x)
 
 
+def test_diagnostics_are_five_views_of_one_run(actuator):
+    model, (x, y, time), records = actuator
+    figure = plot.diagnostics(model, x, y, time, records=records)
+    loops, outputs, errors, over_input, correlation = figure.axes
+    residuals = model.residuals(x, y, time, records=records)
+    found = {finding.test for finding in residuals.found}
+    assert found and all(test in figure.get_suptitle() for test in found)
+    whiteness = residuals.content["whiteness"]
+    heights = [segment[1][1] for segment in correlation.collections[-1].get_segments()]
+    assert heights == whiteness["autocorrelation"]
+    measured = y["displacement_um"][~np.isnan(y["displacement_um"])]
+    assert np.isin(measured, drawn(loops)).all() and np.isin(measured, drawn(outputs)).all()
+    rms = np.sqrt(np.nanmean(drawn(errors) ** 2))
+    assert rms == pytest.approx(residuals.rms) and f"RMSE {rms:.3g}" in errors.get_title()
+    assert over_input.get_xlabel() == "voltage (V)"
+    with pytest.raises(ValueError, match="diagnostics need a model and a measured output"):
+        plot.diagnostics(None, x, y)
+
+
 def test_records_follow_one_another_in_time(actuator):
     model, (x, y, time), records = actuator
     lines = plot.errors(model, x, y, time, records=records).lines

@@ -30,14 +30,14 @@ def test_the_noise_of_a_right_model_has_no_structure(law):
     assert residuals["whiteness"].p_value > 0.001
     assert "white up to lag" in residuals["whiteness"].statement
     assert "whiteness" in str(residuals) and "<table>" in residuals._repr_html_()
-    with pytest.raises(KeyError, match="the tests are bias, whiteness"):
+    with pytest.raises(KeyError, match="the tests are mean, whiteness"):
         residuals["colour"]
 
 
 def test_structure_is_found_with_what_helps(law):
     x, y = noisy(3)
     residuals = law.residuals(x, y + 2.0 * np.gradient(x))
-    rate = residuals["rate"]
+    rate = residuals["rate-correlation"]
     assert rate.verdict == "found" and rate.adjusted_p_value < 0.05
     assert "option rate" in rate.advice
 
@@ -49,7 +49,17 @@ def test_residuals_are_the_program_s(law, program, tmp_path):
     done = program("evaluate", "model.json", "data.csv", "--residuals", "--json", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     printed = json.loads(done.stdout)["residuals"]
-    assert printed == law.residuals(x, y).content
+    found = law.residuals(x, y)
+    assert printed == found.content
+    done = program("evaluate", "model.json", "data.csv", "--residuals", folder=tmp_path)
+    errors, tests = str(law.evaluate(x, y)), str(found)
+    assert done.stdout == f"{errors}\n\n{tests}\n"
+    # The names in Python are those in the terminal and on pages.
+    law.report(tmp_path / "page.html", x, y)
+    page = (tmp_path / "page.html").read_text()
+    for finding in found.findings:
+        named = finding.test if finding.input is None else f"{finding.test}: {finding.input}"
+        assert f"\n{named} " in tests and f">{named}</th>" in page
 
 
 def test_too_few_rows_are_refused(law):

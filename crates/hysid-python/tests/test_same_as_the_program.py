@@ -173,8 +173,8 @@ def test_options_have_the_program_s_names(program, tmp_path):
     # How a file is read: Python takes arrays.
     files |= {"delimiter", "decimal", "skip", "no_header", "units_row", "missing", "encoding", "sheet"}
     files |= {"rows", "every", "zero", "quiet"}
-    files |= {"resume", "force"}
-    assert offered - files == keywords - {"x", "y", "time", "records", "progress"}
+    files |= {"resume", "force", "title"}
+    assert offered - files == keywords - {"x", "y", "time", "records", "progress", "sample_weight"}
 
 
 @pytest.mark.parametrize(

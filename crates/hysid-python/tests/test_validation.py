@@ -1,6 +1,7 @@
 """Judgement on data held out."""
 
 import numpy as np
+import pandas
 import pytest
 
 import hysid
@@ -41,6 +42,15 @@ def test_a_validation_may_be_ended(spring_and_slider):
     found = hysid.validate(*spring_and_slider, model="xpnn", starts=1, epochs=100_000, stall=0, progress=enough)
     assert len(found.folds) == 1
     assert all(progress.is_part and progress.model == "xpnn" and progress.done <= 0.2 for progress in told)
+
+
+def test_print_shows_the_table_of_the_program(program, spring_and_slider, tmp_path):
+    x, y = spring_and_slider
+    pandas.DataFrame({"u_mm": x, "f_kN": y}).to_csv(tmp_path / "data.csv", index=False)
+    found = hysid.validate({"u_mm": x}, {"f_kN": y}, model="masing")
+    done = program("validate", "data.csv", "--model", "masing", folder=tmp_path)
+    assert done.stdout.startswith(f"{found}\n\nmasing: 5 folds in ")
+    assert "geometric mean" in str(found) and "unseen kN" in str(found)
 
 
 @pytest.mark.parametrize(

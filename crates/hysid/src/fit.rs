@@ -31,6 +31,8 @@ pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) 
     if data.scored() > 0 {
         request.judged_beginning(data.names())?.check_rest(data)?;
     }
+    let is_auto = matches!(request, FitSpec::Auto(_));
+    law::check_weights(data, if is_auto { "auto" } else { request.model().name() })?;
     match request {
         FitSpec::Auto(options) => auto::fit(data, options, observer),
         FitSpec::Network(_) | FitSpec::Classical(_) => one_model::identify(data, request, observer),

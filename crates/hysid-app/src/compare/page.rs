@@ -2,7 +2,7 @@
 
 use hysid::data::record::Dataset;
 use hysid_document::chart::thin::thin;
-use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Result, Table, unit};
+use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Result, Table, number, unit};
 
 use super::{CompareOutcome, CompareRow, ComparedFit, HEADINGS, cells, stopped_note};
 use crate::{MEASURED_WIDTH, MODEL_WIDTH, ReportSet, Tracks, small_loops};
@@ -27,15 +27,18 @@ impl CompareOutcome {
         let data = if test.is_some() { "unseen data" } else { "the training data" };
         let mut parts = Vec::new();
         parts.extend(fitted.first().map(|(name, best)| {
-            let error = super::percent(best.judged());
-            Part::Lead(
-                format!(
-                    "{name} has the lowest error on {data}: {error} % of the standard deviation of \
-                                the output."
-                )
-                .into(),
-            )
+            let (errors, percent) = (best.judged(), super::percent(best.judged()));
+            let rmse = unit::with(&number(errors.rmse, 3), &errors.output);
+            let lead = format!(
+                "{name} has the lowest error on {data}: {rmse} (root mean square), {percent} % of the standard deviation of \
+                 the output."
+            );
+            Part::Lead(lead.into())
         }));
+        if test.is_none() {
+            let doubt = "All models were fitted to these data. The error on other data was not measured: name test data (--test).";
+            parts.push(Part::warnings(&[doubt.to_string()]));
+        }
         let words = format!(
             "NRMSE of free runs, in percent of the standard deviation of the output. {}Each fit ran on {}. \
              {}",
@@ -43,11 +46,14 @@ impl CompareOutcome {
             self.threads(),
             stopped_note(rows)
         );
-        parts.push(Part::section("Errors", [Part::Table(rows_table(rows)), Part::note(words)]));
+        let mut columns = vec![vec![Part::Table(rows_table(rows)), Part::note(words)]];
         if !fitted.is_empty() {
             let words = "A dot for each model. Named are the six with the lowest errors, and those that no other model beats in both.";
-            let chart = Part::chart(size_chart(&fitted, data));
-            parts.push(Part::section("Error against size", [Part::note(words), chart]));
+            let heading = Part::heading("Error against size");
+            columns.push(vec![heading, Part::note(words), Part::chart(size_chart(&fitted, data))]);
+        }
+        parts.push(Part::section("Errors", [Part::Columns(columns)]));
+        if !fitted.is_empty() {
             let tracks = Tracks::of(data, shown);
             let loops = fitted.iter().map(|(name, fitted)| loops(name, fitted, data, shown, tracks.clone()));
             let loops = loops.collect::<Result<_>>()?;

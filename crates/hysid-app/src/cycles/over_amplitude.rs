@@ -38,14 +38,14 @@ pub fn figures(sets: &[Shown]) -> Vec<Chart> {
         Field::General => &["energy", "width", "coercive_input", "secant_stiffness"],
     };
     let amplitude = ("amplitude", first.cycles.quantities.as_input("amplitude"));
-    let figures = present(first.cycles, names);
+    let figures = present(&first.cycles.rows(), names);
     figures.into_iter().filter_map(|figure| over(sets, &amplitude, |row| row.amplitude, figure)).collect()
 }
 
 /// The width of the loops over frequency; `None` for a single frequency.
 pub fn width_over_frequency(sets: &[Shown]) -> Option<Chart> {
     let first = sets.first()?.cycles;
-    let figure = *present(first, &["width_percent"]).first()?;
+    let figure = *present(&first.rows(), &["width_percent"]).first()?;
     let frequencies: Vec<f64> = first.table.complete().filter_map(|row| row.frequency).collect();
     let range = frequencies.iter().fold((f64::INFINITY, 0.0f64), |(low, high), &f| (low.min(f), high.max(f)));
     let frequency = ("frequency", first.quantities.as_figure("frequency", FigureQuantity::Frequency));

@@ -1,6 +1,6 @@
 //! The page: pictures, the whole table, first-order reversal curves, and how the data were read.
 
-use hysid::diagnosis::cycles::{LEVEL_FIGURES, RecordFigure};
+use hysid::diagnosis::cycles::{CycleRow, Figure, LEVEL_FIGURES, RecordFigure};
 use hysid_document::{Colour, Page, Part, Text, number, unit};
 
 use super::table::{has_backbone, levels, losses, notes, present, record_figures, shown};
@@ -9,6 +9,9 @@ use super::{Cycles, curves, over_amplitude, pictures};
 
 /// Rows of a long table at each end.
 const AT_EACH_END: usize = 100;
+
+/// Share of the incomplete cycles that have a figure which is shown.
+const MOST_PARTS: f64 = 0.9;
 
 /// Figures that the page leaves to the file: when and where a cycle is, and the deviation of its energy.
 const PLACES: [&str; 5] = ["start_time", "input_min", "input_max", "energy_deviation", "width_deviation"];
@@ -21,13 +24,13 @@ pub fn page(cycles: &Cycles) -> Page {
         false => format!("{}. Cycles begin {}.", cycles.headline(), begin(cycles)),
     };
     let mut parts = vec![Part::Lead(Text::from(lead))];
-    parts.push(Part::section("Loops", [Part::chart(pictures::loops(cycles))]));
     let alone = [over_amplitude::Shown { cycles, colour: Colour::Simulated, radius: 3.0, name: "cycles" }];
     let mut figures = over_amplitude::figures(&alone);
     figures.extend(over_amplitude::losses(&alone));
-    if !figures.is_empty() {
-        parts.push(Part::section("Figures over amplitude", [Part::Charts(figures)]));
-    }
+    let mut columns = vec![vec![Part::chart(pictures::loops(cycles))]];
+    let heading = Part::heading("Figures over amplitude");
+    columns.extend((!figures.is_empty()).then(|| vec![heading, Part::Charts(figures)]));
+    parts.push(Part::section("Loops", [Part::Columns(columns)]));
     if !cycles.table.cycles.is_empty() {
         parts.push(table_section(cycles));
     }
@@ -43,16 +46,35 @@ pub fn page(cycles: &Cycles) -> Page {
 fn table_section(cycles: &Cycles) -> Part {
     let names: Vec<&str> =
         cycles.figures().map(|figure| figure.name).filter(|name| !PLACES.contains(name)).collect();
-    let figures = present(cycles, &names);
-    let mut parts = Vec::new();
+    // Parts of cycles have other figures than whole ones: together, half of the cells would be empty.
+    let table = |is_complete: bool| {
+        let is_it = |row: &&CycleRow| row.complete == is_complete;
+        let rows: Vec<&CycleRow> = cycles.table.cycles.iter().filter(is_it).collect();
+        let mut figures = present(&rows, &names);
+        if !is_complete {
+            let known = |figure: &Figure| rows.iter().filter(|row| (figure.of)(row).is_some()).count();
+            figures.retain(|figure| known(figure) as f64 >= MOST_PARTS * rows.len() as f64);
+        }
+        let table = shown(cycles, &rows, &figures, AT_EACH_END, unit::label);
+        (!table.rows.is_empty()).then_some(Part::Table(table))
+    };
+    let whole = table(true);
+    let mut parts: Vec<Part> = Vec::new();
     // Reversal curves alone are no cycles, and have a section of their own.
-    let has_rows = cycles.curves.is_none() || cycles.table.complete().next().is_some();
-    if has_rows {
-        parts.push(Part::Table(shown(cycles, &figures, AT_EACH_END, unit::label)));
+    if (cycles.curves.is_none() || whole.is_some())
+        && let Some(incomplete) = table(false)
+    {
+        let words = Part::note(
+            "The record begins or ends within the cycle: what needs a whole cycle, or a peak or valley that few of them \
+             have, is left out.",
+        );
+        let parts_of_cycles = vec![words, incomplete];
+        parts.extend(match whole.is_some() {
+            true => vec![Part::Folded("Incomplete parts".into(), parts_of_cycles)],
+            false => parts_of_cycles,
+        });
     }
-    if has_rows && cycles.table.cycles.iter().any(|row| !row.complete) {
-        parts.push(Part::note("* incomplete: the record begins or ends within the cycle."));
-    }
+    parts.splice(..0, whole);
     let notes = notes(cycles);
     if !notes.is_empty() {
         parts.push(Part::Folded("Notes".into(), vec![Part::warnings(&notes)]));
@@ -75,7 +97,10 @@ fn levels_section(cycles: &Cycles) -> Option<Part> {
     let names: Vec<&str> = LEVEL_FIGURES.iter().map(|figure| figure.name).collect();
     let words = "A level has successive cycles whose amplitudes differ by less than 5 %. Losses are from its first cycle \
                  to its last.";
+    // Levels of one cycle each are the table of cycles again.
+    let has_several = cycles.table.levels.iter().any(|level| level.cycles > 1);
     levels(cycles, &names, unit::label)
+        .filter(|_| has_several)
         .map(|table| Part::section("Levels of amplitude", [Part::Table(table), Part::note(words)]))
 }
 

@@ -37,10 +37,11 @@ const PLACES: [&str; 9] = [
     "output_max",
 ];
 
-/// A table of some figures of the rows that have any of them: `at_each_end` rows of a long table. `label` makes a heading of the name of a quantity with its unit; of the numbers,
-/// four digits are shown.
+/// A table of some figures of those of the rows that have any of them: `at_each_end` rows of a long table. `label` makes a
+/// heading of the name of a quantity with its unit; of the numbers, four digits are shown.
 pub fn shown(
     cycles: &Cycles,
+    rows: &[&CycleRow],
     figures: &[&Figure],
     at_each_end: usize,
     label: impl Fn(&str) -> String,
@@ -67,7 +68,7 @@ pub fn shown(
         false => figures.to_vec(),
     };
     let has_any = |row: &&CycleRow| needed.iter().any(|figure| (figure.of)(row).is_some());
-    let rows: Vec<&CycleRow> = cycles.table.cycles.iter().filter(has_any).collect();
+    let rows: Vec<&CycleRow> = rows.iter().copied().filter(has_any).collect();
     let mut next = 0;
     for place in both_ends(rows.len(), at_each_end) {
         if place > next {
@@ -221,9 +222,9 @@ fn record_notes(cycles: &Cycles) -> Vec<String> {
     all.into_iter().map(with_parts).collect()
 }
 
-/// Figures of the field that any cycle has, in the order of the list.
-pub fn present(cycles: &Cycles, names: &[&str]) -> Vec<&'static Figure> {
-    let has = |figure: &&Figure| cycles.table.cycles.iter().any(|row| (figure.of)(row).is_some());
+/// Figures that any of the rows has, in the order of the list.
+pub fn present(rows: &[&CycleRow], names: &[&str]) -> Vec<&'static Figure> {
+    let has = |figure: &&Figure| rows.iter().any(|row| (figure.of)(row).is_some());
     let find = |name: &&str| hysid::diagnosis::cycles::FIGURES.iter().find(|figure| figure.name == *name);
     names.iter().filter_map(find).filter(has).collect()
 }

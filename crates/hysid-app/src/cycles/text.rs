@@ -97,10 +97,10 @@ pub fn begin(cycles: &Cycles) -> &'static str {
 }
 
 fn main_table(cycles: &Cycles) -> Table {
-    let mut figures = present(cycles, main_figures(cycles.table.field));
+    let mut figures = present(&cycles.rows(), main_figures(cycles.table.field));
     // Names of records need the room of a figure or two.
     figures.truncate(if cycles.data.records().len() > 1 { 4 } else { MOST_FIGURES });
-    let mut table = shown(cycles, &figures, AT_EACH_END, text_label);
+    let mut table = shown(cycles, &cycles.rows(), &figures, AT_EACH_END, text_label);
     for cell in table.rows.iter_mut().flatten() {
         *cell = Cell::Text(cell.ascii());
     }

@@ -19,7 +19,7 @@ pub const EXPLANATION: &str = "The index is a relative difference or size. The t
 pub fn verdicts<'f>(findings: impl IntoIterator<Item = &'f Finding>) -> Part {
     let verdict = |finding: &Finding| {
         let anchor = finding.property.name().to_string();
-        let link = Piece::Link { anchor, text: heading(finding) };
+        let link = Piece::Link { anchor, text: finding.property.name().into() };
         Text::from(badge(finding.verdict)).and(link).and(Piece::Aside(finding.statement.clone()))
     };
     Part::Verdicts(findings.into_iter().map(verdict).collect())
@@ -44,7 +44,7 @@ pub fn card(finding: &Finding, charts: Vec<Chart>, place: &str) -> Card {
     }));
     let place = if place.is_empty() { String::new() } else { format!(" Found in {place}.") };
     parts.push(Part::note(numbers(finding) + &place));
-    let heading = Text::from(badge(finding.verdict)).and(Piece::Plain(heading(finding)));
+    let heading = Text::from(badge(finding.verdict)).and(Piece::Plain(finding.property.name().into()));
     Card { anchor: finding.property.name().into(), heading, parts }
 }
 
@@ -55,11 +55,6 @@ fn badge(verdict: Verdict) -> Piece {
         Verdict::NotTestable => Badge::Unknown,
     };
     Piece::Badge(badge, verdict.to_string())
-}
-
-/// The property's name as a heading: "Loop closure".
-fn heading(finding: &Finding) -> String {
-    capitalised(&finding.property.name().replace('-', " "))
 }
 
 fn numbers(finding: &Finding) -> String {
@@ -111,6 +106,6 @@ fn chart(finding: &Finding, picture: &Picture, quantities: &Quantities) -> Chart
         curves.push(Curve::new(points, colour, width));
         legend.push((colour, curve.label.clone()));
     }
-    let description = format!("{}: {y} over {x}", heading(finding));
+    let description = format!("{}: {y} over {x}", finding.property);
     Chart::new(description, &x, &y, curves).sized(460.0, 320.0).with_legend(legend)
 }

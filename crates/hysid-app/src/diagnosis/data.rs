@@ -1,15 +1,14 @@
 //! Diagnosis of measured data.
 
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
-use hysid_core::significant::Significant;
-use hysid_document::{Face, Page, Part, Result, count, object};
+use hysid_document::{Face, Page, Part, Result, object};
 use hysid_records::Data;
 
 use super::cards::{EXPLANATION, cards, verdicts};
 use super::overview::Overview;
-use super::{counsel, findings, loops, paragraph};
+use super::text::{noise, text};
+use super::{counsel, findings, loops};
 use crate::quantities::Quantities;
-use hysid_document::visible::clipped;
 
 /// A diagnosis of measured data, and the text around it.
 pub struct DataDiagnosis<'a> {
@@ -37,35 +36,7 @@ impl<'a> DataDiagnosis<'a> {
 
     /// All of it within 80 columns.
     pub fn text(&self) -> String {
-        let parts = [
-            findings::text(&self.diagnosis.properties),
-            loops::text(&self.diagnosis.cycles, &self.quantities) + &paragraph(&self.noise()),
-            counsel::doctor_text(&self.diagnosis.doctor, self.face),
-            counsel::advice_text(&self.diagnosis.advice, &self.fit),
-        ];
-        parts.join("\n")
-    }
-
-    /// How often the input turns and how much noise was found, in words.
-    fn noise(&self) -> String {
-        let names = self.data.set.names();
-        let of = |column: &str, deviation: f64, (low, high): (f64, f64)| {
-            let unit = hysid::data::unit::suffix(hysid::data::unit::of_column(column).as_deref());
-            let percent = 100.0 * deviation / (high - low);
-            format!(
-                "{} {:.2}{} ({} % of its range)",
-                clipped(column),
-                Significant(deviation),
-                clipped(&unit),
-                findings::shown(percent)
-            )
-        };
-        format!(
-            "{}; standard deviation of the noise: {}, {}",
-            count(self.diagnosis.turning_points, "turning point"),
-            of(&names.inputs[0], self.diagnosis.input_noise, self.data.set.input_range(0)),
-            of(&names.output, self.diagnosis.output_noise, self.data.set.output_range()),
-        )
+        text(&self.data.set, &self.diagnosis, &self.fit, self.face)
     }
 
     pub fn json(&self) -> Result<String> {
@@ -95,7 +66,8 @@ impl<'a> DataDiagnosis<'a> {
             Part::section("Property by property", [Part::Cards(cards), Part::note(EXPLANATION)]),
         ]);
         parts.extend(loops::cycles_section(&diagnosis.cycles, quantities, several));
-        let understood = [Part::Definitions(understood.to_vec()), Part::paragraph(self.noise())];
+        let understood =
+            [Part::Definitions(understood.to_vec()), Part::paragraph(noise(&data.set, diagnosis))];
         parts.push(Part::section("How the data were read", understood));
         Page { title: format!("Diagnosis: {}", data.source.tables[0].file), parts }
     }

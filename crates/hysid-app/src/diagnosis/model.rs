@@ -80,6 +80,11 @@ impl<'a> DiagnosedModel<'a> {
         lines
     }
 
+    /// The properties, the verdicts from equations, and the widths of the loops.
+    pub fn diagnosis(&self) -> &ModelDiagnosis {
+        &self.diagnosis
+    }
+
     /// All of it within 80 columns.
     pub fn text(&self) -> String {
         let mut parts = vec![findings::text(self.diagnosis.findings())];

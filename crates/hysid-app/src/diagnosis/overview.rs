@@ -32,7 +32,7 @@ impl<'a> Overview<'a> {
     }
 
     pub fn section(&self) -> Part {
-        let mut parts = vec![Part::chart(self.loops())];
+        let mut ways = Vec::new();
         let records = self.data.records();
         let mut longest: Vec<usize> = (0..records.len()).collect();
         longest.sort_by_key(|&record| std::cmp::Reverse(records[record].len()));
@@ -40,9 +40,9 @@ impl<'a> Overview<'a> {
         longest.sort_unstable();
         for record in &longest {
             if records.len() > 1 {
-                parts.push(Part::heading(records[*record].name()));
+                ways.push(Part::heading(records[*record].name()));
             }
-            parts.push(Part::chart(self.way(*record)));
+            ways.push(Part::chart(self.way(*record)));
         }
         let mut words =
             "The backbone connects the loop tips that exceed all earlier ones; dots are turning points of \
@@ -55,8 +55,8 @@ impl<'a> Overview<'a> {
                 longest.len()
             );
         }
-        parts.push(Part::note(words));
-        Part::section("The data", parts)
+        let columns = vec![vec![Part::chart(self.loops())], ways];
+        Part::section("The data", [Part::Columns(columns), Part::note(words)])
     }
 
     fn loops(&self) -> Chart {

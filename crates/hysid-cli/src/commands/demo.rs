@@ -51,7 +51,7 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
     let trained = identified.model.as_trained(&data.set)?;
     identification::write_report(
         &identified,
-        &report,
+        (&report, None),
         out,
         &[("training", &trained), ("unseen", &unseen.set)],
         &[train, test],

@@ -63,9 +63,10 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     identification::save(&identified, &model)?;
     let trained = identified.model.as_trained(&data.set)?;
     let sets = [("training", trained.as_ref())];
-    let reported = report
-        .as_ref()
-        .map_or(Ok(()), |page| identification::write_report(&identified, page, out, &sets, &arguments.train));
+    let title = arguments.title.as_deref();
+    let reported = report.as_ref().map_or(Ok(()), |page| {
+        identification::write_report(&identified, (page, title), out, &sets, &arguments.train)
+    });
     let mut written = vec![("model", out)];
     written.extend(report.iter().filter(|_| reported.is_ok()).map(|page| ("report", page.path())));
     let text = || identification::printed(&identified, None, &written) + &next(out);

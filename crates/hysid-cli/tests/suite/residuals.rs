@@ -48,11 +48,12 @@ fn evaluate_says_what_the_residual_tells_and_what_helps() {
     let (bench, _) = bench();
     let told = bench.succeeds("evaluate law.json viscous.csv --residuals");
     assert!(told.stdout.contains("The residual is correlated with the rate of x"), "{}", told.stdout);
+    assert!(told.stdout.contains("\nrate-correlation "), "{}", told.stdout);
     assert!(told.stdout.contains("option rate") && told.stdout.contains("RMSE of force_kN, kN"), "{told}");
     assert!(told.stdout.lines().all(|line| line.chars().count() <= 80), "{}", told.stdout);
 
     let viscous = bench.json("evaluate law.json viscous.csv --residuals --json");
-    assert_eq!(finding(&viscous["residuals"], "rate")["verdict"], "found");
+    assert_eq!(finding(&viscous["residuals"], "rate-correlation")["verdict"], "found");
     let same = bench.json("evaluate law.json same.csv --residuals --json");
     for finding in same["residuals"]["findings"].as_array().unwrap() {
         assert_ne!(finding["verdict"], "found", "{finding}");
@@ -113,6 +114,10 @@ fn a_law_has_intervals_in_json_and_on_its_page() {
     {
         assert!(page.contains(words), "{words}");
     }
+    // Without a title of its own, the page has that of the data and the model.
+    assert!(page.contains("<h1>Force over x: prandtl-ishlinskii</h1>"));
+    bench.succeeds(&format!("{FIT} --force --title Wall"));
+    assert!(bench.text("law.html").contains("<h1>Wall</h1>"));
     let again = bench.json(&format!("{FIT} --json --threads 2"));
     assert_eq!((&again["intervals"], &again["residuals"]), (&fit["intervals"], &fit["residuals"]));
 }

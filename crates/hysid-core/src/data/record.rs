@@ -38,6 +38,8 @@ pub struct Record {
     given_rate: Option<Values>,
     output: Vec<f64>,
     lead_in: Option<Vec<f64>>,
+    /// Weight of each row in the sum of squares that a fit minimises; `None` if all count alike.
+    weights: Option<Vec<f64>>,
     /// Outputs of the known beginning; the same rows of `output` are blank.
     known: Vec<f64>,
 }
@@ -52,7 +54,8 @@ impl Record {
     pub fn new(name: impl Into<String>, inputs: Vec<Vec<f64>>, output: Vec<f64>) -> Result<Self> {
         let inputs = inputs.into_iter().map(Values::from).collect();
         let (name, known) = (name.into(), Vec::new());
-        let record = Self { name, time: None, inputs, given_rate: None, output, lead_in: None, known };
+        let record =
+            Self { name, time: None, inputs, given_rate: None, output, lead_in: None, weights: None, known };
         Excitation::new(&record.name, columns(&record.inputs))?;
         record.excitation().check_column(Channel::Output, &record.output, true)?;
         Ok(record)
@@ -97,6 +100,24 @@ impl Record {
     pub fn with_lead_in(mut self, lead_in: Vec<f64>) -> Result<Self> {
         self.excitation().with_lead_in(&lead_in)?;
         self.lead_in = Some(lead_in);
+        Ok(self)
+    }
+
+    /// The same record with a weight of each row in the sum of squares that a fit minimises, one a row. Errors count all
+    /// rows alike.
+    ///
+    /// # Errors
+    /// Another length, or a weight that is not above 0 or not finite.
+    pub fn with_weights(mut self, weights: Vec<f64>) -> Result<Self> {
+        if weights.len() != self.len() {
+            let problem = DataProblem::Length { expected: self.len(), found: weights.len() };
+            return Err(self.defect(None, None, problem));
+        }
+        let is_valid = |weight: &f64| *weight > 0.0 && weight.is_finite();
+        if let Some(row) = weights.iter().position(|weight| !is_valid(weight)) {
+            return Err(self.defect(Some(row), None, DataProblem::Weight { found: weights[row] }));
+        }
+        self.weights = Some(weights);
         Ok(self)
     }
 
@@ -182,6 +203,11 @@ impl Record {
         self.lead_in.as_deref()
     }
 
+    /// Weight of each row in the sum of squares that a fit minimises; `None` if all count alike.
+    pub fn weights(&self) -> Option<&[f64]> {
+        self.weights.as_deref()
+    }
+
     /// The first input at each turning point of the lead-in and at the first row; empty without a lead-in.
     pub fn lead_in_rows(&self) -> Vec<f64> {
         self.excitation().lead_in_rows()
@@ -238,6 +264,7 @@ impl Record {
             given_rate: self.given_rate.as_ref().map(cut),
             output: self.output[..end].to_vec(),
             lead_in: self.lead_in.clone(),
+            weights: self.weights.as_ref().map(|weights| weights[..end].to_vec()),
             known: self.known[..self.known.len().min(end)].to_vec(),
         }
     }
@@ -303,6 +330,11 @@ pub struct Dataset {
 }
 
 impl Dataset {
+    /// True if rows have weights.
+    pub fn is_weighted(&self) -> bool {
+        self.records.iter().any(|record| record.weights.is_some())
+    }
+
     /// A data set of one record with one input `x` and the output `y`, sample by sample, in the user's units.
     /// NaN in `y` is a blank: the row advances the memory and is not scored.
     ///

@@ -13,6 +13,8 @@ pub struct Series {
     pub samples: Vec<Sample>,
     /// The measured output; NaN where it is blank, as in a lead-in.
     pub output: Vec<f64>,
+    /// Weight of each row in the sum of squares; empty if all count alike.
+    pub weights: Vec<f64>,
     /// Columns of the inputs beside the first.
     pub further: Vec<Vec<f64>>,
 }
@@ -30,7 +32,14 @@ impl Series {
         output.extend(record.output());
         let column = |values: &Values| [&vec![values[0]; lead_in], &values[..]].concat();
         let further = record.inputs()[1..].iter().map(column).collect();
-        Ok(Self { samples: all, output, further })
+        let padded = |weights: &[f64]| [&vec![1.0; lead_in], weights].concat();
+        let weights = record.weights().map_or_else(Vec::new, padded);
+        Ok(Self { samples: all, output, weights, further })
+    }
+
+    /// Weight of a row in the sum of squares.
+    pub fn weight(&self, row: usize) -> f64 {
+        self.weights.get(row).copied().unwrap_or(1.0)
     }
 
     /// All records of a data set that have an output.

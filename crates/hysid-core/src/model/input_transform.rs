@@ -337,6 +337,9 @@ impl SeenColumns {
         if let Some(lead_in) = self.lead_in {
             seen = seen.with_lead_in(lead_in)?;
         }
+        if let Some(weights) = measured.weights() {
+            seen = seen.with_weights(weights.to_vec())?;
+        }
         match self.rate {
             Some(rate) => seen.with_given_rate(rate),
             None => Ok(seen),

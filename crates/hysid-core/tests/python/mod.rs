@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 /// Columns of a line of Python.
 const COLUMNS: usize = 120;
 
-/// Names that a docstring lists; a longer list is in the type.
+/// Names in the type of a docstring; more follow the meaning.
 const MOST_NAMES: usize = 6;
 
 /// The module of types: the names of each option that has some, and all options as keywords.
@@ -46,7 +46,7 @@ fn fitting(text: &str) -> String {
         grouped("    ", |option| format!("{}: {} | None = None,", option.name, kind(option, "_options.")));
     let keywords = keywords.trim_start().replace("\n\n", "\n");
     let text = replaced(text, "    *,\n", "    time_limit: ", &format!("    {keywords}    # Run\n"));
-    let parameters: String = OPTIONS.iter().map(parameter).collect();
+    let parameters = groups_of_parameters();
     let last_before = "name for each, by default ``\"1\"``, ``\"2\"`` and so on.\n";
     replaced(&text, last_before, "    time_limit : ", &parameters)
 }
@@ -88,6 +88,17 @@ fn grouped(indent: &str, line: impl Fn(&FitOption) -> String) -> String {
     text
 }
 
+/// The paragraphs of a docstring in sections, one for each group.
+fn groups_of_parameters() -> String {
+    let heading = |text: &str| format!("\n    {text}\n    {}\n", "-".repeat(text.len()));
+    let mut text = String::new();
+    for group in OptionGroup::ALL {
+        text += &heading(group.heading());
+        text.extend(OPTIONS.iter().filter(|option| option.group == group).map(parameter));
+    }
+    text + &heading("Run")
+}
+
 /// The type of a value.
 fn kind(option: &FitOption, module: &str) -> String {
     match option.values {
@@ -108,15 +119,16 @@ fn alias(option: &FitOption) -> String {
 
 /// The paragraph of a docstring.
 fn parameter(option: &FitOption) -> String {
-    let kind = match option.values {
+    let (kind, names) = match option.values {
         OptionValues::Names(names) if names().len() <= MOST_NAMES => {
-            format!("{{\"{}\"}}", names().join("\", \""))
+            (format!("{{\"{}\"}}", names().join("\", \"")), String::new())
         }
-        OptionValues::Names(_) => "str".into(),
-        OptionValues::Positive => "array of numbers".into(),
-        _ => kind(option, ""),
+        // A long list has lines of its own.
+        OptionValues::Names(names) => ("str".into(), format!(" One of \"{}\".", names().join("\", \""))),
+        OptionValues::Positive => ("array of numbers".into(), String::new()),
+        _ => (kind(option, ""), String::new()),
     };
-    let words = format!("{}. Default: {}.", option.meaning, option.default_in_words());
+    let words = format!("{}.{names} Default: {}.", option.meaning, option.default_in_words());
     let lines = wrapped(&words, COLUMNS - 8).into_iter().map(|line| format!("        {line}\n"));
     format!("    {} : {kind}, optional\n", option.name) + &lines.collect::<String>()
 }

@@ -47,6 +47,7 @@ fn height(part: &Part) -> f64 {
         Part::Chart(chart) => chart.size.1,
         // Three small charts or two cards stand beside each other.
         Part::Charts(charts) => charts.iter().map(|chart| chart.size.1).sum::<f64>() / 3.0,
+        Part::Columns(columns) => columns.iter().map(|column| inside(column)).fold(0.0, f64::max),
         Part::Cards(cards) => cards.iter().map(|card| inside(&card.parts)).sum::<f64>() / 2.0,
     }
 }

@@ -34,6 +34,7 @@ fn all_parts() -> Vec<Part> {
         Part::chart(chart.clone()),
         Part::chart(chart.clone().sized(560.0, 400.0)),
         Part::Charts(vec![chart.clone(), chart]),
+        Part::Columns(vec![vec![Part::paragraph(text())], vec![Part::note(text())]]),
     ];
     let card = Card { anchor: HOSTILE.into(), heading: text(), parts: content.clone() };
     vec![
@@ -53,6 +54,19 @@ fn whatever_a_part_says_is_text() {
     let body = page.split("<body>").last().unwrap();
     assert_balanced(body);
     assert_eq!(page.matches("<svg class=\"plot\"").count(), 12);
+}
+
+/// A short table stays on one printed page, a long one is split between rows.
+#[test]
+fn a_table_that_fits_a_page_is_not_split() {
+    let table = |rows: usize| {
+        let rows = (0..rows).map(|row| vec![Cell::from(row)]);
+        parts(&[Part::Table(Table::new(["row"]).with_rows(rows))])
+    };
+    assert!(table(ROWS_OF_A_PAGE).contains("class=\"scroll whole\""));
+    assert!(table(ROWS_OF_A_PAGE + 1).contains("class=\"scroll\""));
+    let print = STYLE.split("@media print").nth(1).unwrap();
+    assert!(print.contains(".whole { break-inside: avoid; }"), "{print}");
 }
 
 #[test]

@@ -18,6 +18,7 @@ from hysid._comparison import Compared, Comparison, compare
 from hysid._cycles import Cycles, cycles
 from hysid._diagnosis import Diagnosis, Finding, ModelDiagnosis, diagnose
 from hysid._fitting import fit
+from hysid._model_set import ModelSet
 from hysid._inverse import Inverse, Inversion, Inverted
 from hysid._plan import Plan, Segment, plan
 from hysid._progress import Progress
@@ -58,6 +59,7 @@ __all__ = [
     "Member",
     "Model",
     "ModelDiagnosis",
+    "ModelSet",
     "ParameterInterval",
     "Plan",
     "Prediction",

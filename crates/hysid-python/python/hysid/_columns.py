@@ -94,7 +94,8 @@ def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,)) -> np.n
             raise ValueError("complex numbers cannot be used")
         numbers = np.ascontiguousarray(values, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{what}: {error}") from None
+        other = "; other dates than ISO 8601 are read by pandas.to_datetime" if what == "time" else ""
+        raise ValueError(f"{what}: {error}{other}") from None
     if numbers.ndim == 2 and 2 not in dimensions and numbers.shape[1] == 1:
         numbers = np.ascontiguousarray(numbers[:, 0])
     # `ascontiguousarray` makes an array of one value from a number.

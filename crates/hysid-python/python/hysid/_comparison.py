@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from hysid._data import Values
     from hysid._options import ModelName
+    from hysid._types import RateName
 
 @dataclass(frozen=True)
 class Compared:
@@ -148,7 +149,7 @@ def compare(
     x: Values,
     y: Values | str,
     time: ArrayLike | str | None = None,
-    rate: str | ArrayLike = "auto",
+    rate: RateName | ArrayLike = "auto",
     records: ArrayLike | str | None = None,
     *,
     test: Any = None,

@@ -29,6 +29,8 @@ class Columns(NamedTuple):
     rate: Column | None
     output: Column | None
     records: list[tuple[str, slice]]
+    weights: np.ndarray | None = None
+    """Of each row in the sum of squares that a fit minimises."""
 
     @property
     def rows(self) -> int:
@@ -55,6 +57,7 @@ class Columns(NamedTuple):
                 )
                 for name, rows in self.records
             ],
+            None if self.weights is None else [self.weights[rows] for _, rows in self.records],
         )
 
     def names(self) -> list[str | None]:
@@ -66,6 +69,33 @@ class Columns(NamedTuple):
         if len(self.inputs) == 1:
             return [self.inputs[0].name or "x"]
         return [column.name or f"x{place + 1}" for place, column in enumerate(self.inputs)]
+
+
+def weighted(arranged: Columns, weights: Any) -> Columns:
+    """The columns with a weight of each row; a row with the weight 0 loses its output.
+
+    Weights that are all alike change nothing, so that every model takes them.
+    """
+    if weights is None or arranged.output is None:
+        return arranged
+    parts = weights if is_record_list(weights) else [weights]
+    try:
+        found = np.concatenate([np.asarray(part, dtype=np.float64) for part in parts])
+    except (TypeError, ValueError):
+        raise ValueError("sample_weight: a number for each row is needed") from None
+    if found.shape != (arranged.rows,):
+        raise ValueError(f"sample_weight: one weight for each of the {arranged.rows} rows is needed, not {found.shape}")
+    if not np.isfinite(found).all() or (found < 0).any():
+        row = int(np.flatnonzero(~np.isfinite(found) | (found < 0))[0])
+        raise ValueError(f"sample_weight: row {row + 1} has {found[row]}: a finite number, 0 or above, is needed")
+    counted = found > 0
+    output = arranged.output._replace(values=np.where(counted, arranged.output.values, np.nan))
+    used = found[counted & ~np.isnan(arranged.output.values)]
+    if len(used) == 0:
+        raise ValueError("sample_weight: the weights of all rows with an output are zero")
+    if used.min() == used.max():
+        return arranged._replace(output=output)
+    return arranged._replace(output=output, weights=np.where(counted, found, 1.0))
 
 
 def in_units_of(arranged: Columns, trained: Mapping[str, Any]) -> Columns:
@@ -108,6 +138,47 @@ def columns(x: Any, y: Any, time: Any, rate: Any, records: Any, inputs: Sequence
         if is_record_list(values):
             raise ValueError(f"{what} is a list of records, and x is not: give x as a list of as many arrays")
     return _of_table(x, y, time, rate, records, inputs)
+
+
+def outputs_of(x: Any, y: Any) -> tuple[Any, dict[str, Any]] | None:
+    """`x` without the outputs, and each output by its name, as `columns` takes it; None if `y` is one output.
+
+    Several outputs are a table or an array with several columns, a list of names of columns of `x`, or for a list of records
+    a list of these.
+    """
+    if not is_record_list(x):
+        return _outputs_of_table(x, y)
+    each = [y] * len(x) if _are_names(y) else _for_each("y", y, len(x))
+    found = [_outputs_of_table(table, outputs) for table, outputs in zip(x, each)]
+    several = [one for one in found if one is not None]
+    if not several:
+        return None
+    names = list(several[0][1])
+    if len(several) < len(found) or any(list(outputs) != names for _, outputs in several):
+        raise ValueError("y: all records need the same outputs")
+    return [table for table, _ in several], {name: [outputs[name] for _, outputs in several] for name in names}
+
+
+def _are_names(y: Any) -> bool:
+    return isinstance(y, (list, tuple)) and len(y) > 0 and all(isinstance(name, str) for name in y)
+
+
+def _outputs_of_table(x: Any, y: Any) -> tuple[Any, dict[str, Any]] | None:
+    named = named_columns(y)
+    if _are_names(y):
+        names = list(y)
+        x, outputs = _taken_by_name(x, {f"y[{place}]": name for place, name in enumerate(y)})
+    elif named is not None:
+        names, outputs = [name for name, _ in named], [{name: column} for name, column in named]
+    else:
+        is_nested = isinstance(y, (list, tuple)) and len(y) > 0 and isinstance(y[0], (list, tuple))
+        values = np.asarray(y, dtype=np.float64) if is_nested else y
+        count = values.shape[1] if len(getattr(values, "shape", ())) == 2 else 1
+        names = [f"y{place + 1}" for place in range(count)]
+        outputs = [{name: values[:, place]} for place, name in enumerate(names)] if count > 1 else [y]
+    if len(set(names)) < len(names):
+        raise ValueError(f"y: the names of the outputs {', '.join(names)} are not all different")
+    return (x, dict(zip(names, outputs))) if len(names) > 1 or _are_names(y) else None
 
 
 def is_record_list(values: Any) -> bool:
@@ -280,18 +351,53 @@ def check_indexes(given: Mapping[str, Any]) -> None:
             )
 
 
-def warn_of_order(x: Any, records: list[slice]) -> None:
-    """Warn of an object whose labels of rows do not grow from row to row within a record."""
+def warn_of_order(
+    x: Any, records: list[slice], time: np.ndarray | None = None, places: np.ndarray | None = None
+) -> None:
+    """Warn once of rows that are out of order or missing: by their labels, by their places in the whole data, or by their
+    times."""
     index = row_labels(x)
-    if index is None or getattr(index.dtype, "kind", "O") not in "iufMm":
-        return
-    if not all(index[rows].is_monotonic_increasing for rows in records):
+    is_label = index is not None and getattr(index.dtype, "kind", "O") in "iufMm"
+    if is_label and not all(index[rows].is_monotonic_increasing for rows in records):
         warn(
             [
                 "the rows are not in the order of their index: a model with memory needs them in the order of time "
                 "(sort them, as with sort_index(); a shuffled split, such as ShuffleSplit, destroys it)"
             ]
         )
+        return
+    if is_label and index.dtype.kind in "iu":
+        places = index.to_numpy()
+    if places is not None:
+        missing, of = sum(_missing(places[rows]) for rows in records), "index"
+    elif time is not None:
+        missing, of = sum(_missing(time[rows], FEWEST_GAPS) for rows in records), "times"
+    else:
+        return
+    if missing:
+        warn(
+            [
+                f"rows are missing ({missing} gaps in the {of}): a model with memory needs every row of the input (keep rows "
+                "without a measurement, with NaN as the output; split by records or in time, as with RecordSplit: "
+                "KFold leaves rows out)"
+            ]
+        )
+
+
+FEWEST_GAPS = 0.05
+"""Share of the steps of time that are gaps where rows were left out; single ones are pauses of the measurement."""
+
+
+def _missing(places: np.ndarray, fewest: float = 0.0) -> int:
+    """Number of gaps in places that are otherwise even; 0 for fewer than this share of the steps."""
+    steps = np.diff(places.astype(np.float64))
+    steps = steps[steps > 0]
+    if len(steps) == 0:
+        return 0
+    multiples = steps / steps.min()
+    gaps = int(np.count_nonzero(multiples > 1.5))
+    is_even = bool(np.all(np.abs(multiples - np.round(multiples)) < 0.02 * np.round(multiples)))
+    return gaps if is_even and gaps >= fewest * len(steps) else 0
 
 
 def _records(records: Any, rows: int, name: str) -> list[tuple[str, slice]]:

@@ -65,8 +65,9 @@ class Finding:
 class _Findings:
     """Base class of the diagnoses of data and of models."""
 
-    def __init__(self, content: dict[str, Any]) -> None:
+    def __init__(self, content: dict[str, Any], text: str) -> None:
         self.content = content
+        self._text = text
 
     @cached_property
     def properties(self) -> list[Finding]:
@@ -95,14 +96,14 @@ class _Findings:
         return self[name].verdict
 
     def __str__(self) -> str:
-        return "\n".join(f"{finding.name:<18}{finding.verdict}" for finding in self.properties)
+        return self._text.rstrip("\n")
 
     def _repr_html_(self) -> str:
         return html_table((finding.name, finding.verdict, finding.statement) for finding in self.properties)
 
 
 class Diagnosis(_Findings):
-    """Properties of the hysteresis in measured data.
+    """Properties of the hysteresis in measured data; ``print`` shows the tables and the advice of `hysid diagnose`.
 
     Attributes
     ----------
@@ -116,8 +117,8 @@ class Diagnosis(_Findings):
         What the program prints with ``hysid diagnose --json``.
     """
 
-    def __init__(self, content: dict[str, Any], data: Columns) -> None:
-        super().__init__(content)
+    def __init__(self, content: dict[str, Any], text: str, data: Columns) -> None:
+        super().__init__(content, text)
         self.data = data
 
     @property
@@ -132,7 +133,7 @@ class Diagnosis(_Findings):
 
 
 class ModelDiagnosis(_Findings):
-    """Properties of the hysteresis of a fitted model.
+    """Properties of the hysteresis of a fitted model; ``print`` shows the tables of `hysid diagnose`.
 
     Attributes
     ----------
@@ -190,5 +191,5 @@ def diagnose(
     smallest_reversal = fraction("smallest_reversal", smallest_reversal)
     smoothing = truth("smoothing", smoothing)
     arranged = columns(x, y, time, None, records)
-    content = json.loads(_hysid.diagnose(arranged.dataset(), smallest_reversal, smoothing))
-    return Diagnosis(content, arranged)
+    content, text = _hysid.diagnose(arranged.dataset(), smallest_reversal, smoothing)
+    return Diagnosis(json.loads(content), text, arranged)

@@ -11,7 +11,8 @@ import numpy as np
 
 from hysid import _hysid
 from hysid._arguments import real, whole
-from hysid._data import columns
+from hysid._data import columns, weighted
+from hysid._model_set import fitted_set
 from hysid._progress import Listener, of_native
 from hysid._progress_line import told
 from hysid._warning import warn
@@ -22,13 +23,14 @@ if TYPE_CHECKING:
 
     from hysid import _options
     from hysid._data import Columns, Values
+    from hysid._types import RateName
 
 
 def fit(
     x: Values,
     y: Values | str,
     time: ArrayLike | str | None = None,
-    rate: str | ArrayLike = "auto",
+    rate: RateName | ArrayLike = "auto",
     records: ArrayLike | str | None = None,
     *,
     # Model
@@ -76,6 +78,7 @@ def fit(
     time_limit: float | None = None,
     threads: int | None = None,
     progress: Listener = True,
+    sample_weight: ArrayLike | None = None,
 ) -> Model:
     """Identify a model from measured data.
 
@@ -94,19 +97,28 @@ def fit(
         the unit from the attribute ``units``) and from a dict. A list has an array, table or dict of each record; then `y`,
         `time` and `rate` are lists too.
     y : array of shape (n,), name of a column, or list of arrays
-        The measured output in the user's unit. NaN or a mask means no measurement: such a row drives the memory, but
+        The measured output in the user's unit. Several outputs are an array of shape (n, outputs), a table, or a list of
+        names of columns: each is fitted by itself, and the result is a `ModelSet`. NaN or a mask means no measurement: such a row drives the memory, but
         is neither trained on nor scored. Rows are taken by position: pandas objects must have the same index. A name is
         that of a column of the table `x`; the columns that are not named are the inputs.
     time : array of shape (n,), name of a column, or list of arrays, optional
-        Time stamps, increasing within each record; dates and times become seconds since the first.
+        Time stamps, increasing within each record; dates and times, also as text of ISO 8601 such as
+        ``"2024-05-31T12:00:00.25"``, become seconds since the first.
     rate : str or array of shape (n,), default "auto"
         Method for the rate of the first input: ``"auto"``, ``"none"``, ``"central"``, ``"backward"``,
         ``"savitzky-golay"``, or the measured rate itself.
     records : array of shape (n,), name of a column, or list of names, optional
         A label for each row; where the label changes, a new record starts in the initial state. Of a list of records, a
         name for each, by default ``"1"``, ``"2"`` and so on.
+
+    Model
+    -----
     model : str, optional
-        Model to fit. `auto` cross-validates networks and classical models and combines the best. Default: auto.
+        Model to fit. `auto` cross-validates networks and classical models and combines the best. One of "auto", "pnn",
+        "gpnn", "preisach-nn", "xpnn", "xpnn+", "masing", "prandtl-ishlinskii", "modified-prandtl-ishlinskii",
+        "generalized-prandtl-ishlinskii", "rate-dependent-prandtl-ishlinskii", "dynamic-prandtl-ishlinskii", "preisach",
+        "neuro-madelung", "bouc-wen", "peak-oriented", "menegotto-pinto", "ramberg-osgood", "jiles-atherton", "lugre",
+        "duhem-nn", "hysteretic-oscillator", "hysteretic-state-space", "random-stops". Default: auto.
     members : int, optional
         Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts that are
         combined. Default: 6 for auto; otherwise 1.
@@ -133,6 +145,9 @@ def fit(
     rate_companding : float, optional
         Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all rows stay
         below; 0 for off. Default: off.
+
+    Training
+    --------
     warm_up : int, optional
         Rows at the beginning of each record that drive the memory and are not trained on, for records that do not begin
         in the virgin state. Default: chosen by cross-validation for auto; otherwise 0.
@@ -141,8 +156,9 @@ def fit(
         end of the input range, demagnetised, periodic (each record is a period of a steady state), unknown (one of 11
         pasts, found for each record before the fit), or free (found for each record during the fit, for records that
         are cut out of a longer past). With free, duhem-nn finds its internal states, models with inertia find
-        displacements and velocities, and other models find up to three turning points before the first row. Default:
-        chosen by cross-validation for auto; otherwise virgin.
+        displacements and velocities, and other models find up to three turning points before the first row. One of
+        "virgin", "saturated-up", "saturated-down", "demagnetised", "periodic", "unknown", "free". Default: chosen by
+        cross-validation for auto; otherwise virgin.
     known : int | str, optional
         Measured beginning of the records on which the model will be used, as in `hysid evaluate --known`. Errors are
         then those after this beginning of each record, and `auto` also tries initial_state free. Default with free: the
@@ -180,6 +196,9 @@ def fit(
     decay : float, optional
         Penalty on the squared weights of stops and tanh neurons. Default: 1e-7 (nearly 0 where that lowers the
         cross-validation error) for networks; chosen by cross-validation for auto.
+
+    Classical models
+    ----------------
     operators : int, optional
         Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of duhem-nn
         (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none). Default: set by each
@@ -229,6 +248,9 @@ def fit(
         Error that the fit of duhem-nn minimises: `row`, the mean square error of all rows; `record`, the mean over the
         records of the error relative to the record's root mean square output. Default: record with free initial states,
         or if the root mean squares of the records differ by more than 5 times; otherwise row.
+
+    Run
+    ---
     time_limit : float, optional
         Time in seconds after which to stop and keep the best model so far.
     threads : int, optional
@@ -237,11 +259,15 @@ def fit(
         True shows one line with the share done and the remaining time while the fit runs, if stderr is a terminal or in a
         notebook; False shows nothing. A callable is called with a `Progress` up to twenty times a second. If it returns
         true, the fit ends with the best model so far. `hysid.tqdm_progress` shows a progress bar of tqdm.
+    sample_weight : array of shape (n,), or list of arrays, optional
+        Weight of each row in the sum of squares that the fit minimises: a weight of 2 counts as the row twice, and a row
+        with 0 only drives the memory. Every model takes weights that are 0 or all alike; others are for classical models
+        fitted by least squares, and an error names them. The errors in `Model.train` count all rows alike.
 
     Returns
     -------
     Model
-        The fitted model.
+        The fitted model; of several outputs a `ModelSet`.
 
     Raises
     ------
@@ -257,11 +283,30 @@ def fit(
     >>> model = hysid.fit(x, y, model="prandtl-ishlinskii", operators=8)
     >>> model.evaluate(x, y).nrmse_std_percent < 5
     True
+
+    A table with time stamps and a unit in each name, and the records in one of its columns:
+
+    >>> frame = hysid.specimen("piezo-actuator").data()[0].frame()
+    >>> list(frame)
+    ['record', 't_s', 'voltage_V', 'displacement_um']
+    >>> stage = hysid.fit(frame, "displacement_um", "t_s", records="record", model="masing")
+    >>> stage.inputs, stage.output
+    (['voltage_V'], 'displacement_um')
+
+    Several outputs, and rows that count more than others:
+
+    >>> models = hysid.fit(x, {"force": y, "slip": x - y}, model="masing")
+    >>> list(models)
+    ['force', 'slip']
+    >>> weighted = hysid.fit(x, y, model="masing", sample_weight=np.where(abs(x) > 3, 4.0, 1.0))
     """
     keywords = locals()
+    models = fitted_set(x, y, lambda x, y: fit(**{**keywords, "x": x, "y": y}))
+    if models is not None:
+        return models  # type: ignore[return-value]  # The type of `y` does not tell how many columns it has.
     given = {name: keywords[name] for name in _hysid.option_names()}
     named = isinstance(rate, str)
-    arranged = columns(x, y, time, None if named else rate, records)
+    arranged = weighted(columns(x, y, time, None if named else rate, records), sample_weight)
     return identified(
         arranged,
         str(rate) if named else "given",

@@ -17,8 +17,9 @@ class ResidualFinding:
     Attributes
     ----------
     test : str
-        The test: ``"bias"``, ``"whiteness"``, ``"input"``, ``"rate"``, ``"turning-points"``, ``"speed"``,
-        ``"amplitude"``, ``"distance"``, ``"direction"`` or ``"time"``.
+        The test, by the name that it has on pages and in the terminal: ``"mean"``, ``"whiteness"``,
+        ``"input-correlation"``, ``"rate-correlation"``, ``"after-turning-points"``, ``"by-speed"``, ``"by-amplitude"``,
+        ``"by-distance"``, ``"by-direction"`` or ``"over-time"``.
     verdict : str
         ``"found"`` (there is structure), ``"not found"`` or ``"not testable"``.
     p_value, adjusted_p_value : float or None
@@ -43,6 +44,8 @@ class ResidualFinding:
 class Residuals:
     """Tests of the residual of a model, measured minus simulated output, of `Model.residuals`.
 
+    ``print`` shows the table of `hysid evaluate --residuals`, with what helps.
+
     Attributes
     ----------
     content : dict
@@ -55,8 +58,9 @@ class Residuals:
         Root mean square and mean of the residual, in the unit of the output.
     """
 
-    def __init__(self, content: dict[str, Any]) -> None:
+    def __init__(self, content: dict[str, Any], text: str) -> None:
         self.content = content
+        self._text = text
 
     @cached_property
     def findings(self) -> list[ResidualFinding]:
@@ -87,7 +91,7 @@ class Residuals:
         raise unknown("test", "tests", test, (finding.test for finding in self.findings))
 
     def __str__(self) -> str:
-        return "\n".join(f"{finding.test:<16}{finding.verdict}" for finding in self.findings)
+        return self._text.rstrip("\n")
 
     def _repr_html_(self) -> str:
         return html_table(

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
+
+from hysid import _hysid
 
 __all__ = ["Errors", "Member", "Prediction"]
 
 
 @dataclass(frozen=True)
 class Errors:
-    """Errors of a free run over all scored rows.
+    """Errors of a free run over all scored rows; ``print`` shows the table of `hysid evaluate`.
 
     Attributes
     ----------
@@ -42,6 +45,9 @@ class Errors:
     def as_dict(self) -> dict[str, Any]:
         """Give the errors as a dict."""
         return asdict(self)
+
+    def __str__(self) -> str:
+        return _hysid.errors_text(json.dumps(self.as_dict())).rstrip("\n")
 
 
 class Prediction(NamedTuple):

@@ -47,13 +47,12 @@ class StoredModel:
         ValueError
             The file is damaged, of a later version, or not a model file.
         """
-        with open(path, encoding="utf-8") as file:
-            try:
-                text = file.read()
-            except UnicodeDecodeError:
-                text = "?"
+        with open(path, "rb") as file:
+            content = file.read()
         try:
-            return cls.from_json(text)
+            if content.startswith(b"PK"):
+                raise ValueError("an archive of several models is read by hysid.ModelSet.load")
+            return cls.from_json(content.decode(errors="replace"))
         except ValueError as error:
             raise ValueError(f"{os.fspath(path)}: {error}") from None
 
@@ -341,6 +340,8 @@ class StoredModel:
         facts += zip(("chosen", "why"), self._native.selection() or ())
         if not self.members:
             facts.append(("training", self.termination))
+        if self.description["training"].get("weighted"):
+            facts.append(("weights", "of rows, in the fit; errors count all rows alike"))
         return facts
 
     def _kind(self) -> str:

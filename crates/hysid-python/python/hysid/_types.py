@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, TypeVar, Union
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["AnySeries", "Frame", "Given", "Numbers", "Series"]
+__all__ = ["AnySeries", "Frame", "Given", "Numbers", "RateName", "Series"]
+
+
+RateName: TypeAlias = Literal["auto", "none", "central", "backward", "savitzky-golay"]
+"""Methods for the rate of the first input."""
 
 
 class Series(Protocol):

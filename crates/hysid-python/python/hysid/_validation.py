@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from hysid import _hysid
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from hysid._data import Values
     from hysid._options import Options
+    from hysid._types import RateName
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ class FoldErrors:
 
 @dataclass(frozen=True)
 class Validation:
-    """Result of all folds.
+    """Result of all folds; ``print`` shows the table of `hysid validate`.
 
     Attributes
     ----------
@@ -59,6 +60,10 @@ class Validation:
     folds: tuple[FoldErrors, ...]
     unseen: Errors
     unseen_nrmse_std_percent: float | None
+    _text: str = field(default="", repr=False, compare=False)
+
+    def __str__(self) -> str:
+        return self._text.rstrip("\n")
 
     def _repr_html_(self) -> str:
         head = ["held out", "unseen, % of std", "train, % of std"]
@@ -74,7 +79,7 @@ def validate(
     x: Values,
     y: Values | str,
     time: ArrayLike | str | None = None,
-    rate: str | ArrayLike = "auto",
+    rate: RateName | ArrayLike = "auto",
     records: ArrayLike | str | None = None,
     *,
     folds: int = 5,
@@ -128,10 +133,10 @@ def validate(
     data, request = requested(arranged, str(rate) if named else "given", options, threads)
     limit = None if time_limit is None else real("time_limit", time_limit)
     with told(progress) as callback:
-        text, interrupted = _hysid.validate(data, request, folds, threads, limit, of_native(callback))
+        content, text, interrupted = _hysid.validate(data, request, folds, threads, limit, of_native(callback))
     if interrupted:
         warn(["interrupted: only the finished folds are returned"])
-    found = json.loads(text)
+    found = json.loads(content)
     return Validation(
         tuple(
             FoldErrors(fold["held_out"], Errors(**fold["train"]), Errors(**fold["unseen"]))
@@ -139,4 +144,5 @@ def validate(
         ),
         Errors(**found["unseen"]),
         found["unseen_nrmse_std_percent"],
+        text,
     )

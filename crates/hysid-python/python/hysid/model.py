@@ -446,13 +446,16 @@ class Model(StoredModel):
             Invalid inputs, or fewer than 50 rows with a measured output.
         """
         state = name_of("initial_state", initial_state)
-        arranged = self._converted(self._columns(x, y, time, rate, records), same_units)
+        return self._residuals(self._converted(self._columns(x, y, time, rate, records), same_units), state)
+
+    def _residuals(self, arranged: Columns, state: str | None = None) -> Residuals:
         data = arranged.dataset()
-        content = json.loads(self._native.residuals(data, state))
+        found, text = self._native.residuals(data, state)
+        content = json.loads(found)
         if arranged.output is not None and arranged.output.name is None:
             content["output"] = self.output
         warn(self._native.range_warnings(data))
-        return Residuals(content)
+        return Residuals(content, text)
 
     def report(
         self,
@@ -477,7 +480,7 @@ class Model(StoredModel):
         x, y, time, rate, records : array
             As of `evaluate`.
         title : str, optional
-            Title of the report; by default the name of the model.
+            Title of the report; by default the quantities and the name of the model.
         name : str, optional
             Name of the data in the report, by default ``"unseen"``. Use ``"training"`` for the data that the model was
             fitted to: the report then has the intervals of the parameters too, for laws that have them.
@@ -503,7 +506,7 @@ class Model(StoredModel):
         """
         arranged = self._converted(self._columns(x, y, time, rate, records), same_units)
         sets = [("unseen" if name is None else name, arranged.dataset())]
-        self._native.report(path, self.name if title is None else title, sets, truth("force", force))
+        self._native.report(path, title, sets, truth("force", force))
 
     def parameter_intervals(
         self,
@@ -780,7 +783,8 @@ class Model(StoredModel):
         ModelDiagnosis
             Properties found by probing the model, and from its equations and weights.
         """
-        return ModelDiagnosis(json.loads(self._native.diagnose()))
+        content, text = self._native.diagnose()
+        return ModelDiagnosis(json.loads(content), text)
 
     def cycles(
         self,

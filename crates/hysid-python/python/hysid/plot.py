@@ -1,4 +1,4 @@
-"""Plots of data and models with matplotlib. Every function returns its axes.
+"""Plots of data and models with matplotlib. Every function returns its axes, and `diagnostics` its figure.
 
 Plots of data take a model, or None for measured data alone, and the data as of `hysid.Model.evaluate`. Quantities on the
 axes have the units of the columns' names, as in the reports: `H (A/m)`.
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from hysid import _hysid
@@ -30,6 +31,7 @@ __all__ = [
     "convergence",
     "cycles",
     "diagnosis",
+    "diagnostics",
     "energy",
     "errors",
     "frequency",
@@ -76,8 +78,10 @@ def loops(
     >>> ax.get_xlabel()
     'H (kA/m)'
     """
-    run = Run(model, x, y, time, rate, records)
-    ax = new_axes(ax)
+    return _draw_loops(Run(model, x, y, time, rate, records), new_axes(ax))
+
+
+def _draw_loops(run: Run, ax: Axes) -> Axes:
     for rows in run.records():
         if run.y is not None:
             ax.plot(run.x[rows], run.y[rows], **MEASURED)
@@ -128,6 +132,13 @@ def histories(
         # Two lines, because this part of the figure is low.
         above.set_ylabel(run.input_label.replace(" (", "\n("))
         above.figure.align_ylabels()
+    _draw_outputs(run, edges, band, ax)
+    # Histories fill their axes: a legend would lie on them.
+    labelled_once(ax, above=is_new)
+    return ax
+
+
+def _draw_outputs(run: Run, edges: tuple[np.ndarray, np.ndarray] | None, band: float | None, ax: Axes) -> None:
     for rows in run.records():
         stamps = run.stamps(rows)
         if edges is not None:
@@ -138,9 +149,6 @@ def histories(
             ax.plot(stamps, run.simulated[rows], **MODEL)
     ax.xaxis.set_major_locator(MaxNLocator(6))
     ax.set(xlabel=run.time_label, ylabel=run.output_label)
-    # Histories fill their axes: a legend would lie on them.
-    labelled_once(ax, above=is_new)
-    return ax
 
 
 def errors(
@@ -176,9 +184,11 @@ def errors(
         raise ValueError(f"over {over!r}: it is 'time' or 'input'")
     if model is None or y is None:
         raise ValueError("errors need a model and a measured output y")
-    run = Run(model, x, y, time, rate, records)
+    return _draw_errors(Run(model, x, y, time, rate, records), over, new_axes(ax))
+
+
+def _draw_errors(run: Run, over: str, ax: Axes) -> Axes:
     assert run.simulated is not None and run.y is not None
-    ax = new_axes(ax)
     error = run.simulated - run.y
     for rows in run.records():
         places = run.x[rows] if over == "input" else run.stamps(rows)
@@ -193,3 +203,59 @@ def errors(
     in_unit = "" if unit is None else f" {unit}"
     ax.set_title(f"RMSE {rmse:.3g}{in_unit}, {percent:.3g} % of std", fontsize="medium")
     return ax
+
+
+def diagnostics(
+    model: Model,
+    x: Values,
+    y: Values | str,
+    time: ArrayLike | str | None = None,
+    rate: ArrayLike | None = None,
+    records: ArrayLike | str | None = None,
+) -> Figure:
+    """Plot what a model represents and what it leaves unexplained, in one figure.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    x, y, time, rate, records
+        Data, as of `hysid.Model.evaluate`, with at least 50 measured rows.
+
+    Returns
+    -------
+    Figure
+        Loops, output over time, error over time and over the input, and the autocorrelation of the residual with the 95 %
+        bound of white noise. The title names the tests of the residual that found structure.
+
+    Raises
+    ------
+    ValueError
+        As of `hysid.Model.residuals`.
+
+    Examples
+    --------
+    >>> train, test = hysid.specimen("terfenol-rod").data()
+    >>> model = hysid.fit(train.x, train.y, model="preisach")
+    >>> figure = hysid.plot.diagnostics(model, test.x, test.y)
+    >>> len(figure.axes)
+    5
+    """
+    if model is None or y is None:
+        raise ValueError("diagnostics need a model and a measured output y")
+    run = Run(model, x, y, time, rate, records)
+    residuals = model._residuals(run.columns)
+    figure, axes = plt.subplot_mosaic("ABB;ACC;DEE", figsize=(11.0, 8.0), layout="constrained")
+    _draw_loops(run, axes["A"])
+    _draw_outputs(run, run.band(0.9), 0.9, axes["B"])
+    _draw_errors(run, "time", axes["C"])
+    _draw_errors(run, "input", axes["D"]).set_title("")
+    whiteness = residuals.content["whiteness"]
+    correlations = whiteness["autocorrelation"]
+    axes["E"].axhspan(-whiteness["bound"], whiteness["bound"], **{**BAND, "label": "95 % of white noise"})
+    axes["E"].vlines(range(1, len(correlations) + 1), 0.0, correlations, color=ERROR["color"])
+    axes["E"].set(xlabel="lag (measured rows)", ylabel="autocorrelation of the residual")
+    axes["E"].legend(frameon=False)
+    found = ", ".join(dict.fromkeys(finding.test for finding in residuals.found))
+    figure.suptitle(f"{model.name}; structure in the residual: {found or 'not found'}")
+    return figure

@@ -12,9 +12,10 @@ from sklearn.utils.validation import check_is_fitted, column_or_1d, validate_dat
 
 from hysid import _hysid
 from hysid._columns import Column, place_of, without_mask
-from hysid._data import Columns, check_indexes, continued, runs, warn_of_order
+from hysid._data import Columns, check_indexes, continued, runs, warn_of_order, weighted
 from hysid._fitting import identified
 from hysid._tables import is_frame, with_column
+from hysid._warning import training_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -174,7 +175,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.threads = threads
         self.random_state = random_state
 
-    def fit(self, X: Any, y: Any) -> HysteresisRegressor:  # noqa: N803 - scikit-learn's name
+    def fit(self, X: Any, y: Any, sample_weight: Any = None) -> HysteresisRegressor:  # noqa: N803 - scikit-learn's name
         """Identify a model.
 
         Parameters
@@ -184,6 +185,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         y : array of shape (n,)
             The measured output. NaN means no measurement: such a row drives the memory, but is neither trained on
             nor scored.
+        sample_weight : array of shape (n,), optional
+            As of `hysid.fit`.
 
         Returns
         -------
@@ -207,10 +210,11 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         output = Column(np.ascontiguousarray(measured), None if output_name is None else str(output_name))
         options = {name: getattr(self, name) for name in _hysid.option_names() if name != "seed"}
         columns = self._columns(X, values)
-        warn_of_order(X, [rows for _, rows in columns.records])
+        time = None if columns.time is None else columns.time.values
+        warn_of_order(X, [rows for _, rows in columns.records], time, training_rows(len(values)))
         self._trained = columns if self.continue_records else None
         self.model_ = identified(
-            columns._replace(output=output),
+            weighted(columns._replace(output=output), sample_weight),
             self.rate,
             {**options, "seed": self._seed()},
             time_limit=self.time_limit,

@@ -214,7 +214,7 @@ impl Studio {
         let trained = identified.model.as_trained(&data.set)?;
         let title = file.strip_suffix(".json").unwrap_or(file);
         let sets = [("training", trained.as_ref())];
-        let mut page = identified.page(title, Some(Path::new(file)), &sets)?;
+        let mut page = identified.page(Some(title), Some(Path::new(file)), &sets)?;
         let inputs: Vec<PathBuf> = begun.files.iter().map(|file| self.folder.data(file)).collect();
         let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
         page.parts.push(origin::section("hysid studio", &inputs));

@@ -115,7 +115,7 @@ pub struct ParameterIntervals {
 
 impl ParameterIntervals {
     /// The intervals of a classical law, from the data that it was fitted to; `None` for a network, an ensemble, a model
-    /// that was distilled from one, and laws whose parameters have no meaning of their own (`preisach`,
+    /// that was distilled from one or fitted with weights of rows, and laws whose parameters have no meaning of their own (`preisach`,
     /// `neuro-madelung`, `duhem-nn`) or are more than 130.
     ///
     /// # Errors
@@ -124,7 +124,11 @@ impl ParameterIntervals {
         let (Some(law), FitSpec::Classical(options)) = (model.law(), &model.provenance().options) else {
             return Ok(None);
         };
-        if model.provenance().selection.is_some() {
+        if model.provenance().weighted {
+            return Ok(None);
+        }
+        let how = model.provenance().selection.as_ref().map(|selection| &selection.single);
+        if how.is_some_and(|single| single.as_ref().is_some_and(|single| single.distilled)) {
             return Ok(None);
         }
         check_trained_on(model, data)?;

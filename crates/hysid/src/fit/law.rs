@@ -28,7 +28,7 @@ use hysid_core::for_each_law;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fit::law::candidates::{CandidateRequest, RankedLaw};
 use crate::fit::law::linearised::{LawFamily, LinearisedLaw};
 use crate::fit::law::search::{IdentifiedLaw, search};
@@ -41,6 +41,9 @@ use crate::stop_check::StopCheck;
 
 /// A law that can be identified from data.
 pub trait Identify: Law {
+    /// True if the fit minimises a sum of squares in which rows may have weights.
+    const TAKES_WEIGHTS: bool = false;
+
     /// Identifies a law. The observer is called after every round of a search; long computations check `stop`
     /// in between, and end with the best result so far.
     ///
@@ -95,6 +98,8 @@ pub(crate) trait SearchedLaw: Law + Into<Classical> {
 }
 
 impl<L: SearchedLaw> Identify for L {
+    const TAKES_WEIGHTS: bool = true;
+
     fn identify(
         data: &Dataset,
         options: &ClassicalOptions,
@@ -130,6 +135,12 @@ macro_rules! fit {
             }
         }
 
+        /// Names of the laws that can be fitted with weights of rows.
+        fn weight_takers() -> Vec<&'static str> {
+            let laws = [$((crate::law::$module::$law::TAKES_WEIGHTS, ClassicalModel::$law)),*];
+            laws.into_iter().filter_map(|(takes, law)| takes.then(|| law.name())).collect()
+        }
+
         /// As [`Identify::memory_need`], with this number of threads.
         pub(crate) fn memory_need(data: &Dataset, options: &ClassicalOptions, threads: usize) -> MemoryNeed {
             let size = LawFitSize::of(data, threads);
@@ -150,6 +161,15 @@ macro_rules! fit {
 }
 
 for_each_law!(fit);
+
+/// Refuses weights of rows for a model that does not take them.
+pub(crate) fn check_weights(data: &Dataset, model: &'static str) -> Result<()> {
+    let takers = weight_takers();
+    match data.is_weighted() && !takers.contains(&model) {
+        true => Err(Error::Weights { model, takers }),
+        false => Ok(()),
+    }
+}
 
 macro_rules! linearised {
     ($($module:ident::$law:ident),* $(,)?) => {

@@ -59,12 +59,13 @@ impl TrainingRows {
 pub(crate) struct Sums {
     /// Gram matrix of the features, then the target.
     gram: Gram,
-    rows: usize,
+    /// Number of rows, or the sum of their weights.
+    rows: f64,
     features: usize,
 }
 
 impl Sums {
-    pub fn new(gram: Gram, features: usize, rows: usize) -> Self {
+    pub fn new(gram: Gram, features: usize, rows: f64) -> Self {
         Self { gram, rows, features }
     }
 
@@ -82,12 +83,12 @@ impl Sums {
             sum += weight * (2.0 * row + self.gram.at(i, i) * weight - 2.0 * self.gram.at(n, i));
         }
         // The terms cancel up to rounding.
-        sum.max(1e-14 * self.gram.at(n, n)) / self.rows.max(1) as f64
+        sum.max(1e-14 * self.gram.at(n, n)) / self.rows_or_one()
     }
 
     /// The quadratic form `½ wᵀAw - bᵀw`, without penalty (theory.md (7.1)).
     pub fn quadratic(&self) -> Quadratic {
-        let (n, rows) = (self.features, self.rows.max(1) as f64);
+        let (n, rows) = (self.features, self.rows_or_one());
         Quadratic {
             matrix: Symmetric::from_fn(n, |i, j| self.gram.at(i, j) / rows),
             right: (0..n).map(|i| self.gram.at(n, i) / rows).collect(),
@@ -97,7 +98,11 @@ impl Sums {
     /// Adds the rows of `other` for the factor 1, and takes them away for -1.
     pub fn add(&mut self, other: &Sums, factor: f64) {
         self.gram.add_multiple(&other.gram, factor);
-        self.rows = if factor > 0.0 { self.rows + other.rows } else { self.rows - other.rows };
+        self.rows += factor.signum() * other.rows;
+    }
+
+    fn rows_or_one(&self) -> f64 {
+        if self.rows > 0.0 { self.rows } else { 1.0 }
     }
 }
 
@@ -152,7 +157,7 @@ impl FoldSums {
     ) -> Option<Vec<f64>> {
         let total = self.total();
         let judged = self.judged.iter().map(|&fold| &self.folds[fold]);
-        let held_out: Vec<&Sums> = judged.filter(|fold| fold.rows > 0).collect();
+        let held_out: Vec<&Sums> = judged.filter(|fold| fold.rows > 0.0).collect();
         let judge = |fold: &&Sums| -> Option<Vec<f64>> {
             if stop.is_asked() {
                 return None;
@@ -235,7 +240,7 @@ impl<'a> SumGatherer<'a> {
     pub fn new(features: usize, folds: &RowFolds, stop: StopCheck<'a>) -> Self {
         Self {
             pace: Pace::new(stop),
-            folds: vec![Sums::new(Gram::new(features + 1), features, 0); folds.count],
+            folds: vec![Sums::new(Gram::new(features + 1), features, 0.0); folds.count],
             judged: folds.judged.clone(),
             batch: Batch::new(features + 1),
             lines: vec![[0.0; LINE]; features + 1],
@@ -251,6 +256,11 @@ impl<'a> SumGatherer<'a> {
 
     /// Adds a row, unless its target is blank.
     pub fn add(&mut self, fold: usize, features: &[f64], target: f64) {
+        self.add_weighted(fold, features, target, 1.0);
+    }
+
+    /// Adds a row that counts as many times as its weight says, unless its target is blank.
+    pub fn add_weighted(&mut self, fold: usize, features: &[f64], target: f64, weight: f64) {
         if target.is_nan() {
             return;
         }
@@ -258,12 +268,14 @@ impl<'a> SumGatherer<'a> {
             self.flush();
             self.fold = fold;
         }
+        // The squares of the root are the weight.
+        let root = weight.sqrt();
         for (line, &value) in self.lines.iter_mut().zip(features) {
-            line[self.filled] = value;
+            line[self.filled] = root * value;
         }
-        self.lines[features.len()][self.filled] = target;
+        self.lines[features.len()][self.filled] = root * target;
         self.filled += 1;
-        self.folds[fold].rows += 1;
+        self.folds[fold].rows += weight;
         if self.filled == LINE {
             self.batch.append(self.lines.iter(), LINE);
             self.filled = 0;
@@ -300,6 +312,31 @@ mod tests {
     use hysid_core::elementary::{sin, square};
 
     use super::*;
+
+    /// Weights 1, 2 and 4, whose roots or squares of roots are exact enough, against rows that are added so many times.
+    #[test]
+    fn a_weight_is_a_row_added_so_many_times() {
+        let one = RowFolds::one();
+        let [mut weighted, mut repeated] = [0, 1].map(|_| SumGatherer::new(2, &one, StopCheck::never()));
+        for k in 0..300 {
+            let (x, times) = (0.01 * f64::from(k), [1, 2, 4][k as usize % 3]);
+            let (features, target) = ([1.0, x], sin(3.0 * x));
+            weighted.add_weighted(0, &features, target, f64::from(times));
+            (0..times).for_each(|_| repeated.add(0, &features, target));
+        }
+        let [weighted, repeated] = [weighted, repeated].map(|sums| sums.finish().unwrap().total());
+        assert_eq!(weighted.rows, 700.0);
+        let fit = |sums: &Sums| sums.quadratic().minimum(StopCheck::never()).unwrap();
+        let (a, b) = (fit(&weighted), fit(&repeated));
+        for (a, b) in a.iter().zip(&b) {
+            approx::assert_relative_eq!(*a, *b, max_relative = 1e-11);
+        }
+        approx::assert_relative_eq!(
+            weighted.mean_square_error(&a),
+            repeated.mean_square_error(&b),
+            max_relative = 1e-11
+        );
+    }
 
     #[test]
     fn the_error_from_sums_is_that_of_the_rows() {

@@ -3,6 +3,7 @@
 use crate::scaffold::*;
 use std::sync::OnceLock;
 
+use hysid::fit::intervals::ParameterIntervals;
 use hysid::fit::progress::Observer;
 use hysid::model::{Ensemble, Group, Node, NodeKind, Predictor, Weights};
 use hysid::validation::folds;
@@ -286,6 +287,22 @@ fn data_too_few_to_hold_any_out_still_give_a_model() {
     let model = fitted(&few, options(None));
     assert!(model.band().is_none() && model.provenance().selection.is_none());
     assert!(model.provenance().train.nrmse_std_percent.unwrap() < 100.0);
+}
+
+/// A law among the members was fitted to the data as the law alone is: the residual of its intervals is that of its training.
+#[test]
+fn laws_among_the_members_have_intervals() {
+    let data = data();
+    let members = shared().ensemble().expect("several members").members();
+    let mut found = 0;
+    for member in members {
+        let Some(intervals) = ParameterIntervals::of(member, &data).unwrap() else { continue };
+        found += 1;
+        let trained = member.provenance().trained_error().rmse;
+        approx::assert_relative_eq!(intervals.residual_rms, trained, max_relative = 0.02);
+    }
+    let laws = members.iter().filter(|member| member.law().is_some()).count();
+    assert!(found > 0 || laws == 0, "{laws} laws without intervals");
 }
 
 #[test]

@@ -135,6 +135,7 @@ fn with_rare_parts(model: &Model) -> Model {
         "validation_nrmse_percent": 1.0
     }]);
     training["lead_ins"] = json!([{"record": "one", "lead_in": [1.0]}]);
+    training["weighted"] = json!(true);
     let options = training["options"].as_object_mut().unwrap();
     options.insert("ridge".into(), json!(1e-6));
     options.insert("decay".into(), json!(1e-6));

@@ -17,6 +17,8 @@ use crate::options::classical::ClassicalOptions;
 use crate::stop_check::StopCheck;
 
 impl Identify for JilesAtherton {
+    const TAKES_WEIGHTS: bool = true;
+
     fn identify(
         data: &Dataset,
         options: &ClassicalOptions,

@@ -20,6 +20,8 @@ use crate::stop_check::StopCheck;
 
 /// Linear least squares with a penalty on the bends of the virgin curve, chosen by cross-validation.
 impl Identify for Masing {
+    const TAKES_WEIGHTS: bool = true;
+
     fn identify(
         data: &Dataset,
         options: &ClassicalOptions,
@@ -111,13 +113,13 @@ fn slope_sums(rows: &TrainingRows, grid: &[f64], stop: StopCheck<'_>) -> Result<
     for (series, fold) in series.iter().zip(&folds.of_rows) {
         let mut plays = vec![0.0; grid.len()];
         let targets = scaling.scaled_output(&series.output);
-        for ((sample, &fold), target) in series.samples.iter().zip(fold).zip(targets) {
+        for (row, ((sample, &fold), target)) in series.samples.iter().zip(fold).zip(targets).enumerate() {
             if gatherer.is_over(6 * features.len()) {
                 break;
             }
             slope_features(sample.x, grid, &mut plays, &mut features);
             features[1..].iter_mut().for_each(|feature| *feature *= factor);
-            gatherer.add(fold, &features, target);
+            gatherer.add_weighted(fold, &features, target, series.weight(row));
         }
     }
     gatherer.finish()

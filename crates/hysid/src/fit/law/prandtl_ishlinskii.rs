@@ -19,6 +19,8 @@ use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
 impl Identify for PrandtlIshlinskii {
+    const TAKES_WEIGHTS: bool = true;
+
     fn identify(
         data: &Dataset,
         options: &ClassicalOptions,
@@ -105,7 +107,7 @@ fn play_sums(rows: &TrainingRows, thresholds: &[f64], stop: StopCheck<'_>) -> Re
     for (series, fold) in series.iter().zip(&folds.of_rows) {
         let mut plays = vec![0.0; thresholds.len()];
         let targets = scaling.scaled_output(&series.output);
-        for ((sample, &fold), target) in series.samples.iter().zip(fold).zip(targets) {
+        for (row, ((sample, &fold), target)) in series.samples.iter().zip(fold).zip(targets).enumerate() {
             if gatherer.is_over(4 * features.len()) {
                 break;
             }
@@ -114,7 +116,7 @@ fn play_sums(rows: &TrainingRows, thresholds: &[f64], stop: StopCheck<'_>) -> Re
                 *play = play::follow(*play, sample.x, r);
                 *feature = *play * factor; // (7.4)
             }
-            gatherer.add(fold, &features, target);
+            gatherer.add_weighted(fold, &features, target, series.weight(row));
         }
     }
     gatherer.finish()

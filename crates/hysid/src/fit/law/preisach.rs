@@ -38,6 +38,8 @@ const INTERVALS_FOR_CHOICE: usize = 20;
 const EVEN_SHARE: f64 = 0.5;
 
 impl Identify for Preisach {
+    const TAKES_WEIGHTS: bool = true;
+
     fn identify(
         data: &Dataset,
         options: &ClassicalOptions,
@@ -216,12 +218,12 @@ impl PreisachProblem {
         for (series, fold) in series.iter().zip(&folds.of_rows) {
             let targets = scaling.scaled_output(&series.output);
             let mut rows = RelayRows::new(&self.plane);
-            for ((sample, &fold), target) in series.samples.iter().zip(fold).zip(targets) {
+            for (row, ((sample, &fold), target)) in series.samples.iter().zip(fold).zip(targets).enumerate() {
                 if gatherer.is_over(4 * rows.features.len()) {
                     break;
                 }
                 rows.advance(sample.x, sample.x / scaling.inputs[0], !target.is_nan());
-                gatherer.add(fold, &rows.features, target);
+                gatherer.add_weighted(fold, &rows.features, target, series.weight(row));
             }
         }
         gatherer.finish()

@@ -240,7 +240,7 @@ fn fold_sums(
             .inspect(|masked: &Vec<f64>| rows += masked.iter().filter(|y| !y.is_nan()).count())
             .collect();
         let gram = GramOverRecords { columns: *columns, drives, targets: &masked, stop }.gram();
-        Sums::new(gram, columns.count() - 1, rows)
+        Sums::new(gram, columns.count() - 1, rows as f64)
     };
     let sums = FoldSums::new((0..folds.count).map(of_fold).collect(), folds.judged.clone());
     if stop.is_asked() { Err(Error::Stopped) } else { Ok(sums) }

@@ -22,7 +22,7 @@ mod rows;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
-use hysid_core::elementary::{ln, powf};
+use hysid_core::elementary::{ln, powf, square};
 use rand::RngExt;
 use serde_json::json;
 
@@ -42,6 +42,7 @@ use descent::Descent;
 pub(crate) use projection::FeatureColumns;
 use projection::{Projection, UNFINISHED};
 
+use rows::roots_of_weights;
 pub(crate) use rows::{MemoryKind, measured, spread, thinned, thinned_to};
 
 /// Points that are evaluated side by side.
@@ -169,7 +170,10 @@ pub(crate) fn check_effort(options: &ClassicalOptions) -> Result<()> {
 pub(super) struct LawObjective<'a> {
     family: &'a dyn SearchFamily,
     series: &'a [Series],
+    /// Measured outputs, times the roots of the weights.
     target: Vec<f64>,
+    /// Roots of the weights of the rows; empty if all count alike.
+    roots: Vec<f64>,
     variation: f64,
     stop: StopCheck<'a>,
 }
@@ -202,7 +206,11 @@ impl LawObjective<'_> {
         if self.stop.is_asked() {
             return vec![Projection::unfinished(); points.len()];
         }
-        columns.iter_mut().map(|columns| columns.project(&self.target, non_negative)).collect() // (8.1)
+        let project = |columns: &mut FeatureColumns<'_>| {
+            columns.scale_rows(&self.roots);
+            columns.project(&self.target, non_negative) // (8.1)
+        };
+        columns.iter_mut().map(project).collect()
     }
 
     fn nrmse_percent(&self, projection: &Projection) -> f64 {
@@ -243,10 +251,15 @@ fn search_parameters(
     stop: StopCheck<'_>,
 ) -> Result<IdentifiedLaw<Vec<f64>>> {
     check_effort(options)?;
-    let target = measured(series);
-    let (_, deviation) = spread(&target);
-    let variation = target.len() as f64 * deviation * deviation;
-    let objective = LawObjective { family, series, target, variation, stop };
+    let mut target = measured(series);
+    let (mean, deviation) = spread(&target);
+    let mut variation = target.len() as f64 * deviation * deviation;
+    let roots = roots_of_weights(series);
+    if !roots.is_empty() {
+        variation = target.iter().zip(&roots).map(|(y, root)| square(root * (y - mean))).sum();
+        target.iter_mut().zip(&roots).for_each(|(y, root)| *y *= root);
+    }
+    let objective = LawObjective { family, series, target, roots, variation, stop };
 
     let begun = beginnings(&objective, options);
     if begun.first().is_none_or(|best| best.value().square_residual == UNFINISHED) {

@@ -70,6 +70,13 @@ impl<'a> FeatureColumns<'a> {
         self.columns
     }
 
+    /// Multiplies each row with a factor; without factors, nothing.
+    pub fn scale_rows(&mut self, factors: &[f64]) {
+        for column in &mut self.columns {
+            column.iter_mut().zip(factors).for_each(|(value, factor)| *value *= factor);
+        }
+    }
+
     /// The weights that come closest to `target`; an unfinished run has the largest residual.
     pub fn project(&mut self, target: &[f64], non_negative: &[bool]) -> Projection {
         if self.pace.is_over(0) {

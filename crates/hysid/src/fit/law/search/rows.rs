@@ -101,12 +101,13 @@ fn rows_of_path(samples: &[Sample], output: &[f64]) -> Vec<usize> {
 }
 
 /// The series of these rows only, each with the time since the previous one.
-fn through(Series { samples, further, .. }: &Series, output: &[f64], rows: &[usize]) -> Series {
+fn through(Series { samples, weights, further, .. }: &Series, output: &[f64], rows: &[usize]) -> Series {
     let steps = steps_between(rows, |row| samples[row].step);
     let sample = |(&row, step): (&usize, f64)| Sample { step, ..samples[row] };
     Series {
         samples: rows.iter().zip(steps).map(sample).collect(),
         output: rows.iter().map(|&row| output[row]).collect(),
+        weights: rows.iter().filter_map(|&row| weights.get(row).copied()).collect(),
         further: further.iter().map(|column| rows.iter().map(|&row| column[row]).collect()).collect(),
     }
 }
@@ -116,12 +117,22 @@ fn beginning(series: &Series, share: f64) -> Series {
     Series {
         samples: series.samples[..rows].to_vec(),
         output: series.output[..rows].to_vec(),
+        weights: series.weights.iter().take(rows).copied().collect(),
         further: series.further.iter().map(|column| column[..rows].to_vec()).collect(),
     }
 }
 
 pub(crate) fn measured(series: &[Series]) -> Vec<f64> {
     series.iter().flat_map(|series| series.output.iter().copied().filter(|y| !y.is_nan())).collect()
+}
+
+/// Square roots of the weights of the rows that [`measured`] gives; empty if all count alike.
+pub(super) fn roots_of_weights(series: &[Series]) -> Vec<f64> {
+    let of_one = |series: &Series| -> Vec<f64> {
+        let scored = series.weights.iter().zip(&series.output).filter(|(_, y)| !y.is_nan());
+        scored.map(|(weight, _)| weight.sqrt()).collect()
+    };
+    series.iter().flat_map(of_one).collect()
 }
 
 /// Mean and standard deviation.
@@ -141,7 +152,8 @@ mod tests {
     fn zigzag(rows: usize) -> Series {
         let x = |row: usize| ((row % 100) as f64 - 50.0).abs();
         let samples = (0..rows).map(|row| Sample { x: x(row), rate: 0.0, step: 1.0 }).collect();
-        Series { samples, output: (0..rows).map(|row| row as f64).collect(), further: Vec::new() }
+        let output = (0..rows).map(|row| row as f64).collect();
+        Series { samples, output, weights: Vec::new(), further: Vec::new() }
     }
 
     #[test]
@@ -170,6 +182,7 @@ mod tests {
             Series {
                 samples: (0..rows).map(sample).collect(),
                 output: (0..rows).map(signal).collect(),
+                weights: Vec::new(),
                 further: Vec::new(),
             }
         };
@@ -180,6 +193,7 @@ mod tests {
         let elapsed: f64 = found.samples.iter().map(|sample| sample.step).sum();
         assert!((elapsed - 50_000.0).abs() < 1e-6);
         let rough = Series {
+            weights: Vec::new(),
             further: Vec::new(),
             samples: (0..600_000).map(|row| Sample { x: (row % 2) as f64, rate: 0.0, step: 1.0 }).collect(),
             output: (0..600_000).map(|row| row as f64).collect(),
