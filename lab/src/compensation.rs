@@ -171,7 +171,7 @@ fn best_classical(train: &Dataset) -> Result<(Model, String, f64)> {
             continue;
         }
         let validated = cross_validate(train, &spec, FOLDS, &mut |_| ControlFlow::Continue(()))?;
-        let error = validated.unseen_nrmse_std_percent.unwrap_or(f64::INFINITY);
+        let error = validated.unseen.nrmse_std_percent.unwrap_or(f64::INFINITY);
         if best.as_ref().is_none_or(|(_, least)| error < *least) {
             best = Some((spec, error));
         }

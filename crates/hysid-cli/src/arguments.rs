@@ -47,7 +47,7 @@ pub use studio::Studio;
 #[derive(Debug, Parser)]
 #[command(name = "hysid", version, arg_required_else_help = true, max_term_width = 80)]
 pub struct Arguments {
-    /// Say only warnings and errors on stderr
+    /// Print only warnings and errors on stderr
     ///
     /// Leaves out the summary of the data, progress and the names of written files. Results on stdout stay, and
     /// so do the lines after Ctrl-C.
@@ -203,7 +203,7 @@ impl ColumnOptions {
 /// In how many data sets a band is to contain its share of the rows.
 #[derive(Debug, Clone, Args)]
 pub struct DataSetsOptions {
-    /// With --band: in how many of ten data sets the band holds
+    /// With --band: the band contains that share in K of 10 data sets
     ///
     /// In K of ten new data sets, at least the share of `--band` lies within the band. 5-of-10 gives the narrowest band;
     /// 9-of-10 one about twice as wide.
@@ -337,7 +337,7 @@ pub struct Validate {
     /// Tables of measured data: text, spreadsheets, MATLAB files
     #[arg(value_name = "DATA.csv", required = true)]
     pub data: Vec<PathBuf>,
-    /// Maximum number of folds of several records
+    /// Largest number of folds, if there are several records
     ///
     /// A single record always gives five folds, cut in time.
     #[arg(long, value_name = "N", default_value = "5", value_parser = folds)]
@@ -547,7 +547,7 @@ pub struct Compare {
     /// Print the result as a list of JSON objects
     #[arg(long, help_heading = RUN)]
     pub json: bool,
-    /// Write no page
+    /// Write no report page
     #[arg(long, help_heading = RUN)]
     pub no_report: bool,
 }
@@ -597,7 +597,7 @@ pub struct Diagnose {
     /// Print the result as one JSON object
     #[arg(long, help_heading = RUN)]
     pub json: bool,
-    /// Write no page
+    /// Write no report page
     #[arg(long, help_heading = RUN)]
     pub no_report: bool,
 }

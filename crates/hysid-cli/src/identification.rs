@@ -8,9 +8,11 @@ use hysid::data::metrics::Errors;
 use hysid::data::record::Dataset;
 use hysid::fit::network::resume;
 use hysid::fit::progress::{Checkpoint, Progress};
-use hysid::model::Provenance;
+use hysid::model::{Model, Provenance};
 use hysid::options::FitSpec;
+use hysid::options::fit_spec::AutoOptions;
 use hysid_app::{Beforehand, Identified, check_memory, errors_table};
+use hysid_core::termination::Termination;
 use hysid_document::Face;
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_files::Destination;
@@ -116,12 +118,11 @@ pub fn printed(identified: &Identified, unseen: Option<&Errors>, written: &[(&st
         text += "(validation: errors on held-out rows)\n";
     }
     text += &format!(
-        "{}\n{} with {} parameters; {}, {}; {:.1} s\n",
+        "{}\n{} with {} parameters; {}; {:.1} s\n",
         model.notes().iter().map(|note| labelled("note", note)).collect::<String>(),
-        model.name().name(),
+        named(model),
         model.parameters(),
         chosen(provenance),
-        provenance.termination,
         seconds.unwrap_or_default()
     );
     for (what, path) in written {
@@ -138,17 +139,34 @@ fn labelled(label: &str, text: &str) -> String {
     lines.iter().map(|line| format!("{:LABEL$}{line}\n", labels.next().unwrap_or_default())).collect()
 }
 
-/// Where the model comes from, in words.
+/// The name of the model that was asked for, and how many of it there are.
+fn named(model: &Model) -> String {
+    match (&model.provenance().options, model.ensemble()) {
+        (FitSpec::Auto(AutoOptions { only: Some(only), .. }), Some(ensemble)) => {
+            format!("ensemble of {} {}", ensemble.members().len(), only.model().name())
+        }
+        _ => model.name().name().into(),
+    }
+}
+
+/// Where the model comes from and why its fit ended, in words.
 fn chosen(provenance: &Provenance) -> String {
+    let ended = &provenance.termination;
     let options = match &provenance.options {
         FitSpec::Network(options) => options,
-        FitSpec::Classical(options) if options.model.is_searched() => return "multi-start search".into(),
+        FitSpec::Classical(options) if options.model.is_searched() => {
+            return format!("multi-start search, {ended}");
+        }
         FitSpec::Classical(_) => return "linear least squares".into(),
+        // The members ended each by itself.
+        FitSpec::Auto(_) if *ended == Termination::Stopped => {
+            return "chosen by cross-validation, stopped".into();
+        }
         FitSpec::Auto(_) => return "chosen by cross-validation".into(),
     };
     match options.starts {
-        1 => format!("{} training", options.training.name()),
-        starts => format!("start {} of {starts} chosen", provenance.chosen_start + 1),
+        1 => format!("{} training, {ended}", options.training.name()),
+        starts => format!("start {} of {starts} chosen, {ended}", provenance.chosen_start + 1),
     }
 }
 

@@ -17,19 +17,17 @@ def test_each_fold_is_fitted_and_judged_as_by_hand():
     # Records are dealt out in their order.
     names = list(dict.fromkeys(train.records))
     assert [fold.held_out for fold in found.folds] == [", ".join(names[place::2]) for place in (0, 1)]
-    percents, squares = [], 0.0
+    squares = 0.0
     for fold in found.folds:
         held = np.isin(train.records, fold.held_out.split(", "))
         taught = (train.x[~held], train.y[~held], train.time[~held])
         model = hysid.fit(*taught, records=train.records[~held], model="masing", operators=6)
         unseen = model.evaluate(train.x[held], train.y[held], train.time[held], records=train.records[held])
         assert fold.train == model.train and fold.unseen == unseen
-        percents.append(unseen.nrmse_std_percent)
         squares += unseen.mse * unseen.samples
-    assert found.unseen_nrmse_std_percent == pytest.approx(np.exp(np.mean(np.log(percents))))
     assert found.unseen.samples == np.count_nonzero(~np.isnan(train.y))
     assert found.unseen.mse == pytest.approx(squares / found.unseen.samples)
-    assert "geometric mean" in found._repr_html_()
+    assert "all folds" in found._repr_html_()
 
 
 def test_a_validation_may_be_ended(spring_and_slider):

@@ -1,8 +1,10 @@
 //! Rows of the table of cycles for text and page.
 
+use hysid::data::unit;
 use hysid::diagnosis::cycles::{
     CycleRow, Field, Figure, FigureQuantity, LEVEL_FIGURES, LossAtFrequency, RecordFigure,
 };
+use hysid_core::significant::Significant;
 use hysid_document::{Cell, Table};
 
 use super::Cycles;
@@ -82,10 +84,32 @@ pub fn shown(
     table
 }
 
+/// Open loops that are listed one by one, at most.
+const MOST_OPEN: usize = 3;
+
+/// How many loops do not close, if these are many.
+fn open_loops(cycles: &Cycles) -> Option<String> {
+    let rows = &cycles.table.cycles;
+    let open = || rows.iter().filter_map(|row| Some((row, row.opening()?.abs())));
+    let (widest, gap) = open().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let unit = unit::suffix(unit::of_column(&cycles.quantities.output).as_deref());
+    let words = format!(
+        "{} of {} loops do not close (largest gap {:.3}{unit}, cycle {}): their reversals differ, the output drifts \
+         (--subtract drift), or they began in another state",
+        open().count(),
+        rows.len(),
+        Significant(gap),
+        row_name(cycles, widest)
+    );
+    (open().count() > MOST_OPEN).then_some(words)
+}
+
 pub fn notes(cycles: &Cycles) -> Vec<String> {
     let mut all: Vec<(&str, Vec<String>)> = Vec::new();
+    let open = open_loops(cycles);
     for row in &cycles.table.cycles {
-        for note in &row.notes {
+        let is_told = |note: &&String| open.is_none() || !note.starts_with("the loop is open by");
+        for note in row.notes.iter().filter(is_told) {
             let name = row_name(cycles, row);
             match all.iter_mut().find(|(known, _)| known == note) {
                 Some((_, rows)) => rows.push(name),
@@ -98,7 +122,12 @@ pub fn notes(cycles: &Cycles) -> Vec<String> {
         count if count == cycles.table.cycles.len() => format!("all cycles: {note}"),
         _ => format!("cycles {}: {note}", hysid_document::visible::listed(&rows)),
     };
-    all.into_iter().map(said).chain(cycles.table.notes.iter().cloned()).chain(record_notes(cycles)).collect()
+    open.iter()
+        .cloned()
+        .chain(all.into_iter().map(said))
+        .chain(cycles.table.notes.iter().cloned())
+        .chain(record_notes(cycles))
+        .collect()
 }
 
 /// The levels of structures with those of the named figures that any level has; `None` for a single level.

@@ -36,6 +36,9 @@ fn largest(rows: &[&CycleRow]) -> Option<usize> {
     (0..rows.len()).max_by(|&a, &b| size(rows[a]).total_cmp(&size(rows[b])))
 }
 
+/// Heading of the cycle with the largest energy.
+const LARGEST: &str = "largest energy";
+
 /// First, last and largest cycle, column by column.
 pub fn text(table: &CycleTable, quantities: &Quantities) -> String {
     let cycles: Vec<&CycleRow> = table.complete().collect();
@@ -43,7 +46,7 @@ pub fn text(table: &CycleTable, quantities: &Quantities) -> String {
     let Some(largest) = largest(&cycles) else {
         return format!("{heading}: no whole cycle\n");
     };
-    let shown = [("first", 0), ("last", cycles.len() - 1), ("largest", largest)];
+    let shown = [("first", 0), ("last", cycles.len() - 1), (LARGEST, largest)];
     let shown = if cycles.len() == 1 { &shown[..1] } else { &shown };
     let mut rows = vec![vec![count(cycles.len(), "cycle")]];
     rows[0].extend(shown.iter().map(|(which, _)| which.to_string()));

@@ -22,11 +22,17 @@ pub fn text(data: &Dataset, diagnosis: &Diagnosis, fit: &str, face: Face) -> Str
     parts.join("\n")
 }
 
+/// Noise below this share of the range, in percent, is that of rounded numbers.
+const ROUNDING: f64 = 1e-6;
+
 /// How often the input turns and how much noise was found, in words.
 pub(super) fn noise(data: &Dataset, diagnosis: &Diagnosis) -> String {
     let of = |column: &str, deviation: f64, (low, high): (f64, f64)| {
         let unit = unit::suffix(unit::of_column(column).as_deref());
         let percent = 100.0 * deviation / (high - low);
+        if percent < ROUNDING {
+            return format!("{} none", clipped(column));
+        }
         format!(
             "{} {:.2}{} ({} % of its range)",
             clipped(column),

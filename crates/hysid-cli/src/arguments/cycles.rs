@@ -15,8 +15,7 @@ Examples:
   hysid cycles data.csv --field magnet -o loops.csv
   hysid cycles model.json                cycles of the model, driven by Hysid
 
-Definitions of all figures:
-https://github.com/hysid/hysid/blob/main/docs/cycles.md";
+Definitions: https://github.com/hysid/hysid/blob/main/docs/cycles.md";
 
 #[derive(Debug, Args)]
 #[command(after_help = CYCLES_EXAMPLES)]
@@ -78,7 +77,7 @@ pub struct Cycles {
     /// Print the result as one JSON object
     #[arg(long, help_heading = RUN)]
     pub json: bool,
-    /// Write no page
+    /// Write no report page
     #[arg(long, help_heading = RUN)]
     pub no_report: bool,
 }

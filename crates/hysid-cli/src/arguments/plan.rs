@@ -71,7 +71,7 @@ pub struct Plan {
     /// Print the result as one JSON object
     #[arg(long, help_heading = RUN)]
     pub json: bool,
-    /// Write no page
+    /// Write no report page
     #[arg(long, help_heading = RUN)]
     pub no_report: bool,
 }

@@ -15,8 +15,7 @@ Examples:
   hysid restoring-force floor.csv --mass \"25 t\" --absolute-acceleration acc
   hysid restoring-force floor.csv --mass \"25 t\" --base-acceleration ag
 
-The method, signs and units:
-https://github.com/hysid/hysid/blob/main/docs/how-to/restoring-force.md";
+Method: https://github.com/hysid/hysid/blob/main/docs/how-to/restoring-force.md";
 
 const ZERO_HELP: &str = "Subtract from the displacement and from the restoring force their means over the first ROWS rows of each record";
 

@@ -72,7 +72,7 @@ fn states_are_found_told_and_used() {
 
     let validated = |state: &str| {
         let ran = bench.run(&format!("validate train.csv {MODEL} --initial-state {state} --json"));
-        json(&ran)["unseen_nrmse_std_percent"].as_f64().unwrap()
+        json(&ran)["unseen"]["nrmse_std_percent"].as_f64().unwrap()
     };
     assert!(validated("unknown") < validated("virgin"));
 }

@@ -139,7 +139,7 @@ impl Selection {
                     }
                     (false, None, true) => "; one loop does not tell how well smaller loops are predicted",
                     (false, None, false) => {
-                        "; a candidate is preferred only if its error is lower by 10 %, and lower in the mean of the folds"
+                        "; one of them alone would be taken if its error were lower than that of the ensemble by 10 %, and lower in the mean of the folds"
                     }
                 };
                 let bests: Vec<String> = bests.iter().map(alone).collect();

@@ -119,6 +119,13 @@ pub struct CycleRow {
     pub(crate) faults: LoopFaults,
 }
 
+impl CycleRow {
+    /// Output at the end less output at the beginning, in the unit of the output, if the loop is open.
+    pub fn opening(&self) -> Option<f64> {
+        self.faults.opening
+    }
+}
+
 /// Signs that something lies under or beside a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct LoopFaults {

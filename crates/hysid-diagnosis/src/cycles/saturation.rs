@@ -60,7 +60,7 @@ pub(super) fn figures(record: &Record) -> Vec<RecordFigure> {
     let deviation = hypot(found.deviations[0], 0.5 * (saturation - alternative));
     let is_near = missing.abs() <= MISSING * saturation;
     if !(saturation > 0.0 && deviation <= UNSURE * saturation && is_near) {
-        return absent("the outer 30 % of the input does not determine it: the loop is not near saturation");
+        return absent("the output still rises too much in the outer 30 % of the input for an estimate");
     }
     let slope_deviation = hypot(found.deviations[2], 0.5 * (slope - other_slope));
     vec![

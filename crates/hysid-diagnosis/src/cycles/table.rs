@@ -633,8 +633,8 @@ impl CycleReader<'_> {
         if (adds || gap.abs() > OPEN * (high - low)) && gap.abs() > noise + LINE * (high - low) {
             row.faults.opening = Some(gap);
             row.notes.push(format!(
-                "the loop is open by {:.2} of {:.2}: drift of the output (--subtract drift), or a beginning in another \
-                 state",
+                "the loop is open by {:.2} of {:.2}: its reversals differ, the output drifts (--subtract drift), or it \
+                 began in another state",
                 Significant(gap.abs()),
                 Significant(high - low)
             ));

@@ -51,15 +51,11 @@ class Validation:
     folds : tuple of FoldErrors
         The folds; those that were not reached in time are missing.
     unseen : Errors
-        Errors over the held-out rows of all folds; of a single record, some rows are in several folds.
-    unseen_nrmse_std_percent : float or None
-        Geometric mean over the folds of the error on held-out rows, in percent of their standard deviation; it
-        limits the influence of a single fold with a large error.
+        Errors over the held-out rows of all folds; a row that is held out several times counts once.
     """
 
     folds: tuple[FoldErrors, ...]
     unseen: Errors
-    unseen_nrmse_std_percent: float | None
     _text: str = field(default="", repr=False, compare=False)
 
     def __str__(self) -> str:
@@ -71,7 +67,7 @@ class Validation:
             [fold.held_out, number(fold.unseen.nrmse_std_percent), number(fold.train.nrmse_std_percent)]
             for fold in self.folds
         ]
-        rows.append(["geometric mean", number(self.unseen_nrmse_std_percent), ""])
+        rows.append(["all folds", number(self.unseen.nrmse_std_percent), ""])
         return table(head, rows)
 
 
@@ -143,6 +139,5 @@ def validate(
             for fold in found["folds"]
         ),
         Errors(**found["unseen"]),
-        found["unseen_nrmse_std_percent"],
         text,
     )

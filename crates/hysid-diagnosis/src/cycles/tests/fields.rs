@@ -182,7 +182,7 @@ fn saturation_is_read_above_a_slope_and_not_where_the_loop_is_far_from_it() {
         path(&[10.0, -10.0, 10.0], 0.05).iter().map(|h| tanh(h / 20.0)).collect(),
     );
     let found = figure(&table_of(&far, Field::Magnet), "", "saturation_output").clone();
-    assert!(found.value.is_none() && found.note.unwrap().contains("not near saturation"));
+    assert!(found.value.is_none() && found.note.unwrap().contains("still rises too much"));
 }
 
 #[test]
