@@ -33,7 +33,7 @@ pub fn models() -> &'static [Model] {
     static MODELS: OnceLock<Vec<Model>> = OnceLock::new();
     MODELS.get_or_init(|| {
         let names = ModelName::all().map(|model| (model.name(), json!({}))).chain([
-            ("xpnn+", json!({ "companding": 0.1, "rate_companding": 0.1, "history": true })),
+            ("xpnn+", json!({ "compression": 0.1, "rate_compression": 0.1, "history": true })),
             ("random-stops", json!({ "hidden": 5, "members": 3 })),
             ("auto", json!({ "members": 5 })),
         ]);

@@ -44,7 +44,7 @@ const FURTHER: [(&str, &str); 15] = [
     ("ferromagnet", "--model prandtl-ishlinskii --sign non-negative"),
     ("ferromagnet", "--model neuro-madelung --starts 1 --epochs 4"),
     ("reinforced-concrete-joint", "--model bouc-wen --degradation --starts 2 --epochs 6"),
-    ("reinforced-concrete-joint", "--model xpnn+ --companding 0.3 --history --starts 2 --epochs 6"),
+    ("reinforced-concrete-joint", "--model xpnn+ --compression 0.3 --history --starts 2 --epochs 6"),
     ("rate-dependent-actuator", "--model rate-dependent-prandtl-ishlinskii --starts 2 --epochs 6"),
     ("rate-dependent-actuator", "--model duhem-nn --starts 2 --epochs 6"),
     (

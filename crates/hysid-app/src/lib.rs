@@ -180,7 +180,7 @@ pub fn time_label(data: &Dataset) -> String {
 /// The first input as the model sees it, with its unit: spread about zero, maybe.
 fn seen_label(model: &Model) -> String {
     let input = &model.names().inputs[0];
-    match model.input_transform().companding {
+    match model.input_transform().compression {
         None => unit::label(input),
         Some(scale) => {
             let scale = unit::with(&number(scale, 3), input);

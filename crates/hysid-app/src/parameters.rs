@@ -120,7 +120,7 @@ fn of_law(law: &Model, intervals: Option<&ParameterIntervals>) -> Option<Vec<Par
     let mut parts = vec![Part::Table(table(law, intervals)?)];
     parts.extend(left_out(law).map(Part::note));
     parts.extend(intervals.map(explanation));
-    if law.input_transform().companding.is_some() {
+    if law.input_transform().compression.is_some() {
         let seen = seen_label(law);
         parts.push(Part::note(format!(
             "The input of the law is {seen}, which has no unit; its parameters refer to this input."

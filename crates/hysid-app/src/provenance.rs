@@ -57,10 +57,10 @@ pub fn of_model(model: &Model) -> Vec<(String, String)> {
     for (input, origin) in model.names().inputs.iter().zip(&preprocessing.origins) {
         say(&format!("Offset of {input}"), number(*origin, 6));
     }
-    if preprocessing.companding.is_some() {
+    if preprocessing.compression.is_some() {
         say("Transformed input", seen_label(model));
     }
-    if let Some(scale) = preprocessing.rate_companding {
+    if let Some(scale) = preprocessing.rate_compression {
         say("Transformed rate", format!("asinh(rate / {})", number(scale, 3)));
     }
     if preprocessing.history.is_some() {

@@ -435,8 +435,8 @@ impl Model {
     /// The parameters of its law in the units of the columns; `None` for a network and an ensemble.
     pub fn law_parameters(&self) -> Option<Vec<ParameterInUnits>> {
         let names = self.names();
-        let is_companded = self.input_transform().companding.is_some();
-        let input = of_column(&names.inputs[0]).filter(|_| !is_companded);
+        let is_compressed = self.input_transform().compression.is_some();
+        let input = of_column(&names.inputs[0]).filter(|_| !is_compressed);
         let (output, time) = (of_column(&names.output), names.time.as_deref().and_then(of_column));
         let (input, output, time) = (input.as_deref(), output.as_deref(), time.as_deref());
         let in_units = |mut parameter: Parameter| {

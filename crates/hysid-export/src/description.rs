@@ -250,7 +250,7 @@ fn limited(builder: &mut Builder, value: &Real) -> Real {
 fn transformed(builder: &mut Builder, transform: &InputTransform, input: usize, x: &Real) -> Real {
     let x = limited(builder, x);
     let x = if transform.origins.is_empty() { x } else { builder.value(x - transform.origin(input)) };
-    match transform.companding {
+    match transform.compression {
         Some(scale) if input == 0 => builder.value((x / scale).asinh()),
         _ => x,
     }
@@ -258,7 +258,7 @@ fn transformed(builder: &mut Builder, transform: &InputTransform, input: usize, 
 
 fn transformed_rate(builder: &mut Builder, transform: &InputTransform, rate: &Real) -> Real {
     let rate = limited(builder, rate);
-    match transform.rate_companding {
+    match transform.rate_compression {
         Some(scale) => builder.value((rate / scale).asinh()),
         None => rate,
     }

@@ -47,7 +47,7 @@ def quick_model(spring_and_slider):
 def hasty():
     """Decisions that leave `auto` little to try."""
     sizes = {"stops": 3, "hidden": 2, "starts": 2, "epochs": 2, "members": 6}
-    return {**sizes, "no_deterioration": True, "companding": 0.0, "history": False, "warm_up": 0}
+    return {**sizes, "no_deterioration": True, "compression": 0.0, "history": False, "warm_up": 0}
 
 
 @pytest.fixture(scope="session")

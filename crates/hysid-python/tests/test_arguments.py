@@ -92,7 +92,7 @@ def test_a_wrong_argument_is_named_with_what_is_needed(call, kind, text):
         {"thresholds": "a"},
         {"thresholds": [["a"]]},
         {"sign": 1},
-        {"companding": "x"},
+        {"compression": "x"},
         {"seed": -1},
         {"degradation": "yes", "model": "bouc-wen"},
         {"initial_state": "up"},

@@ -232,7 +232,7 @@ def test_a_warning_names_the_argument_that_helps_and_not_an_option_of_the_progra
     assert not any("--" in text for text in told)
 
 
-@pytest.mark.parametrize("options", [{"companding": np.nan}, {"thresholds": [0.1, np.inf]}, {"ridge": -np.inf}])
+@pytest.mark.parametrize("options", [{"compression": np.nan}, {"thresholds": [0.1, np.inf]}, {"ridge": -np.inf}])
 def test_options_must_be_finite(plain, options):
     (name,) = options
     with pytest.raises(ValueError, match=f"^{name} .*: a finite number is needed$"):

@@ -253,8 +253,8 @@ def test_what_a_model_does_not_have_is_not_drawn(quick_model, quick_ensemble, sp
     ]:
         with pytest.raises(ValueError, match=text):
             draw(model)
-    companded = hysid.fit(*spring_and_slider, model="preisach", operators=5, companding=0.1)
+    compressed = hysid.fit(*spring_and_slider, model="preisach", operators=5, compression=0.1)
     for draw in (plot.preisach_plane, plot.thresholds):
-        with pytest.raises(ValueError, match="is companded"):
-            draw(companded)
+        with pytest.raises(ValueError, match="is compressed"):
+            draw(compressed)
     assert plt.get_fignums() == []

@@ -37,9 +37,9 @@ SMALL = {"model": "xpnn+", "stops": 4, "hidden": 3, "starts": 2, "epochs": 6}
 CASES = {
     "members of one model": ("terfenol-rod", {**SMALL, "members": 3, "seed": 2}, "auto", None),
     "few epochs": ("terfenol-rod", SMALL, "auto", None),
-    "companded, history, warm-up": (
+    "compressed, history, warm-up": (
         "piezo-actuator",
-        {**SMALL, "companding": 0.1, "rate_companding": 0.2, "history": True, "warm_up": 5},
+        {**SMALL, "compression": 0.1, "rate_compression": 0.2, "history": True, "warm_up": 5},
         "auto",
         None,
     ),

@@ -101,7 +101,7 @@ fn command_lines() {
 fn negative_numbers_are_refused_by_the_option_that_they_are_for() {
     let bench = Workbench::new();
     let whole = "a whole number, 0 or more, is needed";
-    let companding = "choose 0 for off, or 1e-6 to 1e3";
+    let compression = "choose 0 for off, or 1e-6 to 1e3";
     let thresholds = "numbers above 0 are needed, such as 0.1, 0.2, 0.5";
     let seconds = "a number of seconds above 0, below 1e9, is needed";
     let probability = "a probability from 0.5 to 0.99 is needed";
@@ -110,8 +110,8 @@ fn negative_numbers_are_refused_by_the_option_that_they_are_for() {
     for (arguments, value, option, advice) in [
         ("fit data.csv --thresholds -1,2", "-1,2", "--thresholds <LIST>", thresholds),
         ("fit data.csv --thresholds 0.1,-2", "0.1,-2", "--thresholds <LIST>", thresholds),
-        ("fit data.csv --companding -0.1", "-0.1", "--companding <SHARE>", companding),
-        ("fit data.csv --rate-companding -1e-3", "-1e-3", "--rate-companding <SHARE>", companding),
+        ("fit data.csv --compression -0.1", "-0.1", "--compression <SHARE>", compression),
+        ("fit data.csv --rate-compression -1e-3", "-1e-3", "--rate-compression <SHARE>", compression),
         ("fit data.csv --seed -1", "-1", "--seed <N>", whole),
         ("generate concrete --seed -1", "-1", "--seed <N>", "choose 0 or more"),
         ("fit data.csv --warm-up -3", "-3", "--warm-up <N>", whole),

@@ -115,20 +115,20 @@ fn a_band_that_is_not_there_is_refused() {
     );
 }
 
-/// Of all candidates those that see a companded input without rate, which are few.
+/// Of all candidates those that see a compressed input without rate, which are few.
 #[test]
 fn auto_chooses_among_kinds_and_is_the_same_for_any_number_of_threads() {
     let bench = Workbench::with_data();
     let fit = |options: &str| {
         let ran = bench
-            .succeeds(&format!("fit good.csv -o a.json --rate none --companding 0.1 --epochs 4 {options}"));
+            .succeeds(&format!("fit good.csv -o a.json --rate none --compression 0.1 --epochs 4 {options}"));
         (ran, bench.text("a.json"))
     };
     let (ran, model) = fit("--members 5");
     assert_narrow(&ran.stdout);
     assert!(ran.stderr.contains("model    auto: at most 5 models"), "{}", ran.stderr);
     let page = bench.text("a.html");
-    assert!(page.contains("random-stops (input companded 0.1)") && page.contains(">classical</td>"));
+    assert!(page.contains("random-stops (input compressed 0.1)") && page.contains(">classical</td>"));
     assert_eq!(model, fit("--members 5 --no-report --threads 1").1);
 
     // One model in the place of many.

@@ -288,7 +288,7 @@ impl Law for BoucWen {
         ..Facts::searched(
             "bouc-wen",
             "spring and yielding element; option degradation: pinching and degradation",
-            &["degradation", "starts", "epochs", "rate_companding"],
+            &["degradation", "starts", "epochs", "rate_compression"],
             ErrorsInside { softening: 0.05, sigmoid: 0.3, other: 0.3 },
         )
     };

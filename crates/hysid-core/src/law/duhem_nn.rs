@@ -161,7 +161,7 @@ impl Law for DuhemNn {
                 "states",
                 "starts",
                 "epochs",
-                "rate_companding",
+                "rate_compression",
                 "acceleration",
                 "odd",
                 "error",

@@ -124,7 +124,7 @@ impl Law for Lugre {
         ..Facts::searched(
             "lugre",
             "friction of bristles, with the Stribeck effect",
-            &["starts", "epochs", "rate_companding"],
+            &["starts", "epochs", "rate_compression"],
             ErrorsInside { softening: 0.06, sigmoid: 0.3, other: 0.3 },
         )
     };

@@ -148,7 +148,7 @@ impl Law for NeuroMadelung {
         ..Facts::searched(
             "neuro-madelung",
             "small network of the input and its last turning point",
-            &["hidden", "starts", "epochs", "rate_companding"],
+            &["hidden", "starts", "epochs", "rate_compression"],
             ErrorsInside { softening: 0.6, sigmoid: 0.4, other: 0.6 },
         )
         .with_defaults(&[("hidden", 8), ("starts", 16), ("epochs", 60)])

@@ -109,7 +109,7 @@ impl Law for RateDependentPrandtlIshlinskii {
         ..Facts::searched(
             "rate-dependent-prandtl-ishlinskii",
             "plays whose thresholds grow with the rate",
-            &["operators", "free_weights", "logarithmic_thresholds", "starts", "epochs", "rate_companding"],
+            &["operators", "free_weights", "logarithmic_thresholds", "starts", "epochs", "rate_compression"],
             ErrorsInside { softening: 0.04, sigmoid: 0.7, other: 0.6 },
         )
         .with_defaults(&[("operators", 10), ("starts", 16)])

@@ -7,12 +7,12 @@
 //! ```
 //!
 //! `x` is the first input and `x'` its rate. `c` is the origin: 0 if it lies inside the range of the input,
-//! otherwise the value at which the records begin, or the middle of the range. *Companding* replaces `x` and
+//! otherwise the value at which the records begin, or the middle of the range. *Compression* replaces `x` and
 //! `x'` by `u` and `v`, with the scales `s` and `s'` in the units of `x` and `x'`. *History* adds `m` and `p`
 //! as inputs: running peak and travelled path of the first input, with the largest `|x|` in training, `X`,
 //! and the longest path of a record, `P`.
 //!
-//! Companding resolves small inputs: a soft magnet reverses within a hundredth of the field range. `u`
+//! Compression resolves small inputs: a soft magnet reverses within a hundredth of the field range. `u`
 //! increases with `x`, so turning points, wiping-out and Madelung's rules are the same in `u` as in `x`.
 //! Running peak and path describe the state of a degrading structure directly.
 
@@ -37,16 +37,16 @@ pub struct InputTransform {
     /// `c`: origin of each input, in its unit, where the memory is virgin; empty if all are 0 (theory.md (11.8)).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub origins: Vec<f64>,
-    /// `s` of `u = asinh(x / s)`, in the unit of the input; `None` for no companding (theory.md (11.1)).
-    pub companding: Option<f64>,
-    /// `s'` of `v = asinh(x' / s')`, in the unit of the rate; `None` for no companding (theory.md (11.1)).
-    pub rate_companding: Option<f64>,
+    /// `s` of `u = asinh(x / s)`, in the unit of the input; `None` for no compression (theory.md (11.1)).
+    pub compression: Option<f64>,
+    /// `s'` of `v = asinh(x' / s')`, in the unit of the rate; `None` for no compression (theory.md (11.1)).
+    pub rate_compression: Option<f64>,
     /// `X` and `P` of `m = max |x| so far / X` and `p = ln(1 + 10 path so far / P) / ln 11`, in the unit of
     /// the input; `None` for no history (theory.md (11.2)).
     pub history: Option<(f64, f64)>,
 }
 
-/// Share of the rows whose rates stay below the reference rate of companding.
+/// Share of the rows whose rates stay below the reference rate of compression.
 const ROWS_BELOW: f64 = 0.995;
 
 impl InputOptions {
@@ -64,15 +64,15 @@ impl InputOptions {
         let origin = origins.first().copied().unwrap_or_default();
         let (low, high) = data.input_range(0);
         let largest = (low - origin).abs().max((high - origin).abs());
-        let rate_companding = match (self.rate_companding, rate) {
+        let rate_compression = match (self.rate_compression, rate) {
             (Some(share), Some(method)) => Some(share * common_rate(data, method)?),
             _ => None,
         };
         let way = |record: &Record| path(&record.lead_in_rows()) + path(&record.inputs()[0]);
         let longest = || data.records().iter().map(way).fold(0.0, f64::max);
         Ok(InputTransform {
-            companding: self.companding.map(|share| share * largest),
-            rate_companding,
+            compression: self.compression.map(|share| share * largest),
+            rate_compression,
             history: self.history.then(|| (largest, longest())),
             origins,
         })
@@ -213,12 +213,12 @@ impl InputTransform {
     /// The transformed first input.
     pub fn input(&self, x: f64) -> f64 {
         let x = x - self.origin(0);
-        self.companding.map_or(x, |scale| asinh(x / scale))
+        self.compression.map_or(x, |scale| asinh(x / scale))
     }
 
     /// The first input whose transform this is.
     pub fn original(&self, seen: f64) -> f64 {
-        self.companding.map_or(seen, |scale| scale * sinh(seen)) + self.origin(0)
+        self.compression.map_or(seen, |scale| scale * sinh(seen)) + self.origin(0)
     }
 
     /// Any transformed input; the index 0 is the first.
@@ -228,7 +228,7 @@ impl InputTransform {
 
     /// The transformed rate.
     pub fn rate(&self, rate: f64) -> f64 {
-        self.rate_companding.map_or(rate, |scale| asinh(rate / scale))
+        self.rate_compression.map_or(rate, |scale| asinh(rate / scale))
     }
 
     /// Writes all transformed inputs of a sample into `seen`.
@@ -306,7 +306,7 @@ impl InputTransform {
 
     pub(crate) fn check(&self) -> Result<()> {
         let scales =
-            [self.companding, self.rate_companding, self.history.map(|h| h.0), self.history.map(|h| h.1)];
+            [self.compression, self.rate_compression, self.history.map(|h| h.0), self.history.map(|h| h.1)];
         let is_scale = |scale: f64| SCALES.contains(&scale);
         let is_value = |origin: &f64| origin.abs() <= LARGEST_VALUE;
         if scales.into_iter().flatten().all(is_scale) && self.origins.iter().all(is_value) {
@@ -363,8 +363,8 @@ mod tests {
     fn every_row_follows_the_formulas() {
         let data = data();
         let shaping = InputOptions {
-            companding: Some(0.1),
-            rate_companding: Some(0.5),
+            compression: Some(0.1),
+            rate_compression: Some(0.5),
             history: true,
             ..InputOptions::default()
         };

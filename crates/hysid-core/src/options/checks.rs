@@ -38,7 +38,7 @@ impl Regularisation {
 
 impl InputOptions {
     pub(crate) fn check(&self) -> Result<()> {
-        let shares = [("companding", self.companding), ("rate_companding", self.rate_companding)];
+        let shares = [("compression", self.compression), ("rate_compression", self.rate_compression)];
         check(shares.into_iter().filter_map(|(name, share)| Some((name, json!(share?)))))
     }
 }

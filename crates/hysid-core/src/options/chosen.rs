@@ -22,7 +22,7 @@ use crate::options::{FitSpec, ModelName};
 
 /// Options that a network or a law has not in a field of the same name: those of the ensemble and of the input transform.
 const ELSEWHERE: [&str; 7] =
-    ["model", "members", "companding", "rate_companding", "history", "warm_up", "initial_state"];
+    ["model", "members", "compression", "rate_compression", "history", "warm_up", "initial_state"];
 
 impl NamedOptions {
     /// Options from a map of names and values; `null` is the default.
@@ -113,7 +113,7 @@ impl NamedOptions {
         always_rate: bool,
         only: Option<Box<FitSpec>>,
     ) -> AutoOptions {
-        let elsewhere = ["model", "companding", "no_deterioration"];
+        let elsewhere = ["model", "compression", "no_deterioration"];
         let of_others = OPTIONS.iter().filter(|option| !option.is_used_by(ModelName::AUTO, self.trainer()));
         let elsewhere: Vec<&str> = of_others.map(|option| option.name).chain(elsewhere).collect();
         let defaults = self.onto(&AutoOptions::default(), &elsewhere);
@@ -125,7 +125,7 @@ impl NamedOptions {
             rate,
             always_rate: always_rate && rate.is_some(),
             deterioration: self.no_deterioration.map(|none| !none),
-            companding: self.companding.map(|share| share > 0.0),
+            compression: self.compression.map(|share| share > 0.0),
             ..defaults
         }
     }
@@ -151,8 +151,8 @@ impl NamedOptions {
 
     fn shaping(&self) -> InputOptions {
         InputOptions {
-            companding: self.companding.filter(|share| *share != 0.0),
-            rate_companding: self.rate_companding.filter(|share| *share != 0.0),
+            compression: self.compression.filter(|share| *share != 0.0),
+            rate_compression: self.rate_compression.filter(|share| *share != 0.0),
             history: self.history.unwrap_or_default(),
             warm_up: self.warm_up.unwrap_or_default(),
             initial_state: self.initial_state,

@@ -19,7 +19,7 @@ const RANDOM_STOPS: Facts = Facts {
     ..Facts::linear(
         "random-stops",
         "random deteriorating stops with a ridge penalty",
-        &["operators", "hidden", "no_deterioration", "history", "rate_companding"],
+        &["operators", "hidden", "no_deterioration", "history", "rate_compression"],
         ErrorsInside { softening: 0.05, sigmoid: 0.7, other: 0.6 },
     )
     .with_defaults(&[("operators", 300)])

@@ -59,8 +59,8 @@ pub struct AutoOptions {
     pub modes: Option<usize>,
     /// Epochs of a search.
     pub epochs: Option<usize>,
-    /// Whether the input is companded, `asinh(x / s)`.
-    pub companding: Option<bool>,
+    /// Whether the input is compressed, `asinh(x / s)`.
+    pub compression: Option<bool>,
     /// Whether running peak and travelled path are inputs.
     pub history: Option<bool>,
     /// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training.
@@ -98,7 +98,7 @@ impl Default for AutoOptions {
             operators: None,
             modes: None,
             epochs: None,
-            companding: None,
+            compression: None,
             history: None,
             warm_up: None,
             initial_state: None,

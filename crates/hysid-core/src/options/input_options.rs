@@ -10,12 +10,12 @@ use crate::data::initial_state::InitialState;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputOptions {
-    /// Companding `asinh(x / s)` of the first input: `s` as a share of its largest magnitude (theory.md (11.1)).
+    /// Compression `asinh(x / s)` of the first input: `s` as a share of its largest magnitude (theory.md (11.1)).
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub companding: Option<f64>,
-    /// Companding `asinh(x' / s')` of the rate: `s'` as a share of the rate that 99.5 % of all rows stay below.
+    pub compression: Option<f64>,
+    /// Compression `asinh(x' / s')` of the rate: `s'` as a share of the rate that 99.5 % of all rows stay below.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub rate_companding: Option<f64>,
+    pub rate_compression: Option<f64>,
     /// True if running peak and travelled path of the first input, `max |x| so far` and `ln(1 + 10 path so
     /// far / P)`, are inputs too (theory.md (11.2)).
     #[serde(skip_serializing_if = "std::ops::Not::not")]

@@ -194,7 +194,7 @@ options! {
         default: chosen_or_off,
         used_by: |model, _| network_or_auto(model, |family| family.takes_further_inputs()),
     }
-    companding: f64 {
+    compression: f64 {
         meaning: "Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as \
                   0.1; 0 for off",
         group: Model,
@@ -202,7 +202,7 @@ options! {
         default: chosen_or_off,
         used_by: |_, _| true,
     }
-    rate_companding: f64 {
+    rate_compression: f64 {
         meaning: "Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all \
                   rows stay below; 0 for off",
         group: Model,
@@ -493,7 +493,7 @@ fn of_none(_: ModelName, _: Trainer) -> bool {
 
 /// Options of every model, whatever it is.
 const OF_EVERY_MODEL: [&str; 7] =
-    ["model", "members", "companding", "warm_up", "initial_state", "known", "seed"];
+    ["model", "members", "compression", "warm_up", "initial_state", "known", "seed"];
 
 /// Checks values of options.
 ///

@@ -35,8 +35,8 @@ impl FitSpec {
             let ridge = options.ridge.filter(|ridge| *ridge != ENSEMBLE_PENALTIES.ridge);
             variant.extend(ridge.map(|ridge| format!("ridge {ridge:e}")));
         }
-        variant.extend(shaping.companding.map(|share| format!("input companded {share}")));
-        variant.extend(shaping.rate_companding.map(|share| format!("rate companded {share}")));
+        variant.extend(shaping.compression.map(|share| format!("input compressed {share}")));
+        variant.extend(shaping.rate_compression.map(|share| format!("rate compressed {share}")));
         variant.extend(shaping.history.then(|| "history".to_string()));
         variant.extend(self.has_free_states().then(|| "initial state free".to_string()));
         variant

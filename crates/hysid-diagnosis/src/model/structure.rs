@@ -41,8 +41,8 @@ fn of_model(model: &Model, about_origin: bool) -> Vec<(Property, bool)> {
         Predictor::Law(law) => of_law(law, about_origin),
         Predictor::Ensemble(ensemble) => return of_ensemble(ensemble, about_origin),
     };
-    if model.input_transform().companding.is_some() {
-        // A branch of a companded input is no initial curve doubled in the input itself.
+    if model.input_transform().compression.is_some() {
+        // A branch of a compressed input is no initial curve doubled in the input itself.
         all.retain(|promise| *promise != MASING);
     }
     if model.input_transform().history.is_some() {

@@ -323,7 +323,7 @@ impl FindingWriter<'_> {
             }
             ResidualTest::Distance => {
                 "The output bends differently near the ends of the input range: use a model that can saturate, or \
-                 transform the input (option companding)."
+                 transform the input (option compression)."
             }
             ResidualTest::Direction => {
                 "The simulated loops are too wide or too narrow, or shifted: use a model with asymmetric loops, and \

@@ -41,8 +41,8 @@ def fit(
     relaxation: int | None = None,
     no_deterioration: bool | None = None,
     history: bool | None = None,
-    companding: float | None = None,
-    rate_companding: float | None = None,
+    compression: float | None = None,
+    rate_compression: float | None = None,
     # Training
     warm_up: int | None = None,
     initial_state: _options.InitialStateName | None = None,
@@ -139,10 +139,10 @@ def fit(
     history : bool, optional
         Add the running peak and the travelled path of the input as inputs. Default: off for networks and random-stops;
         chosen by cross-validation for auto.
-    companding : float, optional
+    compression : float, optional
         Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as 0.1; 0 for
         off. Default: chosen by cross-validation for auto; otherwise off.
-    rate_companding : float, optional
+    rate_compression : float, optional
         Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all rows stay
         below; 0 for off. Default: off.
 

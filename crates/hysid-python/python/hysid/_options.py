@@ -75,8 +75,8 @@ class Options(TypedDict, total=False):
     relaxation: int | None
     no_deterioration: bool | None
     history: bool | None
-    companding: float | None
-    rate_companding: float | None
+    compression: float | None
+    rate_compression: float | None
 
     # Training
     warm_up: int | None

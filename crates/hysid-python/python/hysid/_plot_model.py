@@ -123,14 +123,14 @@ def _short(name: str) -> str:
     return name if len(name) <= LONGEST_NAME else name[: LONGEST_NAME - 1] + "…"
 
 
-def _is_companded(content: dict[str, Any]) -> bool:
+def _is_compressed(content: dict[str, Any]) -> bool:
     """Whether the thresholds are not in the unit of the input."""
-    return (content.get("preprocessing") or {}).get("companding") is not None
+    return (content.get("preprocessing") or {}).get("compression") is not None
 
 
-def _not_companded(model: Model) -> None:
-    if _is_companded(model.description):
-        raise ValueError(f"the input of this {model.name} is companded: its thresholds have no unit")
+def _not_compressed(model: Model) -> None:
+    if _is_compressed(model.description):
+        raise ValueError(f"the input of this {model.name} is compressed: its thresholds have no unit")
 
 
 def _play_weights(law: dict[str, Any], name: str) -> tuple[list[float], list[float], str] | None:
@@ -154,7 +154,7 @@ def _stop_thresholds(network: dict[str, Any]) -> list[float]:
 
 def _thresholds_of(content: dict[str, Any]) -> list[float]:
     """The thresholds of a model in the unit of its first input; empty if it has none."""
-    if _is_companded(content):
+    if _is_compressed(content):
         return []
     if content.get("network") is not None:
         return _stop_thresholds(content["network"])
@@ -183,14 +183,14 @@ def thresholds(model: Model, *, ax: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        A model without thresholds, or whose input is companded.
+        A model without thresholds, or whose input is compressed.
     """
     described = model.description
     network = described.get("network")
     name, unit = _hysid.name_and_unit(model.inputs[0])
     label = f"threshold of {name}" + ("" if unit is None else f" ({unit})")
     if not model.members:
-        _not_companded(model)
+        _not_compressed(model)
         if network is None:
             return _of_law(model, label, ax)
     groups = [(name, _thresholds_of(content)) for name, _, content in _members(model)]
@@ -253,12 +253,12 @@ def preisach_plane(model: Model, *, ax: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        Another model, or one whose input is companded.
+        Another model, or one whose input is compressed.
     """
     law = (model.description.get("law") or {}).get("preisach")
     if law is None:
         raise ValueError(f"{model.name} has no Preisach plane: fit one with model='preisach'")
-    _not_companded(model)
+    _not_compressed(model)
     ax = new_axes(ax)
     lines = np.array(law["lines"])
     steps = np.diff(lines)

@@ -51,7 +51,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     model : str, optional
         As of `hysid.fit`; the default ``"auto"`` is accurate and slow. In a search or a cross-validation, name a
         model, which takes seconds.
-    members, stops, hidden, relaxation, no_deterioration, history, companding, rate_companding, warm_up : optional
+    members, stops, hidden, relaxation, no_deterioration, history, compression, rate_compression, warm_up : optional
     initial_state, known, training, effort, starts, epochs, population, stall, validation, ridge, decay : optional
     operators, states, modes, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds : optional
     degradation, asymmetric, differential_form, resonance, lagged_input, acceleration, odd, error : optional
@@ -96,8 +96,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         relaxation: int | None = None,
         no_deterioration: bool | None = None,
         history: bool | None = None,
-        companding: float | None = None,
-        rate_companding: float | None = None,
+        compression: float | None = None,
+        rate_compression: float | None = None,
         warm_up: int | None = None,
         initial_state: _options.InitialStateName | None = None,
         known: int | str | None = None,
@@ -141,8 +141,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.relaxation = relaxation
         self.no_deterioration = no_deterioration
         self.history = history
-        self.companding = companding
-        self.rate_companding = rate_companding
+        self.compression = compression
+        self.rate_compression = rate_compression
         self.warm_up = warm_up
         self.initial_state = initial_state
         self.known = known

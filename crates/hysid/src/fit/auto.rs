@@ -4,7 +4,7 @@
 //! 2. *Candidates*: for data that look like a resonance models with inertia, a network and a recurrent network, which
 //!    are scored on the beginnings of the records and fitted to all of them (theory.md, section 15); otherwise networks,
 //!    recurrent networks, random stops and all classical laws, with and without rate, deterioration, relaxation and
-//!    companding. Laws with searched parameters are first fitted to few rows, and dropped if their errors are far above
+//!    compression. Laws with searched parameters are first fitted to few rows, and dropped if their errors are far above
 //!    the best. The other candidates and the remaining laws are fitted to the first folds, the best of each kind also to
 //!    the other folds, and those with a weight once more from a second start. The prediction of a candidate is the
 //!    median of its starts.

@@ -173,12 +173,12 @@ fn decisions_are_obeyed() {
     let without = members(AutoOptions {
         deterioration: Some(false),
         always_rate: true,
-        companding: Some(false),
+        compression: Some(false),
         ..options(rate)
     });
     assert!(networks(&without).iter().all(|a| !a.deterioration));
     assert!(without.iter().all(|member| member.rate() == rate));
-    assert!(without.iter().all(|member| member.input_transform().companding.is_none()));
+    assert!(without.iter().all(|member| member.input_transform().compression.is_none()));
     let with = members(AutoOptions { deterioration: Some(true), ..options(rate) });
     assert!(!with.is_empty() && networks(&with).iter().all(|a| a.deterioration));
     let wears = |member: &Model| match member.predictor() {
@@ -208,7 +208,7 @@ fn decisions_are_obeyed() {
 fn decisions_that_leave_nothing_are_refused() {
     let refused =
         |options: AutoOptions| identify(&data(), &FitSpec::Auto(options), &mut on).unwrap_err().to_string();
-    let nothing = AutoOptions { companding: Some(true), history: Some(true), ..options(None) };
+    let nothing = AutoOptions { compression: Some(true), history: Some(true), ..options(None) };
     assert!(refused(nothing).contains("leave no candidate"));
     assert!(refused(AutoOptions { members: 0, ..options(None) }).contains("choose a whole number from 1 to"));
 }

@@ -128,7 +128,7 @@ fn whole_blocks_and_steps_begin_alike_and_a_record_can_begin_otherwise() {
     requests.push(small(ModelName::AUTO, rate));
     let mut shaped = NamedOptions::of(Default::default()).unwrap();
     (shaped.model, shaped.epochs, shaped.starts) = (Some("xpnn+".parse().unwrap()), Some(3), Some(1));
-    (shaped.history, shaped.companding, shaped.rate_companding) = (Some(true), Some(0.2), Some(0.3));
+    (shaped.history, shaped.compression, shaped.rate_compression) = (Some(true), Some(0.2), Some(0.3));
     requests.push(shaped.request(rate, false));
     for request in requests {
         let virgin = model_of(&data, &request);
@@ -288,7 +288,7 @@ fn a_forecast_begins_with_the_state_of_its_record() {
 fn few_candidates() -> FitSpec {
     let FitSpec::Auto(options) = small(ModelName::AUTO, None) else { panic!("auto was asked for") };
     FitSpec::Auto(AutoOptions {
-        companding: Some(false),
+        compression: Some(false),
         history: Some(false),
         deterioration: Some(false),
         operators: None,

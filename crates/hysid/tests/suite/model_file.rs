@@ -159,7 +159,7 @@ fn scales_that_nothing_can_be_divided_by_are_refused() {
     assert!(refusal(&with_value("trained_ranges", "inputs", "1e9")).contains("range"));
     let preprocessing = text.replacen(
         "\"trained_ranges\"",
-        "\"preprocessing\": {\"companding\": 5e-324, \"rate_companding\": null, \"history\": null}, \"trained_ranges\"",
+        "\"preprocessing\": {\"compression\": 5e-324, \"rate_compression\": null, \"history\": null}, \"trained_ranges\"",
         1,
     );
     assert!(refusal(&with_fitting_checksum(&preprocessing)).contains("preprocessing has a scale"));

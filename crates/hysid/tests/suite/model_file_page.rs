@@ -97,8 +97,8 @@ fn with_other_parts(spec: FitSpec) -> FitSpec {
 /// The same request with everything that adds parts to a model.
 fn with_all_parts(spec: FitSpec) -> FitSpec {
     let shaping = |history| InputOptions {
-        companding: Some(0.2),
-        rate_companding: Some(0.2),
+        compression: Some(0.2),
+        rate_compression: Some(0.2),
         history,
         warm_up: 4,
         initial_state: Some(InitialState::SaturatedUp),

@@ -109,13 +109,13 @@ fn further_inputs_and_what_a_model_makes_of_its_input_are_the_same_in_blocks() {
         chosen.model = Some(ModelName::Network(Family::XpnnPlus));
         let request = chosen.request(Some(method), true);
         let model = fitted(vec![rich(200, "a"), rich(150, "b")], &request);
-        assert!(model.input_transform().companding.is_some() && model.input_transform().history.is_some());
+        assert!(model.input_transform().compression.is_some() && model.input_transform().history.is_some());
         check(&model, &[rich(2100, "long"), rich(3, "short")], &format!("{method:?}"));
     }
 }
 
-const OPTIONS: &str = r#"{"stops": 3, "hidden": 2, "relaxation": 1, "starts": 1, "epochs": 3, "companding": 0.2,
-    "rate_companding": 0.3, "history": true}"#;
+const OPTIONS: &str = r#"{"stops": 3, "hidden": 2, "relaxation": 1, "starts": 1, "epochs": 3, "compression": 0.2,
+    "rate_compression": 0.3, "history": true}"#;
 
 #[test]
 fn an_ensemble_and_its_band_are_the_same_in_blocks() {

@@ -65,7 +65,7 @@ fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-/// Factor of the companded acceleration, which is about 1 at five times its scale. Designed.
+/// Factor of the compressed acceleration, which is about 1 at five times its scale. Designed.
 pub const ACCELERATION_GAIN: f64 = 0.4;
 
 /// Largest magnitude of a derivative of the input in scaled units, also in single precision.
@@ -359,7 +359,7 @@ impl Cell {
     }
 }
 
-/// The companded second derivative of the input (theory.md (8.61)), after a change of the input in the elapsed time.
+/// The compressed second derivative of the input (theory.md (8.61)), after a change of the input in the elapsed time.
 fn acceleration(memory: &mut CellMemory, change: f64, scale: f64) -> f64 {
     let elapsed = memory.elapsed;
     let is_step = elapsed > 0.0;

@@ -59,7 +59,7 @@ impl Native {
             _ => Err(format!("OpenSees has no material with the law of {}", model.name().name())),
         };
         let transform = model.input_transform();
-        if transform.companding.is_some() || transform.history.is_some() {
+        if transform.compression.is_some() || transform.history.is_some() {
             return Err("it transforms its input".into());
         }
         if !model.lead_in().is_empty() {

@@ -64,9 +64,9 @@ pub fn networks() -> Vec<(String, Model)> {
     vec![
         fitted("pnn", 1, &linear()),
         fitted("gpnn", 1, &linear()),
-        fitted("preisach-nn", 1, &with(small(), &[("companding", json!(0.2))])),
-        fitted("xpnn", 1, &with(small(), &[("rate_companding", json!(0.5))])),
-        fitted("xpnn+", 1, &with(small(), &[("history", json!(true)), ("companding", json!(0.1))])),
+        fitted("preisach-nn", 1, &with(small(), &[("compression", json!(0.2))])),
+        fitted("xpnn", 1, &with(small(), &[("rate_compression", json!(0.5))])),
+        fitted("xpnn+", 1, &with(small(), &[("history", json!(true)), ("compression", json!(0.1))])),
         fitted(
             "xpnn+",
             2,

@@ -10,7 +10,7 @@ use crate::data::record::Dataset;
 use crate::diagnosis::resonance::Resonance;
 use crate::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
 use crate::fit::law::candidates::{
-    COMPANDING, CandidateRequest, RATE_COMPANDING, RankedLaw, companded, with_companded_rate,
+    COMPRESSION, CandidateRequest, RATE_COMPRESSION, RankedLaw, compressed, with_compressed_rate,
 };
 use crate::fit::{initial_state, law};
 use crate::law::facts::LawKind;
@@ -316,9 +316,9 @@ fn loses_strength(data: &Dataset) -> bool {
 fn networks(options: &AutoOptions) -> Vec<FitOptions> {
     use Family::{PreisachNn, Xpnn, XpnnPlus};
     let as_it_is = InputOptions::default();
-    let [tenth, fiftieth] = COMPANDING.map(companded);
-    let rate_tenth = with_companded_rate();
-    let both = InputOptions { rate_companding: Some(RATE_COMPANDING), ..tenth };
+    let [tenth, fiftieth] = COMPRESSION.map(compressed);
+    let rate_tenth = with_compressed_rate();
+    let both = InputOptions { rate_compression: Some(RATE_COMPRESSION), ..tenth };
     let history = InputOptions { history: true, ..as_it_is };
     let mut networks = Vec::new();
     let mut add = |model, deterioration, shaping, rate, relaxation| {
@@ -432,7 +432,7 @@ fn is_allowed(candidate: &Candidate, to: &CandidateRequest<'_>) -> bool {
         && decided.deterioration.is_none_or(|wanted| wanted == deteriorates)
         && (!decided.always_rate || request.rate().is_some())
         && decided.relaxation.is_none_or(|wanted| !is_network || relaxes == (wanted > 0))
-        && decided.companding.is_none_or(|wanted| wanted == shaping.companding.is_some())
+        && decided.compression.is_none_or(|wanted| wanted == shaping.compression.is_some())
         && decided.history.is_none_or(|wanted| wanted == shaping.history)
         && (data.names().inputs.len() == 1 || is_network || takes_several)
 }

@@ -8,10 +8,10 @@ use crate::options::fit_spec::AutoOptions;
 use crate::options::input_options::InputOptions;
 use crate::options::variants::variants;
 
-/// Scale of the companding of the input: for what happens within a tenth or a fiftieth of its range.
-pub(crate) const COMPANDING: [f64; 2] = [0.1, 0.02];
+/// Scale of the compression of the input: for what happens within a tenth or a fiftieth of its range.
+pub(crate) const COMPRESSION: [f64; 2] = [0.1, 0.02];
 
-pub(crate) const RATE_COMPANDING: f64 = 0.1;
+pub(crate) const RATE_COMPRESSION: f64 = 0.1;
 
 /// Rank of a law that is not known to be good.
 const LAST: usize = usize::MAX;
@@ -37,21 +37,21 @@ pub(crate) fn of_law(model: ClassicalModel, options: &AutoOptions) -> ClassicalO
     }
 }
 
-pub(crate) fn companded(share: f64) -> InputOptions {
-    InputOptions { companding: Some(share), ..InputOptions::default() }
+pub(crate) fn compressed(share: f64) -> InputOptions {
+    InputOptions { compression: Some(share), ..InputOptions::default() }
 }
 
-pub(crate) fn with_companded_rate() -> InputOptions {
-    InputOptions { rate_companding: Some(RATE_COMPANDING), ..InputOptions::default() }
+pub(crate) fn with_compressed_rate() -> InputOptions {
+    InputOptions { rate_compression: Some(RATE_COMPRESSION), ..InputOptions::default() }
 }
 
-/// The law with the input as it is and companded, with these ranks.
-pub(crate) fn in_all_compandings(
+/// The law with the input as it is and compressed, with these ranks.
+pub(crate) fn in_all_compressions(
     model: ClassicalModel,
     options: &AutoOptions,
     ranks: [usize; 3],
 ) -> Vec<RankedLaw> {
-    let [tenth, fiftieth] = COMPANDING.map(companded);
+    let [tenth, fiftieth] = COMPRESSION.map(compressed);
     let shaped = |shaping| ClassicalOptions { shaping, ..of_law(model, options) };
     ranks.into_iter().zip([InputOptions::default(), tenth, fiftieth].map(shaped)).collect()
 }

@@ -23,7 +23,7 @@ use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::fit::law::Identify;
-use crate::fit::law::candidates::{CandidateRequest, RankedLaw, with_companded_rate};
+use crate::fit::law::candidates::{CandidateRequest, RankedLaw, with_compressed_rate};
 use crate::fit::law::duhem_nn::by_record::{FreeCurvature, RecordWeights, square_error};
 use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{IdentifiedLaw, MemoryKind, check_effort, measured, spread, thinned_to};
@@ -118,7 +118,7 @@ impl Identify for DuhemNn {
         MemoryNeed::largest_of(all, [(derivatives, taken_by, advice), size.part_of_copies()])
     }
 
-    /// With and without stops; with a rate also where it is companded.
+    /// With and without stops; with a rate also where it is compressed.
     fn candidates(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
         let CandidateRequest { data, options, .. } = request;
         let rate = options.rate.filter(|_| data.has_time());
@@ -139,7 +139,7 @@ impl Identify for DuhemNn {
             seed: options.seed,
             ..ClassicalOptions::of(model)
         };
-        let shapings = [InputOptions::default(), with_companded_rate()];
+        let shapings = [InputOptions::default(), with_compressed_rate()];
         let shapings = shapings.into_iter().take(if rate.is_some() { 2 } else { 1 });
         let shapes = [(3, 6, 8), (5, 0, 10)];
         let all = shapings.flat_map(|shaping| shapes.map(|shape| of((shaping, shape))));
@@ -224,9 +224,9 @@ impl<'a> DuhemTraining<'a> {
     }
 }
 
-/// States and neurons of candidates with free states, their companding of the rate, and their epochs. Designed.
+/// States and neurons of candidates with free states, their compression of the rate, and their epochs. Designed.
 const FREE_SHAPE: (usize, usize) = (6, 10);
-const FREE_RATE_COMPANDING: f64 = 0.2;
+const FREE_RATE_COMPRESSION: f64 = 0.2;
 const EPOCHS_OF_FREE: usize = 45;
 
 /// Largest mean of what lies about zero, in standard deviations. Designed.
@@ -243,7 +243,7 @@ fn with_free_states(
         rate,
         shaping: InputOptions {
             initial_state: Some(InitialState::Free),
-            rate_companding: rate.map(|_| FREE_RATE_COMPANDING),
+            rate_compression: rate.map(|_| FREE_RATE_COMPRESSION),
             ..InputOptions::default()
         },
         states: Some(FREE_SHAPE.0),
@@ -356,7 +356,7 @@ impl DuhemFrame {
     }
 }
 
-/// Share of the common second derivative beyond which the acceleration is companded.
+/// Share of the common second derivative beyond which the acceleration is compressed.
 const ACCELERATION_SHARE: f64 = 0.2;
 
 /// The scale `ς` of the acceleration, in scaled units.

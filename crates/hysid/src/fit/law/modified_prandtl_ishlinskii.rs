@@ -13,7 +13,7 @@ use hysid_core::elementary::{ln, square};
 
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::fit::law::candidates::{CandidateRequest, RankedLaw, in_all_compandings};
+use crate::fit::law::candidates::{CandidateRequest, RankedLaw, in_all_compressions};
 use crate::fit::law::linearised::{FitVariable, LinearisedLaw, WeightRows, in_stretches, unit_gradient};
 use crate::fit::law::search::IdentifiedLaw;
 use crate::fit::law::{Identify, grids};
@@ -139,7 +139,7 @@ impl Identify for ModifiedPrandtlIshlinskii {
     }
 
     fn candidates(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
-        in_all_compandings(model, request.options, [1, 3, 5])
+        in_all_compressions(model, request.options, [1, 3, 5])
     }
 }
 

@@ -14,7 +14,7 @@ use hysid_core::elementary::{powf, powi, square};
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::Identify;
-use crate::fit::law::candidates::{CandidateRequest, RankedLaw, in_all_compandings};
+use crate::fit::law::candidates::{CandidateRequest, RankedLaw, in_all_compressions};
 use crate::fit::law::grids::check_count;
 use crate::fit::law::search::IdentifiedLaw;
 use crate::fit::memory_need::{FEWER_OPERATORS, FEWER_ROWS, LawFitSize, MemoryNeed};
@@ -82,7 +82,7 @@ impl Identify for Preisach {
     }
 
     fn candidates(model: ClassicalModel, request: &CandidateRequest<'_>) -> Vec<RankedLaw> {
-        in_all_compandings(model, request.options, [0, 2, 4])
+        in_all_compressions(model, request.options, [0, 2, 4])
     }
 }
 

@@ -20,7 +20,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
-use crate::fit::law::candidates::{COMPANDING, RankedLaw, companded, with_companded_rate};
+use crate::fit::law::candidates::{COMPRESSION, RankedLaw, compressed, with_compressed_rate};
 use crate::fit::memory_need::{LawFitSize, MemoryNeed};
 use crate::fit::random_start::{self, Capacities};
 use crate::fit::sums::{FoldSums, Sums, logarithmic};
@@ -70,9 +70,9 @@ pub(super) fn memory_need(data: &Dataset, options: &ClassicalOptions, size: &Law
 pub(super) fn candidates(model: ClassicalModel, options: &AutoOptions) -> Vec<RankedLaw> {
     let as_it_is = InputOptions::default();
     let rate = options.rate;
-    let mut all = vec![(as_it_is, None, false, LINEAR), (companded(COMPANDING[0]), None, false, LINEAR)];
+    let mut all = vec![(as_it_is, None, false, LINEAR), (compressed(COMPRESSION[0]), None, false, LINEAR)];
     all.extend(match rate.is_some() {
-        true => [(with_companded_rate(), rate, false, LINEAR), (as_it_is, rate, true, LAYERED)],
+        true => [(with_compressed_rate(), rate, false, LINEAR), (as_it_is, rate, true, LAYERED)],
         false => [(as_it_is, None, true, LINEAR), (as_it_is, None, true, LAYERED)],
     });
     let of = |(shaping, rate, deterioration, (stops, hidden))| ClassicalOptions {
