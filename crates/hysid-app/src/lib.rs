@@ -23,6 +23,7 @@ mod errors;
 pub mod errors_table;
 #[cfg(feature = "tables")]
 pub mod evaluation;
+mod fading_errors;
 mod figures;
 pub mod folds_text;
 mod frequency_response;

@@ -76,7 +76,7 @@ pub enum Error {
     /// A model without a band of errors.
     #[error(
         "this model of {0} has no prediction band: a fit of `auto` calibrates one, if there are enough data \
-         to hold some out"
+         to hold some out; a simulation without a band is possible"
     )]
     NoBand(&'static str),
     /// A probability that no band is calibrated for.

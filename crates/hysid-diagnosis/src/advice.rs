@@ -219,8 +219,8 @@ fn assumptions(found: &DecidingProperties) -> Vec<String> {
     if found.rate_dependence == Verdict::Yes {
         return assumed;
     }
-    assume(found.deterioration, "deterioration by repetition (assumed: none)");
     if !found.degrades() {
+        assume(found.deterioration, "deterioration by repetition (assumed: none)");
         assume(found.wiping_out, "wiping-out (assumed: yes)");
         if found.wiping_out != Verdict::No {
             assume(found.congruency, "congruency (assumed: yes; if not: preisach-nn)");

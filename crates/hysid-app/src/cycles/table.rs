@@ -168,16 +168,18 @@ type LossColumn = (&'static str, FigureQuantity, fn(&LossAtFrequency) -> Option<
 /// The first `most` losses of amplitudes with several frequencies, with their parts if they are separated, and the number
 /// of the others; `None` if there are none.
 pub fn losses(cycles: &Cycles, most: usize, label: impl Fn(&str) -> String) -> Option<(Table, usize)> {
-    use FigureQuantity::{Energy, Frequency, Input, Power};
+    use FigureQuantity::{Energy, Frequency, Input, Power, PowerPerMass};
     let losses: Vec<&LossAtFrequency> = at_several_frequencies(cycles).into_iter().flatten().collect();
-    let columns: [LossColumn; 7] = [
+    let columns: [LossColumn; 8] = [
         ("amplitude", Input, |loss| Some(loss.amplitude)),
         ("frequency", Frequency, |loss| Some(loss.frequency)),
         ("loss per cycle", Energy, |loss| Some(loss.energy)),
         ("hysteresis", Energy, |loss| loss.hysteresis),
         ("eddy", Energy, |loss| loss.eddy),
         ("excess", Energy, |loss| loss.excess),
-        ("loss per time", Power, |loss| Some(loss.power)),
+        // Per mass in place of per volume.
+        ("loss per time", Power, |loss| Some(loss.power).filter(|_| loss.power_per_mass.is_none())),
+        ("loss per time", PowerPerMass, |loss| loss.power_per_mass),
     ];
     let used: Vec<_> =
         columns.iter().filter(|(.., of)| losses.iter().any(|loss| of(loss).is_some())).collect();

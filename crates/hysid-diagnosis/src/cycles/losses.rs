@@ -21,6 +21,8 @@ pub struct LossAtFrequency {
     pub energy: f64,
     /// Mean energy lost per unit of time.
     pub power: f64,
+    /// The same per mass, if the mass density is known.
+    pub power_per_mass: Option<f64>,
     /// Hysteresis loss of a cycle, by the separation of the losses of all amplitudes and frequencies.
     pub hysteresis: Option<f64>,
     /// Eddy-current loss of a cycle, by the same.
@@ -46,6 +48,9 @@ pub(super) fn losses(rows: &[CycleRow], separation: Option<&Separation>) -> Vec<
         }
     }
     let mut losses: Vec<LossAtFrequency> = groups.iter().map(|group| mean(group, separation)).collect();
+    if let Some(per_mass) = rows.iter().find_map(|row| Some(row.power_per_mass? / row.power?)) {
+        losses.iter_mut().for_each(|loss| loss.power_per_mass = Some(per_mass * loss.power));
+    }
     losses.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
     for one_amplitude in losses.chunk_by_mut(|a, b| alike(a.amplitude, b.amplitude)) {
         one_amplitude.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
@@ -70,6 +75,7 @@ fn mean(group: &[[f64; 4]], separation: Option<&Separation>) -> LossAtFrequency 
         frequency,
         energy: mean(&|cycle| cycle[2]),
         power: mean(&|cycle| cycle[1] * cycle[2]),
+        power_per_mass: None,
         cycles: group.len(),
     }
 }

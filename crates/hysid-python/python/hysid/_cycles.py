@@ -29,6 +29,7 @@ LOSSES = (
     "frequency",
     "energy",
     "power",
+    "power_per_mass",
     "hysteresis",
     "eddy",
     "excess",
