@@ -1,10 +1,18 @@
 """The script of pages in a real browser: zoom, values at the pointer, cycles, saving, narrow screens, no script."""
 
 import csv
+import io
+import os
 import re
 import xml.etree.ElementTree as tree
+from pathlib import Path
 
 import pytest
+from conftest import run
+from PIL import Image
+
+#: The picture of a report in the README; HYSID_WRITE=1 writes it.
+PICTURE = Path(__file__).parents[4] / "docs" / "images" / "report.png"
 
 
 def drag(opened, figure, start, end):
@@ -126,3 +134,17 @@ def test_a_page_without_scripts_is_complete(opened):
     assert page.page.locator("figure svg.plot").count() >= 5
     assert page.page.locator("table").count() >= 2
     assert page.page.locator("figure .tools").count() == 0
+
+
+def test_the_head_of_a_report_says_how_good_the_model_is(opened, folder):
+    run(folder, "generate ferromagnet -o magnet.csv --noise 1")
+    run(folder, "fit magnet.csv -o magnet.json --model preisach --members 2 --title Magnet")
+    page = opened("magnet.html", width=1160, height=700)
+    whole = Image.open(io.BytesIO(page.page.screenshot())).convert("RGB")
+    assert len(whole.getcolors(whole.width * whole.height)) > 20
+    words = page.page.locator("body").inner_text()
+    assert words.startswith("Magnet") and "held-out" in words[:800]
+    if os.environ.get("HYSID_WRITE"):
+        whole.quantize(24, dither=Image.Dither.NONE).save(PICTURE, optimize=True)
+    assert PICTURE.stat().st_size < 100_000
+    page.check()
