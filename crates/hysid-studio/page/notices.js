@@ -6,18 +6,26 @@ import { Gone, post, remove } from "./server.js";
 
 const OF_COLUMNS = ["--input", "--output", "--time", "--record", "--rate", "--mass", "--displacement", "--velocity", "--acceleration", "--absolute-acceleration", "--base-acceleration", "--applied-force"];
 
-/** Moves the focus to the control of an option and unfolds what it is in. */
-function focusOption(flag) {
+/** The control of an option, of the step that is shown if it has one. */
+function controlOf(flag) {
   const found = [...document.querySelectorAll("[data-flag]")].filter((node) => node.dataset.flag.split(" ").includes(flag));
-  const control = found.find((node) => node.closest("section")?.hidden === false) ?? found[0];
+  return found.find((node) => node.closest("section")?.hidden === false) ?? found[0];
+}
+
+/** Moves the focus to the control of an option and unfolds what it is in. A column that is named gets the role. */
+function follow(flag, value) {
+  const control = controlOf(flag);
   if (!control) return;
   const section = control.closest("section");
   if (section.hidden) location.hash = section.id;
   // The step is shown in the next task, after the change of the hash.
   setTimeout(() => {
     for (let part = control.closest("details"); part; part = part.parentElement.closest("details")) part.open = true;
-    control.focus();
-    control.scrollIntoView({ block: "center" });
+    if (value) control.dispatchEvent(new CustomEvent("role", { bubbles: true, detail: { column: value, role: flag.slice(2) } }));
+    // The table is built again with the new role.
+    const shown = control.isConnected ? control : controlOf(flag);
+    shown?.focus();
+    shown?.scrollIntoView({ block: "center" });
   }, 50);
 }
 
@@ -25,7 +33,7 @@ const isControl = (flag) => OF_COLUMNS.includes(flag) || [...project.choices.opt
 
 /** Words with links to controls: a text, or a list of texts and controls. */
 export function linked(words) {
-  const link = ({ flag, words: label }) => (isControl(flag) ? button(label, () => focusOption(flag), { class: "link" }) : label);
+  const link = ({ flag, words: label, value }) => (isControl(flag) ? button(label, () => follow(flag, value), { class: "link" }) : label);
   return element("span", {}, ...[words].flat().map((part) => (typeof part === "string" ? part : link(part))));
 }
 

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use hysid_core::words::{Phrase, Words};
+use hysid_core::words::{Hint, Phrase, Words};
 use hysid_document::shell::flag;
 use hysid_document::{Face, Problem};
 use serde::{Serialize, Serializer};
@@ -10,7 +10,8 @@ use serde_json::json;
 
 const MOST_LETTERS: usize = 1000;
 
-/// Words of a problem for the page, which makes links of the hints: a text, or texts and controls by their options.
+/// Words of a problem for the page, which makes links of the hints: a text, or texts and controls by their options, with
+/// the value that the hint gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Said(Words);
 
@@ -49,7 +50,13 @@ impl Serialize for Said {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let value = |phrase: &Phrase| match phrase {
             Phrase::Text(text) => json!(shortened(text)),
-            Phrase::Hint(hint) => json!({"flag": flag(hint.option()), "words": Face::Studio.hint(hint)}),
+            Phrase::Hint(hint) => {
+                let value = match hint {
+                    Hint::Value(_, value) => Some(value),
+                    Hint::Option(_) | Hint::MissingWord(_) => None,
+                };
+                json!({"flag": flag(hint.option()), "words": Face::Studio.hint(hint), "value": value})
+            }
         };
         match self.0.phrases() {
             [Phrase::Text(text)] => serializer.serialize_str(&shortened(text)),

@@ -11,6 +11,7 @@ import { sendFiles } from "../uploads.js";
 import { Example } from "./example.js";
 
 const ROLES = ["input", "output", "time", "record", "rate", "unused"];
+const NO_TIME = "none"; // In place of a column of time, if none has the time.
 const FLAG_OF_ROLE = { input: "--input", output: "--output", time: "--time", record: "--record", rate: "--rate" };
 
 export class DataStep {
@@ -23,6 +24,8 @@ export class DataStep {
     this.view = new Region();
     this.findings = new Region();
     this.example = new Example(this.notice);
+    /** Roles that were chosen and that the server does not have yet, by file and column. */
+    this.chosen = new Map();
     body.replaceChildren(this.adding(), this.notice.node, this.example.node, this.files.node, this.columns.node, this.reading.node, this.view.node, this.findings.node);
   }
 
@@ -44,7 +47,7 @@ export class DataStep {
     this.box.classList.toggle("compact", files.length > 0);
     this.example.update(files.length === 0);
     this.files.update([files, whole], () => this.fileList(files, whole));
-    this.columns.update([files, first, columns, areChosen], () => this.columnTables(files, first, areChosen));
+    this.columns.update([files, first, columns, areChosen, [...this.chosen].map(([id, roles]) => [id, [...roles]])], () => this.columnTables(files, first, areChosen));
     const isUnread = files.some((file) => file.problem && file.columns.length === 0);
     this.reading.update([reading, files.length > 0, isUnread], () => (files.length > 0 ? [this.readingOptions(reading, isUnread)] : []));
     const shown = project.labels ? project.usable() : [];
@@ -79,19 +82,19 @@ export class DataStep {
     // Roles that a problem names lead to the table that it is about.
     const asked = readable.find((file) => file.id !== first && file.problem) ?? readable[0];
     const flagged = new Set();
-    const row = (file) => (column) => {
+    const row = (file, roles) => (column) => {
       const id = `role-${file.id}-${file.columns.indexOf(column)}`;
       const role = element("select", { id, "aria-label": `Role of ${column.name} in ${file.name}`, on: { change: () => this.chooseRole(file, column.name, role.value) } },
         ...ROLES.map((name) => element("option", { value: name, text: name })));
-      role.value = column.role ?? "unused";
-      const flag = FLAG_OF_ROLE[column.role];
+      role.value = roles.get(column.name);
+      const flag = FLAG_OF_ROLE[role.value];
       if (file === asked && flag && !flagged.has(flag)) { role.dataset.flag = flag; flagged.add(flag); }
       return [column.name, role, column.unit ?? "", written(column.minimum), written(column.maximum), counted(column.missing ?? 0), column.note ?? ""];
     };
     const words = { text: "Note", class: "words" };
     const text = (name) => ({ text: name, class: "text" });
     const tables = readable.map((file, k) => {
-      const build = () => table(`Columns of ${file.name}`, ["Column", text("Role"), text("Unit"), "Minimum", "Maximum", "Missing", words], file.columns.map(row(file)));
+      const build = () => table(`Columns of ${file.name}`, ["Column", text("Role"), text("Unit"), "Minimum", "Maximum", "Missing", words], file.columns.map(row(file, this.rolesOf(file))));
       if (k > 0 && file !== asked) {
         // Built when it is opened: there may be many.
         const details = element("details", { on: { toggle: () => { if (details.childElementCount === 1) details.append(build()); } } }, element("summary", { text: `Columns of ${file.name}` }));
@@ -102,27 +105,57 @@ export class DataStep {
       const free = [...made.querySelectorAll("select")].find((select) => select.value === "unused") ?? made.querySelector("select");
       const missing = Object.values(FLAG_OF_ROLE).filter((flag) => !flagged.has(flag));
       if (file === asked && !free.dataset.flag) free.dataset.flag = missing.join(" ");
+      made.addEventListener("role", ({ detail: { column, role } }) => {
+        if (file.columns.some(({ name }) => name === column) || (role === "time" && column === NO_TIME)) this.chooseRole(file, column, role, true);
+      });
       return k > 0 ? element("div", {}, element("h3", { text: file.name }), made) : made;
     });
     const others = readable.length > 1 ? " Other files have the same roles: their columns are found by name and unit, and a role that you change in one of them is changed there alone." : "";
     return [element("h2", { text: "Columns" }),
       element("p", { class: "note", text: `${areChosen ? "Roles as you chose them." : "Roles were detected from names and values."} A record column separates runs; a rate column has the measured rate of the first input.${others}` }),
-      ...tables, areChosen ? button("Detect again", () => this.notice.during(() => post("/api/columns", null))) : null];
+      ...tables, areChosen || this.chosen.size > 0 ? button("Detect again", () => this.detect()) : null];
   }
 
-  /** Sends the whole choice. Two columns exchange a role that only one can have. */
-  chooseRole(file, name, role) {
-    const roles = new Map(file.columns.map((column) => [column.name, column.role]));
-    if (role !== "input" && role !== "unused") for (const [other, had] of roles) if (had === role) roles.set(other, roles.get(name));
+  /** The roles of the columns as the table shows them. */
+  rolesOf(file) {
+    const chosen = this.chosen.get(file.id);
+    const roles = new Map(file.columns.map((column) => [column.name, chosen?.get(column.name) ?? column.role ?? "unused"]));
+    if (chosen?.get(NO_TIME) === "time") roles.set(NO_TIME, "time");
+    return roles;
+  }
+
+  detect() {
+    this.chosen.clear();
+    this.update();
+    return this.notice.during(() => post("/api/columns", null));
+  }
+
+  /** Sends all roles as the table shows them. Two columns exchange a role that only one can have; `alone` makes a column the only input. */
+  async chooseRole(file, name, role, alone = false) {
+    const roles = this.rolesOf(file);
+    const before = roles.get(name) ?? "unused";
+    const gives = role === "input" ? alone && "unused" : role !== "unused" && before;
+    if (gives) for (const [other, had] of roles) if (had === role) roles.set(other, other === NO_TIME ? "unused" : gives);
     roles.set(name, role);
+    this.chosen.set(file.id, roles);
+    this.update();
     const all = (wanted) => [...roles].filter(([, had]) => had === wanted).map(([column]) => column);
     const one = (wanted) => all(wanted)[0] ?? null;
-    const chosen = { record: one("record"), time: one("time"), inputs: all("input"), rate: one("rate"), output: one("output") };
-    const address = file.id === project.state.first ? "/api/columns" : `/api/files/${file.id}/columns`;
-    return this.notice.during(() => post(address, chosen)).then((answer) => {
-      if (answer?.note) this.notice.show(`${answer.note}.`);
-      return project.load();
+    const isFirst = file.id === project.state.first;
+    const missing = ["input", "output"].find((wanted) => all(wanted).length === 0);
+    if (isFirst && missing) {
+      this.notice.tell(linked([`No column has the role ${missing} yet: choose `, { flag: FLAG_OF_ROLE[missing], words: `the role "${missing}"` }, "."]));
+      return;
+    }
+    // Without roles that were detected, a column of time is still found.
+    const wasFound = isFirst && file.columns.some((column) => column.role === "input");
+    const chosen = { record: one("record"), time: one("time") ?? (wasFound ? NO_TIME : null), inputs: all("input"), rate: one("rate"), output: one("output") };
+    await this.notice.during(async () => {
+      const answer = await post(isFirst ? "/api/columns" : `/api/files/${file.id}/columns`, chosen);
+      if (this.chosen.get(file.id) === roles) this.chosen.delete(file.id);
+      if (wasFound && answer?.note) this.notice.show(`${answer.note}.`);
     });
+    await project.load();
   }
 
   readingOptions(reading, isOpen) {

@@ -26,7 +26,11 @@ export class IdentifyStep {
   update() {
     const isRunning = project.state.fit?.is_running ?? false;
     const isReady = project.labels && !project.state.problem;
-    this.form.update([isReady, isRunning, this.model], () => (isReady ? this.build(isRunning)
+    const data = JSON.stringify([project.state.problem, project.files.map(({ id, use, problem }) => [id, use, problem])]);
+    // An error of the last start may be of a file that was removed.
+    if (this.data !== undefined && this.data !== data) this.notice.clear();
+    this.data = data;
+    this.form.update([isReady, isRunning, this.model, data], () => (isReady ? this.build(isRunning)
       : [emptyState("There are no training data to fit a model to. ", element("a", { class: "button", href: "#data", text: "Go to the data" })),
         project.state.problem ? element("p", { class: "problem" }, linked(project.state.problem)) : null]));
     this.progress.update();

@@ -12,13 +12,14 @@ import { fileChoice, fileOr, modelChoice, modelOr, noFile, noModel, renaming, st
 export class JudgeStep {
   constructor(body) {
     this.head = new Region();
+    this.result = new Region();
     this.pictures = new Region();
     this.errors = new Region();
     this.residuals = new Region();
     this.facts = new Region();
     this.withMembers = false;
     this.drawn = [];
-    body.replaceChildren(this.head.node, this.pictures.node, this.errors.node, this.residuals.node, this.facts.node);
+    body.replaceChildren(this.head.node, this.result.node, this.pictures.node, this.errors.node, this.residuals.node, this.facts.node);
   }
 
   choose(id) { this.model = id; }
@@ -26,6 +27,7 @@ export class JudgeStep {
   take(file) {
     this.file = file;
     this.update();
+    scrollTo(0, 0);
   }
 
   update() {
@@ -33,7 +35,7 @@ export class JudgeStep {
     const file = fileOr(this.file);
     if (!model || !file) {
       this.head.update("empty", () => [model ? noFile() : noModel()]);
-      for (const region of [this.pictures, this.errors, this.residuals, this.facts]) region.update(null, () => []);
+      for (const region of [this.result, this.pictures, this.errors, this.residuals, this.facts]) region.update(null, () => []);
       this.dropFigures();
       return;
     }
@@ -60,12 +62,21 @@ export class JudgeStep {
       this.overlay(simulated, members);
       const [judged, ...unseen] = await Promise.all([file, ...others].map((one) => project.judgement(model, one)));
       if (this.wanted !== key) return;
+      this.result.update([file.name, judged.is_training, judged.errors], () => [this.summary(file, judged)]);
       this.errors.update([model, judged, unseen], () => this.errorTable(model, file, judged, others, unseen));
       this.residuals.update([key, judged.residuals], () => this.buildResiduals(columns, simulated, file, judged));
       this.facts.update(model.id, () => [this.factsOf(model)]);
     } catch (error) {
+      this.result.update(null, () => []);
       this.errors.update(error.message, () => [failure(error)]);
     }
+  }
+
+  /** The errors on the chosen file in one line, above the figures. */
+  summary(file, { errors, is_training: isTraining }) {
+    const unit = project.state.output_unit ? ` ${project.state.output_unit}` : "";
+    const relative = errors.nrmse_std_percent === null ? "" : `, ${percent(errors.nrmse_std_percent)} of the standard deviation`;
+    return element("p", { class: "result", text: `${file.name} (${isTraining ? "used" : "not used"} in training): RMSE ${written(errors.rmse)}${unit}${relative}; largest error ${written(errors.max_abs_error)}${unit}.` });
   }
 
   /** What driving the model over its range tells; it is computed when it is opened. */
