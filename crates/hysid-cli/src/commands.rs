@@ -29,7 +29,7 @@ use hysid_document::Problem;
 use hysid_tables::{Table, is_model};
 
 use crate::arguments::ReadingOptions;
-use crate::files;
+use crate::{files, help};
 
 /// Refuses a model without a band.
 fn check_band(model: &Model, path: &Path) -> Result<()> {
@@ -76,7 +76,16 @@ fn read_model(path: &Path) -> Result<Model> {
 
 /// The model that a file with this content holds.
 fn model_from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Model> {
-    let text = String::from_utf8(bytes)
-        .map_err(|_| anyhow!("{}: this is not a Hysid model file: it is not text", path.display()))?;
-    Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display()))
+    let behind = if is_model(&bytes) { None } else { help::model_behind(path) };
+    let model = match String::from_utf8(bytes) {
+        Ok(text) => Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display())),
+        Err(_) => Err(anyhow!("{}: this is not a Hysid model file: it is not text", path.display())),
+    };
+    model.map_err(|error| match behind {
+        Some(other) => {
+            let (path, other) = (path.display(), files::shown(&other));
+            anyhow!("{path}: this is not a Hysid model file (swapped? {other} is one: name the model first)")
+        }
+        None => error,
+    })
 }

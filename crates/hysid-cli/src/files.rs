@@ -120,14 +120,25 @@ pub fn check_outputs<'d>(
     outputs: impl IntoIterator<Item = &'d Destination>,
     inputs: &[impl AsRef<Path>],
 ) -> Result<()> {
-    let mut taken: Vec<&Path> = inputs.iter().map(AsRef::as_ref).collect();
+    let mut taken: Vec<&Path> = Vec::new();
     for output in outputs {
-        if let Some(other) = taken.iter().find(|other| same(output.path(), other)) {
+        let path = output.path();
+        if let Some(input) = inputs.iter().map(AsRef::as_ref).find(|input| same(path, input)) {
             let advice = "would be overwritten: name another file with --out";
-            return Err(Usage(format!("{} {advice}", other.display())).into());
+            return Err(Usage(format!("{} {advice}", input.display())).into());
+        }
+        if taken.iter().any(|other| same(path, other)) {
+            let advice = match path.extension().is_some_and(|ending| ending == "html") {
+                true => {
+                    "the table and the page would have this name: name the table with another ending, such as \
+                     .csv, or add --no-report"
+                }
+                false => "two results would have this name: name another file with --out",
+            };
+            return Err(Usage(format!("{}: {advice}", path.display())).into());
         }
         output.check().map_err(explained)?;
-        taken.push(output.path());
+        taken.push(path);
     }
     Ok(())
 }

@@ -1,10 +1,13 @@
 //! Which help an error points to.
 
-use std::path::Path;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use hysid_document::Problem;
 use hysid_document::shell::option;
+use hysid_tables::is_model;
 
 use crate::arguments::Arguments;
 use crate::files::shown;
@@ -63,18 +66,42 @@ pub fn shorten(error: &mut clap::Error) {
 
 /// Hint for a value after `--force` of `hysid restoring-force`, which takes none: it may be a column.
 pub fn hint_of_force() -> Option<String> {
-    value_of_force(typed()).map(|column| applied_force(&column))
+    value_typed("restoring-force", "--force").map(|column| applied_force(&column))
 }
 
-/// Value after `--force` of `hysid restoring-force`.
-fn value_of_force(typed: impl IntoIterator<Item = String>) -> Option<String> {
-    let mut typed = typed.into_iter().skip_while(|argument| argument.starts_with('-'));
-    typed.next().filter(|command| command == "restoring-force")?;
-    let mut rest = typed.skip_while(|argument| argument != "--force" && !argument.starts_with("--force="));
-    match rest.next()?.strip_prefix("--force=") {
-        Some(value) => Some(value.to_string()),
-        None => rest.next().filter(|value| !value.starts_with('-')),
-    }
+/// Hint for `hysid fit --test`: the fit takes no test data.
+pub fn hint_of_test(error: &clap::Error) -> Option<String> {
+    let is_test =
+        matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::String(name)) if name == "--test");
+    let data = value_typed("fit", "--test").filter(|_| is_test)?;
+    let data = shown(Path::new(&data));
+    Some(format!(
+        "after the fit, `hysid evaluate MODEL.json {data}` tests the model; `hysid compare` takes --test and tests several"
+    ))
+}
+
+/// Value after this option of this command.
+fn value_typed(command: &str, option: &str) -> Option<String> {
+    let mut typed = typed().skip_while(|argument| argument.starts_with('-'));
+    typed.next().filter(|typed| typed == command)?;
+    let value = |argument: &str| Some(argument.strip_prefix(option)?.strip_prefix('=')?.to_string());
+    let mut rest = typed.skip_while(|argument| argument != option && value(argument).is_none());
+    value(&rest.next()?).or_else(|| rest.next().filter(|value| !value.starts_with('-')))
+}
+
+/// Longest beginning of a file that shows whether it is a model.
+const BEGINNING: u64 = 256;
+
+/// A model file that was typed behind this one.
+pub fn model_behind(path: &Path) -> Option<PathBuf> {
+    let behind = typed().skip_while(|argument| Path::new(argument) != path).skip(1).map(PathBuf::from);
+    behind.into_iter().find(|path| {
+        let mut begins = Vec::new();
+        // A pipe may have no end.
+        path.is_file()
+            && File::open(path).is_ok_and(|file| file.take(BEGINNING).read_to_end(&mut begins).is_ok())
+            && is_model(&begins)
+    })
 }
 
 fn applied_force(column: &str) -> String {

@@ -125,7 +125,13 @@ fn refuse(error: clap::Error) -> ExitCode {
         }
         _ => {
             let mut error = error;
-            let hint = is_extra_value(&error).then(help::hint_of_force).flatten();
+            let hint = match is_extra_value(&error) {
+                true => help::hint_of_force(),
+                false => help::hint_of_test(&error),
+            };
+            if hint.is_some() {
+                error.remove(ContextKind::SuggestedArg);
+            }
             help::suggest_command(&mut error);
             help::shorten(&mut error);
             let text = cleaned(error).render().to_string();

@@ -44,6 +44,11 @@ impl ColumnChoice {
         self.time.as_deref() == Some(NO_TIME) && table.column(NO_TIME).is_none()
     }
 
+    /// The columns that options name.
+    fn names(&self) -> impl Iterator<Item = &String> {
+        self.record.iter().chain(&self.time).chain(&self.input).chain(&self.output)
+    }
+
     /// The options that give a command the same columns, for a shell.
     pub fn options(&self) -> Vec<String> {
         let rate = match &self.rate {
@@ -229,8 +234,16 @@ impl Roles {
                 table.require_columns()?;
                 let words =
                     Words::from(format!("there is no column \"{}\", the model's {what}", clipped(trained)));
-                let columns = Words::from(format!("columns: {}; name another with ", listed(&table.header)));
-                Err(Problem::in_file(&table.file, words.advised(columns + Hint::Option(option))))
+                let columns = format!("columns: {}; ", listed(&table.header));
+                let taken = |name: &&String| !options.names().any(|taken| taken == *name);
+                let advice = match only(table.header.iter().filter(taken), |name| is_of_unit(name, trained)) {
+                    Some(name) => {
+                        Words::from(columns + "only one has a unit of this quantity: ")
+                            + Hint::Value(option, name.clone())
+                    }
+                    None => Words::from(columns + "name another with ") + Hint::Option(option),
+                };
+                Err(Problem::in_file(&table.file, words.advised(advice)))
             }
         };
         let given_rate = rate_of_model(model, options)?;
@@ -391,12 +404,23 @@ pub fn require(table: &Head, name: &str, option: &'static str) -> Result<()> {
 
 /// The one column of the same quantity in another unit that can be converted, such as `x_m` for `x_mm`.
 fn in_another_unit<'t>(table: &'t Head, trained: &str) -> Option<&'t String> {
-    let suits = |name: &&String| {
+    let suits = |name: &String| {
         unit::split(name).0 == unit::split(trained).0
             && unit::of_column(name).is_some()
-            && matches!(Conversion::between(name, trained), Conversion::Factor(_) | Conversion::Same)
+            && Conversion::between(name, trained) != Conversion::Impossible
     };
-    let mut suitable = table.header.iter().filter(suits);
+    only(table.header.iter(), suits)
+}
+
+/// True for columns with units of one quantity.
+fn is_of_unit(name: &str, trained: &str) -> bool {
+    [name, trained].iter().all(|name| unit::of_column(name).is_some())
+        && Conversion::between(name, trained) != Conversion::Impossible
+}
+
+/// The only one that suits.
+fn only<'t>(names: impl Iterator<Item = &'t String>, suits: impl Fn(&String) -> bool) -> Option<&'t String> {
+    let mut suitable = names.filter(|name| suits(name));
     suitable.next().filter(|_| suitable.next().is_none())
 }
 

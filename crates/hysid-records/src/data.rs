@@ -12,8 +12,8 @@ use hysid_core::significant::Significant;
 use hysid_core::words::{Hint, Words};
 
 use hysid_tables::{
-    CellProblem, CellReader, ColumnReader, Head, Problem, Reading, Result, Table, TableOrigin, spread_equal,
-    starts_again,
+    CellProblem, CellReader, ColumnReader, Head, Problem, Reading, Result, Table, TableOrigin, is_record,
+    spread_equal, starts_again,
 };
 
 use crate::columns::values::{changes, numbers, plateaus};
@@ -216,7 +216,13 @@ pub fn explained(file: &str, line: Option<u64>, error: hysid_core::Error, roles:
     let column = error.channel.and_then(|channel| column(channel, roles));
     let words: Words = match (&error.problem, line, column) {
         (problem, Some(line), Some(column)) => {
-            return Problem::in_cell(file, line, column, data_words(problem));
+            let words = match (problem, &roles.record) {
+                (DataProblem::TimeNotIncreasing { before, now }, Some(record)) => {
+                    restarts(*before, *now, record)
+                }
+                _ => data_words(problem),
+            };
+            return Problem::in_cell(file, line, column, words);
         }
         (DataProblem::TooFewRows { found, needed }, ..) => {
             let rows = if *found == 1 { "1 row has".into() } else { format!("{found} rows have") };
@@ -228,6 +234,22 @@ pub fn explained(file: &str, line: Option<u64>, error: hysid_core::Error, roles:
         (problem, ..) => data_words(problem),
     };
     Problem::in_file(file, words)
+}
+
+/// Message on time that does not go on within a record that a column names.
+fn restarts(before: f64, now: f64, record: &str) -> Words {
+    let words =
+        format!("time {now} does not come after {before}, and \"{}\" keeps its value", clipped(record));
+    let sort = Words::from("sort the rows, or ");
+    Words::from(words).advised(match is_record(record) {
+        true => sort + "give each run a name of its own",
+        false => {
+            let record = Hint::Option("record");
+            sort + "number the runs in another column for "
+                + record
+                + ", or leave it out: a run begins where time starts again"
+        }
+    })
 }
 
 /// An error that is about no row: a wrong use of the command line, or another.

@@ -28,7 +28,9 @@ impl RecordNames {
         }
         if !self.begun.insert(name.to_string()) {
             let words = format!("record \"{}\" continues after another record", clipped(name));
-            return Err(problem(Words::from(words).advised("keep its rows together")));
+            return Err(problem(
+                Words::from(words).advised("keep its rows together, or give each run a name of its own"),
+            ));
         }
         self.present = Some(name.to_string());
         Ok(true)

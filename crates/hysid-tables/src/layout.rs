@@ -98,6 +98,11 @@ impl Layout {
             line: first.number,
             groups: header.groups,
         };
+        if let Some(remarks) = header.remarks {
+            layout.names.push(remarks);
+            layout.cell_units.push(None);
+            layout.stamps.push(false);
+        }
         layout.name_units();
         layout.name_micromag(&lines);
         if let Some(name) = layout.names.iter().find(|name| name.len() > LONGEST_NAME) {
@@ -138,6 +143,11 @@ impl Layout {
             line: line.number + 1,
             groups: None,
         })
+    }
+
+    /// True if the last column has remarks: rows without one may lack its cell.
+    pub fn ends_with_remarks(&self) -> bool {
+        self.names.len() > 2 && self.names.last().is_some_and(|name| header::is_remark(name))
     }
 
     /// Names and units of a MicroMag magnetometer, which writes the system of units before the table, and often no names.
@@ -312,7 +322,10 @@ mod tests {
         assert_eq!(names("# t x y\n0 1.5 2\n1 2.5 3\n"), ["t", "x", "y"]);
         assert_eq!(names("\"x\" \"y\"\n\"1\" 0.5 2\n\"2\" 0.7 3\n"), ["c1", "x", "y"]);
         assert_eq!(names(",x,y\n0,1.5,2\n1,2.5,3\n"), ["c1", "x", "y"]);
-        assert_eq!(names("X_Value\tForce\tComment\n0\t1.5\t\n1\t2.5\n2\t3.5\n"), ["X_Value", "Force"]);
+        assert_eq!(
+            names("X_Value\tForce\tComment\n0\t1.5\t\n1\t2.5\n2\t3.5\n"),
+            ["X_Value", "Force", "Comment"]
+        );
         assert_eq!(names("t,x,\n0,1.5,\n1,2.5,\n"), ["t", "x"]);
     }
 

@@ -273,6 +273,11 @@ impl Rows {
             if self.cells == width + 1 && self.row()?.cell(width).trim().is_empty() {
                 self.cells = width;
             }
+            if self.cells + 1 == width && self.head.layout.ends_with_remarks() {
+                let end = self.ends[self.cells - 1];
+                self.ends.resize(self.ends.len().max(width), 0);
+                (self.ends[self.cells], self.cells) = (end, width);
+            }
             let row = self.row()?;
             if self.cells == width && (width > 1 || !row.is_blank()) {
                 return Ok(true);
@@ -537,6 +542,30 @@ mod tests {
         // A quotation mark that is not closed swallows the rest.
         let rest = read(cases[3].0, 3).unwrap();
         assert_eq!(rest.last().unwrap().1, ["5", "6\n7,8\n"]);
+    }
+
+    /// The header was said to have a name less where the first remark came after the lines that the layout is found from.
+    #[test]
+    fn remarks_may_begin_in_any_row() {
+        for (delimiter, has_end) in [(",", false), (",", true), (";", false), (";", true)] {
+            for first in [1, 2, 3, 7, 299, 300, 301, 500, 900, 1000] {
+                let mut lines = vec![["n", "x_mm", "F_kN", "Remark"].join(delimiter)];
+                for row in 1..=1000 {
+                    let remark = if row == first || row == first + 50 { "crack" } else { "" };
+                    let last = if has_end || !remark.is_empty() { delimiter } else { "" };
+                    lines.push([row.to_string().as_str(), "0.1", "2.3"].join(delimiter) + last + remark);
+                }
+                let all = read(lines.join("\n").as_bytes(), 1 << 20).unwrap();
+                let case = format!("{delimiter} {has_end} {first}");
+                assert_eq!((all.len(), all[0].1[3].as_str()), (1001, "Remark"), "{case}");
+                for (row, (line, cells)) in all.iter().enumerate().skip(1) {
+                    let remark = if row == first || row == first + 50 { "crack" } else { "" };
+                    let number = row.to_string();
+                    let expected = [number.as_str(), "0.1", "2.3", remark];
+                    assert!(*line == 1 + row as u64 && *cells == expected, "{case}: {line} {cells:?}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -261,7 +261,9 @@ fn rows<'t>(text: &'t str, layout: &Layout) -> Option<ScannedRows<'t>> {
             is_after_blank = true;
         } else {
             let cells = cells_of(line, layout.delimiter);
-            let fits = cells == width || cells == width + 1 && ends_empty(line, layout.delimiter);
+            let fits = cells == width
+                || cells == width + 1 && ends_empty(line, layout.delimiter)
+                || cells + 1 == width && layout.ends_with_remarks();
             let is_header = header == Some(line.trim()) && !rows.is_empty();
             if is_header {
                 break;

@@ -124,10 +124,6 @@ impl PlanFiles {
         if to_stdout {
             return Ok(Self { header, table: None, page: None });
         }
-        if path.extension().is_some_and(|ending| ending == "html") {
-            let advice = "use .csv for the drive: the page gets the same name with .html";
-            return Err(Problem::request(format!("{}: {advice}", path.display())).into());
-        }
         let force = arguments.overwriting.force;
         let page = files::page(arguments.no_report, path.with_extension("html"), force);
         let table = Some(Destination::new(path, Kind::Beginning(header.clone()), force));

@@ -104,7 +104,7 @@ fn rows_and_cells() {
         empty input => , line 17, column "x": the cell is empty (only the output may be blank; choose rows with --rows)
         empty time => , line 17, column "t": the cell is empty (only the output may be blank; choose rows with --rows)
         overflow => , line 6, column "x": "1e999" is too large for a number (see `hysid look data.csv`)
-        records torn apart => , line 12, column "record": record "a" continues after another record (keep its rows together)
+        records torn apart => , line 12, column "record": record "a" continues after another record (keep its rows together, or give each run a name of its own)
         record without name => , line 5, column "Record": the cell is empty (every row needs the name of its record)
     "#,
     );
@@ -112,6 +112,8 @@ fn rows_and_cells() {
 
 #[test]
 fn values_that_nothing_can_be_learnt_from() {
+    let twice = rows().into_iter().chain(rows()).map(|row| [row, vec!["a".into()]].concat());
+    let again = csv("t,x,y,record", ",", "\n", &twice.collect::<Vec<_>>());
     let scaled = |column, power: &str| with_column(column, |cell| format!("{cell}{power}"));
     check_fits(
         &[
@@ -121,6 +123,7 @@ fn values_that_nothing_can_be_learnt_from() {
             ("constant output", with_column(2, |_| "5".into()).into()),
             ("blank output", with_column(2, |_| String::new()).into()),
             ("time runs back", with_cell(9, 0, "0.05").into()),
+            ("time starts again in a record", again.clone().into()),
             ("huge input", with_cell(4, 1, "1e200").into()),
             ("huge output", with_cell(4, 2, "-1e200").into()),
             ("tiny output", scaled(2, "e-200").into()),
@@ -133,6 +136,7 @@ fn values_that_nothing_can_be_learnt_from() {
         constant output => : column "y" is constant (5): there is nothing to identify
         blank output => : column "y" is blank in every row: there is nothing to compare with
         time runs back => , line 11, column "t": time 0.05 does not come after 0.8 (sort the rows, or name the records in a column `record`)
+        time starts again in a record => , line 62, column "t": time 0 does not come after 5.9, and "record" keeps its value (sort the rows, or give each run a name of its own)
         huge input => , line 6, column "x": 1e200 is too large: at most 1e100 in magnitude (choose another unit)
         huge output => , line 6, column "y": -1e200 is too large: at most 1e100 in magnitude (choose another unit)
         tiny output => : column "y" is constant (-9.95e-201): there is nothing to identify
@@ -140,6 +144,11 @@ fn values_that_nothing_can_be_learnt_from() {
     "#,
     );
     let bench = Workbench::new();
+    bench.put("freq.csv", again.replacen("record", "freq", 1).replace(",a", ",2"));
+    let ran = bench.run("look freq.csv --record freq");
+    assert!(ran.last_line().ends_with(
+        "\"freq\" keeps its value (sort the rows, or number the runs in another column for --record, or leave it out: a run begins where time starts again)"
+    ), "{}", ran.stderr);
     bench.put(
         "branch.csv",
         csv("H,B", ",", "\n", &(0..40).map(|k| vec![format!("-{k}"), format!("0.{k}")]).collect::<Vec<_>>()),

@@ -22,6 +22,7 @@ fn model_files() {
     bench.put("edited.json", model.replace("\"x\"", "\"u\""));
     bench.put("other.json", "{\"format\": \"other\"}");
     bench.put("binary.json", b"{\xff}");
+    bench.put("latin.txt", b"t,x,Gr\xf6\xdfe\n0,1,2\n".as_slice());
     let lines = model[..model.len() / 2].lines().count();
     let cut = format!(
         "cut.json: the model file is cut off at line {lines} (fit the model anew, or restore the file from a copy)"
@@ -35,7 +36,8 @@ fn model_files() {
             1 evaluate later.json good.csv => {later}
             1 evaluate other.json good.csv => other.json: this is not a Hysid model file (expected the JSON that `hysid fit` writes)
             1 evaluate binary.json good.csv => binary.json: this is not a Hysid model file: it is not text
-            1 evaluate good.csv model.json => good.csv: this is not a Hysid model file (expected the JSON that `hysid fit` writes)
+            1 evaluate good.csv model.json => good.csv: this is not a Hysid model file (swapped? model.json is one: name the model first)
+            1 simulate latin.txt model.json => latin.txt: this is not a Hysid model file (swapped? model.json is one: name the model first)
             1 simulate missing.json good.csv => missing.json: cannot be read: no such file or directory
         "
         ),
@@ -56,10 +58,15 @@ fn columns() {
     bench.put("no-time.csv", csv("k,x,y", ",", "\n", &rows()));
     bench.put("inputs.csv", csv("x1,x2,y", ",", "\n", &two_inputs()));
     bench.put("blank.csv", with_column(2, |_| String::new()));
+    bench.put("lab.csv", csv("t,x,Dev1/ai1 (nm)", ",", "\n", &rows()));
+    bench.succeeds("fit lab.csv -o lab.json --no-report --model pnn --starts 1 --epochs 1");
+    let volts: Vec<_> = rows().into_iter().map(|row| [row, vec!["20".into()]].concat()).collect();
+    bench.put("volts.csv", csv("t,x,y_um,Temp_C", ",", "\n", &volts));
     bench.put("simulated.csv", csv("t,x,y_model", ",", "\n", &rows()));
     bench.refuses(r#"
             1 evaluate model.json other.csv => other.csv: there is no column "x", the model's input (columns: t, a, b; name another with --input)
             1 evaluate model.json other.csv --input a => other.csv: there is no column "y", the model's output (columns: t, a, b; name another with --output)
+            1 evaluate lab.json volts.csv => volts.csv: there is no column "Dev1/ai1 (nm)", the model's output (columns: t, x, y_um, Temp_C; only one has a unit of this quantity: --output y_um)
             1 simulate model.json no-time.csv => no-time.csv: there is no column "t", the model's time (columns: k, x, y; name another with --time)
             2 simulate model.json inputs.csv --input x1 --input x2 => --input names 2 columns, but the model's inputs are 1: x
             1 simulate model.json simulated.csv => simulated.csv: there is already a column "y_model" (rename or remove it)
@@ -94,6 +101,12 @@ fn command_lines() {
             1 fit data.csv => data.csv: cannot be read: no such file or directory
             1 fit . => .: is a directory, not a file
         ",
+    );
+    bench.refuses_in_part(
+        "
+            2 fit data.csv --test b.csv => found (after the fit, `hysid evaluate MODEL.json b.csv` tests the model; `hysid compare`
+            2 fit data.csv --test => found (see `hysid fit --help`)
+    ",
     );
 }
 

@@ -153,7 +153,7 @@ fn resuming_is_refused_with_other_options_or_data() {
         2 fit good.csv -o m.json --checkpoint good.csv => would be overwritten
         2 fit good.csv -o n.json --checkpoint d.bin => auto has no checkpoints: only a single network has them, such as --model xpnn+
         2 fit good.csv -o n.json --model xpnn --members 3 --checkpoint d.bin => an ensemble has no checkpoints
-        2 fit good.csv -o m.json --checkpoint m.json => would be overwritten
+        2 fit good.csv -o m.json --checkpoint m.json => two results would have this name
     "
     ));
 }

@@ -265,6 +265,7 @@ fn the_table_goes_to_stdout_where_asked_and_files_of_others_are_kept() {
         "
         2 cycles member.csv -o mine.csv => --force
         2 cycles member.csv -o member.csv => would be overwritten
+        2 cycles member.csv -o new.html => new.html: the table and the page would have this name: name the table with
         2 cycles member.csv -o - --json => name a file
         2 cycles member.csv --field wood => structure, magnet, actuator, thermal
         2 cycles member.csv --divide noon => zero, mean, reversals

@@ -137,7 +137,7 @@ fn requests_that_cannot_be_met_are_refused_in_one_line() {
         2 generate concrete --noise much => invalid value 'much' for '--noise <PERCENT>': a number of percent, 0 or more, is needed
         2 generate concrete --list => the argument '[SPECIMEN]' cannot be used with '--list'
         2 generate concrete -o - --test - => training and test data cannot both go to stdout: name a file with --out or --test
-        2 generate concrete -o a.csv --test ./a.csv => a.csv would be overwritten: name another file with --out
+        2 generate concrete -o a.csv --test ./a.csv => ./a.csv: two results would have this name: name another file with --out
         1 generate concrete -o folder => folder: cannot be written: is a directory
         1 generate concrete -o a.csv --test nowhere/a.csv => nowhere/a.csv: cannot be written: no such file or directory
     "

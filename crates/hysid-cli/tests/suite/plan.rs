@@ -113,7 +113,7 @@ fn what_cannot_be_planned_is_said_in_one_line() {
         2 plan --like slow.csv --duration 3 => --length
         2 plan --like slow.csv --step 0.1 => step
         2 plan --like data.csv -o data.csv => would be overwritten
-        2 plan --like data.csv -o drive.html => .csv for the drive
+        2 plan --like data.csv -o drive.html => drive.html: the table and the page would have this name
         2 plan --like data.csv --json -o - => name a file
     ",
     );

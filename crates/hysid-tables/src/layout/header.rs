@@ -16,7 +16,7 @@ use hysid_document::{Problem, Result};
 /// Lines with names above a table.
 const MOST_LINES: usize = 4;
 
-/// Names of a column at the end that has no cell in any row.
+/// Names of a column at the end that has a cell in few rows, or in none.
 const REMARKS: [&str; 6] = ["comment", "comments", "remark", "remarks", "kommentar", "bemerkung"];
 
 /// Names of columns, and where they stand.
@@ -31,6 +31,8 @@ pub struct Header {
     /// The last column has a name of its own.
     pub names_last: bool,
     pub groups: Option<ColumnGroups>,
+    /// Name of a column of remarks behind the cells of the rows.
+    pub remarks: Option<String>,
 }
 
 /// Columns whose names come again and again, as of loops side by side.
@@ -48,6 +50,8 @@ pub struct ColumnGroups {
 struct HeaderLine {
     line: u64,
     cells: Vec<String>,
+    /// Name of a further column, of remarks.
+    remarks: Option<String>,
 }
 
 impl Header {
@@ -87,7 +91,7 @@ impl Header {
                 _ if is_remark => {}
                 HeaderFit::Nothing => break,
                 HeaderFit::OtherWidth if rows.is_empty() && !line.is_comment && is_first(lines, place) => {
-                    return Err(other_width(file, line, &cells, run, &lines[run.lines.start]));
+                    return Err(other_width(file, line, &cells, run, &lines[run.lines.clone()]));
                 }
                 HeaderFit::OtherWidth => break,
             }
@@ -120,6 +124,7 @@ impl Header {
             rows.pop();
         }
         let lines = rows.iter().map(|row| row.line).collect();
+        let remarks = rows.last().and_then(|row| row.remarks.clone());
         let mut names = rows.pop().map_or_else(|| vec![String::new(); width], |row| row.cells);
         if let Some(above) = rows.last() {
             let empty = names.iter_mut().zip(&above.cells).filter(|(name, _)| name.is_empty());
@@ -139,7 +144,7 @@ impl Header {
         names = with_units(names);
         let names_last = names.last().is_some_and(|last| !is_remark(last));
         let units_line = units.map(|(_, line, _)| line);
-        Self { names: distinct(names), lines, units_line, names_last, groups }
+        Self { names: distinct(names), lines, units_line, names_last, groups, remarks }
     }
 }
 
@@ -181,8 +186,9 @@ enum HeaderFit {
 fn row(line: &TextLine<'_>, cells: &[LineCell<'_>], run: &LineRun, is_first: bool) -> HeaderFit {
     let mut texts: Vec<String> = cells.iter().map(|cell| cell.text.trim().to_string()).collect();
     let width = run.width;
+    let mut remarks = None;
     if texts.len() == width + 1 && texts.last().is_some_and(|last| is_remark(last)) {
-        texts.pop();
+        remarks = texts.pop().filter(|name| !name.is_empty() && width > 1);
     } else if texts.len() != width && (run.delimiter == Delimiter::Blanks || texts.len() == 1 && width > 1) {
         // Some instruments print names in columns of blanks over rows with commas.
         texts = with_their_units(line.content()).filter(|texts| texts.len() == width).unwrap_or(texts);
@@ -208,13 +214,13 @@ fn row(line: &TextLine<'_>, cells: &[LineCell<'_>], run: &LineRun, is_first: boo
     let numbers = numbers.count();
     let has_names = names > 0 && 2 * names >= filled && (numbers == 0 || is_first && names > numbers);
     if has_names && 2 * filled >= width {
-        HeaderFit::Row(HeaderLine { line: line.number, cells: texts })
+        HeaderFit::Row(HeaderLine { line: line.number, cells: texts, remarks })
     } else {
         HeaderFit::Nothing
     }
 }
 
-fn is_remark(name: &str) -> bool {
+pub fn is_remark(name: &str) -> bool {
     name.is_empty() || REMARKS.contains(&name.to_lowercase().as_str())
 }
 
@@ -258,7 +264,7 @@ fn other_width(
     line: &TextLine<'_>,
     cells: &[LineCell<'_>],
     run: &LineRun,
-    first: &TextLine<'_>,
+    rows: &[TextLine<'_>],
 ) -> Problem {
     let (names, width) = (cells.len(), run.width);
     let advice = match run.delimiter {
@@ -268,6 +274,9 @@ fn other_width(
             Words::from("skip the header with ") + skip + " " + Hint::Option("no_header")
         }
     };
+    // A row before may have a remark.
+    let is_wide = |row: &&TextLine<'_>| split(row.text, run.delimiter).len() == width;
+    let first = rows.iter().find(is_wide).unwrap_or(&rows[0]);
     Problem::at(file, first.number, cells_and_names(width, names).advised(advice))
 }
 

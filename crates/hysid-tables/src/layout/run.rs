@@ -120,7 +120,14 @@ impl LineRun {
             let has_number = |(cell, column): (&LineCell<'_>, &ColumnCells)| {
                 column.is_numeric() && matches!(cell.kind(), CellKind::Number(None) | CellKind::Stamp)
             };
-            if cells.len() != self.width || !cells.iter().zip(&self.columns).any(has_number) {
+            let mut both = cells.iter().zip(&self.columns);
+            let is_row = match cells.len().checked_sub(self.width) {
+                Some(0) => both.any(has_number),
+                // A row with a remark.
+                Some(1) => self.width > 1 && self.is_pure() && both.all(has_number),
+                _ => false,
+            };
+            if !is_row {
                 break;
             }
             self.lines.start = place;
