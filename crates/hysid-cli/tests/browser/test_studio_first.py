@@ -139,5 +139,5 @@ def test_the_fields_show_the_defaults_of_their_model_in_full(start, visit):  # n
     assert default("auto", "operators") == "set by each candidate"
     assert (default("preisach", "operators"), default("duhem-nn", "hidden"), default("hysteretic-oscillator", "hidden")) == ("30", "8", "8 (4 with degradation)")
     # Too long for a field, and different by trainer.
-    assert "Default: 400 for subgradient, 2000 for hybrid" in page.choose("pnn").locator("[id='fit--epochs-help']").text_content()
+    assert "Default: 400 for subgradient, 40 for levenberg-marquardt, 2000 for hybrid, 2000 for genetic." in page.choose("pnn").locator("[id='fit--epochs-help']").text_content()
     page.check()

@@ -133,7 +133,9 @@ export class DataStep {
   /** Sends all roles as the table shows them. Two columns exchange a role that only one can have; `alone` makes a column the only input. */
   async chooseRole(file, name, role, alone = false) {
     const roles = this.rolesOf(file);
-    const before = roles.get(name) ?? "unused";
+    const detected = file.columns.find((column) => column.name === name)?.role;
+    const isFree = detected && ![...roles.values()].includes(detected);
+    const before = roles.has(name) && roles.get(name) !== "unused" ? roles.get(name) : isFree ? detected : "unused";
     const gives = role === "input" ? alone && "unused" : role !== "unused" && before;
     if (gives) for (const [other, had] of roles) if (had === role) roles.set(other, other === NO_TIME ? "unused" : gives);
     roles.set(name, role);
