@@ -2,29 +2,30 @@
 
 import { element, newId } from "./elements.js";
 
+const MOST_LETTERS = 36; // Of a default that fits into a field; a longer one stands below it.
 const NUMBERS = new Set(["count", "whole", "fraction", "zero-or", "number"]);
 
-function input(option, value) {
+function input(option, value, shown) {
   const { kind, names = [], from, to } = option.values;
   if (kind === "names" || kind === "truth") {
     const choices = kind === "truth" ? ["true", "false"] : names;
-    const node = element("select", {}, element("option", { value: "", text: `default${option.default ? `: ${option.default}` : ""}` }),
+    const node = element("select", {}, element("option", { value: "", text: `default${shown ? `: ${shown}` : ""}` }),
       ...choices.map((name) => element("option", { value: name, text: name })));
     node.value = value === undefined || value === null ? "" : String(value);
     return node;
   }
   if (kind === "flag") return element("input", { type: "checkbox", checked: value === true });
-  if (kind === "list") return element("textarea", { rows: 2, value: (value ?? []).join("\n"), placeholder: option.default ?? "one a line" });
+  if (kind === "list") return element("textarea", { rows: 2, value: (value ?? []).join("\n"), placeholder: shown || "one a line" });
   if (NUMBERS.has(kind)) {
     const isWhole = kind === "count" || kind === "whole" || kind === "zero-or";
     const limits = { min: kind === "zero-or" || kind === "whole" || kind === "fraction" ? 0 : from, max: kind === "fraction" ? 1 : to };
-    const node = element("input", { type: "number", step: isWhole ? "1" : "any", placeholder: option.default ?? "" });
+    const node = element("input", { type: "number", step: isWhole ? "1" : "any", placeholder: shown });
     if (limits.min !== undefined) node.min = limits.min;
     if (limits.max !== undefined) node.max = limits.max;
     node.value = value ?? "";
     return node;
   }
-  return element("input", { type: "text", value: String(value ?? ""), placeholder: option.default ?? "" });
+  return element("input", { type: "text", value: String(value ?? ""), placeholder: shown });
 }
 
 /**
@@ -35,7 +36,9 @@ function input(option, value) {
 export function control(scope, option, value, changed = () => {}) {
   const id = `${scope}${option.flag}`;
   const help = `${id}-help`;
-  const node = input(option, value);
+  const { default: otherwise = "", meaning } = option;
+  const fits = otherwise.length <= MOST_LETTERS;
+  const node = input(option, value, fits ? otherwise : "");
   node.id = id;
   node.dataset.flag = option.flag;
   node.setAttribute("aria-describedby", help);
@@ -51,7 +54,7 @@ export function control(scope, option, value, changed = () => {}) {
     return node.type === "number" ? Number(text) : text;
   };
   const wrap = element("div", { class: node.type === "checkbox" ? "control check" : "control" },
-    label, element("code", { class: "flag", text: option.flag }), node, element("p", { class: "help", id: help, text: `${option.meaning}.`.replace(/\.\.$/, ".") }));
+    label, element("code", { class: "flag", text: option.flag }), node, element("p", { class: "help", id: help, text: `${meaning.replace(/\.$/, "")}.${fits ? "" : ` Default: ${otherwise}.`}` }));
   return { node: wrap, read, name: option.name };
 }
 

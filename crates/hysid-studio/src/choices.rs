@@ -11,7 +11,7 @@ use hysid_document::object;
 use hysid_document::shell::flag;
 use hysid_export::Target;
 use hysid_records::READING_OPTIONS;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 /// Largest file that is taken, in bytes.
 pub const MOST_FILE_BYTES: u64 = 1_000_000_000;
@@ -36,13 +36,27 @@ pub fn all() -> Value {
     })
 }
 
-/// A model with every option that it uses.
-fn model(model: ModelName) -> Listed {
-    let is_used = |option: &&FitOption| {
-        option.name != "model" && Trainer::ALL.iter().any(|trainer| option.is_used_by(model, *trainer))
-    };
-    let options = OPTIONS.iter().filter(is_used).map(|option| option.name).collect();
-    Listed { options, ..Listed::of(model) }
+/// A model with the defaults of every option that it uses.
+fn model(model: ModelName) -> Value {
+    let options = OPTIONS.iter().filter(|option| option.name != "model");
+    let defaults =
+        options.filter_map(|option| Some((option.name.to_string(), default_of(option, model)?.into())));
+    json!(
+        object! { defaults: defaults.collect::<Map<String, Value>>(), #[serde(flatten)] model: Listed::of(model) }
+    )
+}
+
+/// The default of an option for a model in words, with the trainers where they differ; `None` if the model ignores it.
+fn default_of(option: &FitOption, model: ModelName) -> Option<String> {
+    let trainers = Trainer::ALL.iter().filter(|trainer| option.is_used_by(model, **trainer));
+    let texts: Vec<(&str, String)> =
+        trainers.map(|trainer| (trainer.name(), option.default(model, *trainer).to_string())).collect();
+    let (_, first) = texts.first()?;
+    if texts.iter().all(|(_, text)| text == first) {
+        return Some(first.clone());
+    }
+    let named = texts.iter().map(|(trainer, text)| format!("{text} for {trainer}"));
+    Some(named.collect::<Vec<_>>().join(", "))
 }
 
 fn option(option: &FitOption) -> Value {
@@ -63,7 +77,6 @@ fn option(option: &FitOption) -> Value {
         "flag": flag(option.name),
         "heading": option.group.heading(),
         "meaning": option.meaning,
-        "default": option.default_in_words(),
         "values": values,
     })
 }

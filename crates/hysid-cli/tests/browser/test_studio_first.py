@@ -114,3 +114,30 @@ def test_a_table_on_a_telephone_names_each_number(start, visit):  # noqa: F811
     box = cell.bounding_box()
     assert box["x"] >= 0 and box["x"] + box["width"] <= 400
     opened.check()
+
+
+def test_the_fields_show_the_defaults_of_their_model_in_full(start, visit):  # noqa: F811
+    studio = start()
+    studio.specimen("terfenol-rod")
+    page = visit(studio)
+    widths = """fields => fields.filter((field) => {
+        const pen = document.createElement("canvas").getContext("2d");
+        const { fontSize, fontFamily } = getComputedStyle(field, "::placeholder");
+        const { paddingLeft, paddingRight } = getComputedStyle(field);
+        pen.font = `${fontSize} ${fontFamily}`;
+        // The arrows of a number take the room of two letters.
+        return pen.measureText(field.placeholder).width > field.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight) - 16;
+    }).map((field) => field.id + ": " + field.placeholder)"""
+    for model in studio.ask("/api/choices")["models"]:
+        identify = page.choose(model["name"])
+        identify.locator("details").evaluate_all("all => all.forEach((one) => { one.open = true; })")
+        assert identify.locator(".control > [placeholder]").evaluate_all(widths) == []
+
+    def default(model: str, flag: str) -> str:
+        return page.choose(model).locator(f"[data-flag='--{flag}']").get_attribute("placeholder")
+
+    assert default("auto", "operators") == "set by each candidate"
+    assert (default("preisach", "operators"), default("duhem-nn", "hidden"), default("hysteretic-oscillator", "hidden")) == ("30", "8", "8 (4 with degradation)")
+    # Too long for a field, and different by trainer.
+    assert "Default: 400 for subgradient, 40 for levenberg-marquardt, 2000 for hybrid, 2000 for genetic." in page.choose("pnn").locator("[id='fit--epochs-help']").text_content()
+    page.check()

@@ -133,7 +133,11 @@ export class DataStep {
   /** Sends all roles as the table shows them. Two columns exchange a role that only one can have; `alone` makes a column the only input. */
   async chooseRole(file, name, role, alone = false) {
     const roles = this.rolesOf(file);
-    const before = roles.get(name) ?? "unused";
+    // A column that has just lost its role still has it to exchange.
+    const held = roles.get(name) ?? "unused";
+    const former = file.columns.find((column) => column.name === name)?.role;
+    const isFree = former && ![...roles.values()].includes(former);
+    const before = held === "unused" && isFree ? former : held;
     const gives = role === "input" ? alone && "unused" : role !== "unused" && before;
     if (gives) for (const [other, had] of roles) if (had === role) roles.set(other, other === NO_TIME ? "unused" : gives);
     roles.set(name, role);

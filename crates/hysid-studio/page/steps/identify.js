@@ -44,9 +44,9 @@ export class IdentifyStep {
   build(isRunning) {
     const { models, options } = project.choices;
     const model = models.find(({ name }) => name === this.model) ?? models[0];
-    const used = options.filter(({ name }) => model.options.includes(name));
+    const used = options.filter(({ name }) => name in model.defaults);
     const controls = new Map(used.map((option) => {
-      const made = control("fit", option, this.values[option.name], () => { this.values[option.name] = made.read(); });
+      const made = control("fit", { ...option, default: model.defaults[option.name] }, this.values[option.name], () => { this.values[option.name] = made.read(); });
       return [option.name, made];
     }));
     const nodes = (list) => element("div", { class: "controls" }, ...list.map(({ name }) => controls.get(name).node));

@@ -110,7 +110,7 @@ fn a_problem_names_the_control_that_helps_and_not_an_option_of_the_terminal() {
     at_end(&problem.to_string(), "(if it stands for a missing value: --missing over)");
     at_end(&said(&problem).text(), "(if it stands for a missing value: \"Missing\" over)");
     let shown = shown(&studio)["files"][0]["problem"].clone();
-    assert_eq!(shown[1], json!({"flag": "--missing", "words": "\"Missing\" over"}));
+    assert_eq!(shown[1], json!({"flag": "--missing", "words": "\"Missing\" over", "value": null}));
     studio.read_as(ReadingChoice { missing: vec!["over".into()], ..ReadingChoice::default() }).unwrap();
     assert_eq!(studio.data_of(id).unwrap().set.scored(), 6);
 }
