@@ -44,7 +44,7 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
     for words in [
         "\nchosen ensemble of 3 networks",
         "\nwhy    error on the rows held out (RMSE in % of std): ensemble",
-        "auto with ",
+        "\nensemble of 3 xpnn with ",
     ] {
         assert!(told.stdout.contains(words), "{words}: {}", told.stdout);
     }
