@@ -72,10 +72,7 @@ pub(super) fn places(rows: &ResidualRows) -> Vec<GroupedResiduals> {
         classes(ResidualTest::Speed, ["slow", "medium", "fast"], "the speed of the input", |row| {
             row.rate.abs()
         });
-    if by_speed.not_testable.is_none() && !rows.has_time {
-        by_speed.caution =
-            Some("there is no time: the speed is the change of the input from row to row".into());
-    } else if by_speed.not_testable.is_none() && !has_several_speeds(&rows.speeds) {
+    if by_speed.not_testable.is_none() && !has_several_speeds(&rows.speeds) {
         by_speed.caution = Some(
             "all half cycles have about the same mean speed, so that slow and fast rows are also different places of \
              the half cycle"

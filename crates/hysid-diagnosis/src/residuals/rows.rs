@@ -36,7 +36,6 @@ pub(super) struct ResidualRows {
     pub inputs: Vec<Vec<Vec<f64>>>,
     /// Mean magnitude of the rate of each half cycle with a scored row.
     pub speeds: Vec<f64>,
-    pub has_time: bool,
 }
 
 impl ResidualRows {
@@ -61,7 +60,7 @@ impl ResidualRows {
             let at_scored = |input: &[f64]| scored.iter().map(|&row| input[row]).collect();
             inputs.push(record.inputs().iter().map(|input| at_scored(input)).collect());
         }
-        Self { records, inputs, speeds, has_time: data.has_time() }
+        Self { records, inputs, speeds }
     }
 
     pub fn len(&self) -> usize {
@@ -86,7 +85,7 @@ impl ResidualRows {
                 inputs.push(columns.iter().map(|column| column[first..first + length].to_vec()).collect());
             }
         }
-        Self { records, inputs, ..self }
+        Self { records, inputs, speeds: self.speeds }
     }
 
     pub fn residual(&self) -> Vec<Vec<f64>> {

@@ -315,7 +315,8 @@ impl FindingWriter<'_> {
             }
             ResidualTest::Speed if self.options.uses_rate => OTHER_RATE_DEPENDENCE,
             ResidualTest::Speed => {
-                "Rate-dependent residual: give the model the rate of the input (option rate), or a law that uses it."
+                "Rate-dependent residual, if the data have time: give the model the rate of the input (option rate), or a law \
+                 that uses it."
             }
             ResidualTest::Amplitude => {
                 "Train on loops of all amplitudes that matter; a change with the largest amplitude so far needs a model \
