@@ -6,7 +6,7 @@ use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::diagnosis::residuals::Residuals;
 use hysid::error::{Channel, DataError, DataProblem};
 use hysid::model::{BandLevel, Model};
-use hysid_document::{Result, object};
+use hysid_document::{Result, count, object};
 use hysid_records::{Roles, UnitFactors, explained, summarised};
 use hysid_tables::Rows;
 
@@ -95,7 +95,7 @@ pub fn evaluate(request: &EvaluateRequest<'_>, rows: &mut Rows) -> Result<Evalua
 fn first_of(statements: Vec<String>) -> Option<String> {
     let more = statements.len().saturating_sub(1);
     let first = statements.into_iter().next()?;
-    Some(if more > 0 { format!("{first}; {more} more records alike") } else { first })
+    Some(if more > 0 { format!("{first}; {} alike", count(more, "more record")) } else { first })
 }
 
 impl Evaluation {

@@ -26,17 +26,21 @@ pub(crate) struct Fade {
 
 impl FadingErrors {
     pub fn add(&mut self, measured: &[f64], simulated: &[f64]) {
-        for (measured, simulated) in measured.iter().zip(simulated) {
-            self.rows += 1;
-            let octave = self.rows.ilog2() as usize;
+        let (mut measured, mut simulated) = (measured, simulated);
+        while !measured.is_empty() {
+            let octave = (self.rows + 1).ilog2() as usize;
             if octave == self.octaves.len() {
                 self.octaves.push((0.0, 0));
             }
-            let error = measured - simulated;
-            if !error.is_nan() {
-                self.octaves[octave].0 += error * error;
-                self.octaves[octave].1 += 1;
+            let rows = measured.len().min((2 << octave) - 1 - self.rows);
+            let errors = measured[..rows].iter().zip(&simulated[..rows]).map(|(y, model)| y - model);
+            let (sum, count) = &mut self.octaves[octave];
+            for error in errors.filter(|error| !error.is_nan()) {
+                *sum += error * error;
+                *count += 1;
             }
+            self.rows += rows;
+            (measured, simulated) = (&measured[rows..], &simulated[rows..]);
         }
     }
 

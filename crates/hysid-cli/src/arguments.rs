@@ -1,5 +1,12 @@
 //! The command line.
 
+/// The address of a page of the documentation: an installed program has no files of it.
+macro_rules! page {
+    ($name:literal) => {
+        concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/docs/", $name)
+    };
+}
+
 mod cycles;
 mod examples;
 mod known_beginning;

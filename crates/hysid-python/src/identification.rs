@@ -40,8 +40,8 @@ impl FitSpec {
     fn new(options: &str, rate: &str, data: &Dataset) -> PyResult<Self> {
         let chosen = NamedOptions::of(serde_json::from_str(options).map_err(refused)?).map_err(refused)?;
         let rate: RateChoice = rate.parse().map_err(refused)?;
-        chosen.model().check_data(&data.set, rate.method(chosen.model(), &data.set)).map_err(refused)?;
         let request = chosen.request_for(rate, &data.set);
+        chosen.model().check_data(&data.set, request.rate()).map_err(refused)?;
         Ok(Self { chosen, request })
     }
 

@@ -275,14 +275,20 @@ impl Project {
     }
 
     pub fn file(&self, id: u64) -> Result<&ProjectFile> {
-        self.files.iter().find(|file| file.id == id).ok_or_else(|| problem!("there is no file {id}"))
+        Ok(&self.files[self.place_of_file(id)?])
+    }
+
+    pub fn place_of_file(&self, id: u64) -> Result<usize> {
+        self.files.iter().position(|file| file.id == id).ok_or_else(|| problem!("there is no file {id}"))
     }
 
     pub fn model(&self, id: u64) -> Result<&ProjectModel> {
-        self.models
-            .iter()
-            .find(|model| model.begun.id == id)
-            .ok_or_else(|| problem!("there is no model {id}"))
+        Ok(&self.models[self.place_of_model(id)?])
+    }
+
+    pub fn place_of_model(&self, id: u64) -> Result<usize> {
+        let place = self.models.iter().position(|model| model.begun.id == id);
+        place.ok_or_else(|| problem!("there is no model {id}"))
     }
 
     pub fn files_for(&self, usage: Use) -> impl Iterator<Item = &ProjectFile> {

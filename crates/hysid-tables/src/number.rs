@@ -279,45 +279,33 @@ pub fn push_shortest(text: &mut String, value: f64, sign: DecimalSign) {
     let mut buffer = zmij::Buffer::new();
     let mut digits = [b'0'; MOST_PRINTED];
     let (count, before) = digits_of(buffer.format_finite(value.abs()), &mut digits);
-    let digits = &digits[..count];
-    let mut push = |bytes: &[u8]| text.extend(bytes.iter().map(|&byte| char::from(byte)));
-    let point = sign.letter().as_bytes();
-    if value.is_sign_negative() {
-        push(b"-");
-    }
-    let exponent = before - 1;
-    let plain = match usize::try_from(before) {
-        Ok(before) if before >= count => before,
-        Ok(before) if before > 0 => count + 1,
-        _ => 2 + before.unsigned_abs() as usize + count,
+    let digits = std::str::from_utf8(&digits[..count]).unwrap_or_default();
+    let (mut whole, mut decimals) = match usize::try_from(before) {
+        Ok(before @ 1..) => digits.split_at(before.min(count)),
+        _ => ("0", digits),
     };
-    let (of_sign, of_exponent) = (usize::from(value.is_sign_negative()), letters(exponent));
-    let with_exponent = of_sign + count + usize::from(count > 1) + 1 + of_exponent;
-    if of_sign + plain > with_exponent.max(PLAIN_LETTERS) {
-        push(&digits[..1]);
-        if count > 1 {
-            push(point);
-            push(&digits[1..]);
-        }
-        let _ = write!(text, "e{exponent}");
-        return;
+    // Zeros behind the whole digits, and ahead of the decimals.
+    let mut behind = usize::try_from(before).unwrap_or(0).saturating_sub(count);
+    let mut ahead = usize::try_from(-before).unwrap_or(0);
+    let of_decimals = if decimals.is_empty() { 0 } else { 1 + ahead + decimals.len() };
+    let of_sign = usize::from(value.is_sign_negative());
+    let exponent = before - 1;
+    let with_exponent = of_sign + count + usize::from(count > 1) + 1 + letters(exponent);
+    let has_exponent = of_sign + whole.len() + behind + of_decimals > with_exponent.max(PLAIN_LETTERS);
+    if has_exponent {
+        (whole, decimals) = digits.split_at(1);
+        (behind, ahead) = (0, 0);
     }
-    match usize::try_from(before) {
-        Ok(before) if before >= count => {
-            push(digits);
-            (count..before).for_each(|_| push(b"0"));
-        }
-        Ok(before) if before > 0 => {
-            push(&digits[..before]);
-            push(point);
-            push(&digits[before..]);
-        }
-        _ => {
-            push(b"0");
-            push(point);
-            (0..before.unsigned_abs()).for_each(|_| push(b"0"));
-            push(digits);
-        }
+    text.extend(value.is_sign_negative().then_some('-'));
+    text.push_str(whole);
+    text.extend(std::iter::repeat_n('0', behind));
+    if !decimals.is_empty() {
+        text.push_str(sign.letter());
+        text.extend(std::iter::repeat_n('0', ahead));
+        text.push_str(decimals);
+    }
+    if has_exponent {
+        let _ = write!(text, "e{exponent}");
     }
 }
 

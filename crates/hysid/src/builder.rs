@@ -118,9 +118,9 @@ impl<'a> Fit<'a> {
 
     fn request(&self, data: &Dataset) -> Result<FitSpec> {
         let chosen = self.chosen()?;
-        let model = chosen.model();
-        model.check_data(data, self.rate.method(model, data))?;
-        Ok(chosen.request_for(self.rate, data))
+        let request = chosen.request_for(self.rate, data);
+        chosen.model().check_data(data, request.rate())?;
+        Ok(request)
     }
 
     /// The observer, which also keeps to the time limit.

@@ -108,8 +108,9 @@ pub fn notes(cycles: &Cycles) -> Vec<String> {
     let mut all: Vec<(&str, Vec<String>)> = Vec::new();
     let open = open_loops(cycles);
     for row in &cycles.table.cycles {
-        let is_told = |note: &&String| open.is_none() || !note.starts_with("the loop is open by");
-        for note in row.notes.iter().filter(is_told) {
+        let told: Vec<&String> =
+            if open.is_some() { row.other_notes().collect() } else { row.notes.iter().collect() };
+        for note in told {
             let name = row_name(cycles, row);
             match all.iter_mut().find(|(known, _)| known == note) {
                 Some((_, rows)) => rows.push(name),

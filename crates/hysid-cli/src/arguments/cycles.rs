@@ -9,13 +9,16 @@ use hysid::diagnosis::reversal_curves::{SMOOTHING_FACTORS, SMOOTHING_GROWTHS};
 
 use super::{ColumnOptions, Overwriting, RUN, fraction, number_within};
 
-const CYCLES_EXAMPLES: &str = "\
+const CYCLES_EXAMPLES: &str = concat!(
+    "\
 Examples:
   hysid cycles data.csv                  data.cycles.csv, page data.cycles.html
   hysid cycles data.csv --field magnet -o loops.csv
   hysid cycles model.json                cycles of the model, driven by Hysid
 
-Definitions: https://github.com/hysid/hysid/blob/main/docs/cycles.md";
+Definitions: ",
+    page!("cycles.md")
+);
 
 #[derive(Debug, Args)]
 #[command(after_help = CYCLES_EXAMPLES)]

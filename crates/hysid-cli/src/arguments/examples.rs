@@ -1,6 +1,7 @@
 //! Examples in the help of each command.
 
-pub(super) const FIT_EXAMPLES: &str = "\
+pub(super) const FIT_EXAMPLES: &str = concat!(
+    "\
 Examples:
   hysid fit data.csv                     model data.json, report data.html
   hysid fit data.csv --members 1         one small model instead of an ensemble
@@ -8,7 +9,9 @@ Examples:
   hysid fit a.csv b.csv --input i --output flux -o core.json
 
 All options: hysid fit --help options; their ranges:
-https://github.com/hysid/hysid/blob/main/docs/options.md";
+",
+    page!("options.md")
+);
 
 pub(super) const DEMO_EXAMPLES: &str = "\
 Examples:
@@ -47,14 +50,17 @@ Examples:
   hysid compare train.csv --test test.csv --models xpnn,preisach,bouc-wen
   hysid compare train.csv --test test.csv --time-limit 60";
 
-pub(super) const LOOK_EXAMPLES: &str = "\
+pub(super) const LOOK_EXAMPLES: &str = concat!(
+    "\
 Examples:
   hysid look data.csv
   hysid look test.xlsx --sheet 2 -o clean.csv
   hysid look log.txt --skip 12 --decimal comma --missing -999
 
 Options for files that are not read as you expect: hysid look --help options,
-https://github.com/hysid/hysid/blob/main/docs/files.md";
+",
+    page!("files.md")
+);
 
 pub(super) const DIAGNOSE_EXAMPLES: &str = "\
 Examples:

@@ -9,14 +9,17 @@ use hysid::plan::Wave;
 use super::limits::{limits, slew};
 use super::{ColumnOptions, Overwriting, RUN, whole};
 
-const PLAN_EXAMPLES: &str = "\
+const PLAN_EXAMPLES: &str = concat!(
+    "\
 Examples:
   hysid plan --like data.csv             data.drive.csv, page data.drive.html
   hysid plan --like data.csv --length 2000 -o drive.csv
   hysid plan --for \"piezo stage\" --range 0:150 --step 0.001 --length 5000
 
 Method, protocols and what they are worth:
-https://github.com/hysid/hysid/blob/main/docs/plan.md";
+",
+    page!("plan.md")
+);
 
 #[derive(Debug, Args)]
 #[command(after_help = PLAN_EXAMPLES)]

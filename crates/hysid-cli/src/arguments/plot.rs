@@ -8,14 +8,17 @@ use hysid::diagnosis::cycles::{CycleOptions, Division, Field};
 use super::cycles::named;
 use super::{BeginningOptions, ColumnOptions, DataSetsOptions, Overwriting, UnitOptions, probability};
 
-const PLOT_EXAMPLES: &str = "\
+const PLOT_EXAMPLES: &str = concat!(
+    "\
 Examples:
   hysid plot model.json test.csv -o loops.pdf
   hysid plot model.json test.csv --kind histories --band 0.9 -o time.pdf
   hysid plot data.csv --kind backbone --font serif -o backbone.svg
 
 How to make figures for a paper:
-https://github.com/hysid/hysid/blob/main/docs/how-to/figures-for-a-paper.md";
+",
+    page!("how-to/figures-for-a-paper.md")
+);
 
 /// Content of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

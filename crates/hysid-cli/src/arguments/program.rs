@@ -7,14 +7,17 @@ use clap_complete::Shell;
 
 use super::Overwriting;
 
-const MODELS_EXAMPLES: &str = "\
+const MODELS_EXAMPLES: &str = concat!(
+    "\
 Examples:
   hysid models                   all models that a fit can use
   hysid models model.json        what a model file holds
   hysid models model.json --json the same as one JSON object
 
 Properties of a model: hysid diagnose. More about each model:
-https://github.com/hysid/hysid/blob/main/docs/models.md";
+",
+    page!("models.md")
+);
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:

@@ -8,14 +8,17 @@ use hysid_app::restoring_force::{Mass, MotionChoice, RestoringForceRequest};
 use super::reading::missing_help;
 use super::{Overwriting, RUN, ReadingOptions};
 
-const FORCE_EXAMPLES: &str = "\
+const FORCE_EXAMPLES: &str = concat!(
+    "\
 Examples:
   hysid restoring-force rig.csv --mass 2           force and displacement: rig.force.csv
   hysid restoring-force rig.csv --mass 2 --acceleration acc
   hysid restoring-force floor.csv --mass \"25 t\" --absolute-acceleration acc
   hysid restoring-force floor.csv --mass \"25 t\" --base-acceleration ag
 
-Method: https://github.com/hysid/hysid/blob/main/docs/how-to/restoring-force.md";
+Method: ",
+    page!("how-to/restoring-force.md")
+);
 
 const ZERO_HELP: &str = "Subtract from the displacement and from the restoring force their means over the first ROWS rows of each record";
 

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-const EXAMPLES: &str = "\
+const EXAMPLES: &str = concat!(
+    "\
 Examples:
   hysid studio                    opens the page in your browser
   hysid studio data.csv           the same with a file
@@ -12,7 +13,9 @@ Examples:
   hysid studio --no-open --port 8080
 
 No data leave this machine. See
-https://github.com/hysid/hysid/blob/main/docs/studio.md";
+",
+    page!("studio.md")
+);
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

@@ -224,13 +224,19 @@ def test_the_whole_way(start, visit, tmp_path):
     assert [error for error in opened.errors if "400" not in error] == []
 
 
-def test_auto_shows_its_candidates_and_keeps_the_best_when_it_is_stopped(start, visit):
+def begin_auto(start, visit):
+    """A studio with data, its page, and the step of a default fit that has just begun."""
     studio = start()
     studio.specimen("terfenol-rod")
     opened = visit(studio)
     identify = opened.go("identify")
     identify.get_by_role("button", name="Start").click()
     identify.get_by_role("progressbar").wait_for()
+    return studio, opened, identify
+
+
+def test_auto_shows_its_candidates_and_keeps_the_best_when_it_is_stopped(start, visit):
+    studio, opened, identify = begin_auto(start, visit)
     # Candidates come with their errors, and the best of them is drawn over the data.
     identify.locator("tbody tr", has_text=re.compile(r"\d\s%")).first.wait_for(timeout=60_000)
     identify.locator("canvas").first.wait_for()

@@ -2,7 +2,7 @@
 
 import re
 
-from test_studio import drop, is_drawn, visit  # noqa: F401 (a fixture)
+from test_studio import begin_auto, drop, is_drawn, visit  # noqa: F401 (a fixture)
 
 
 def test_the_example_is_shown_at_once_and_opened_in_all_steps(start, visit):  # noqa: F811
@@ -35,12 +35,7 @@ def test_the_example_is_shown_at_once_and_opened_in_all_steps(start, visit):  # 
 
 
 def test_a_fit_is_drawn_over_the_data_from_its_beginning_and_stays(start, visit):  # noqa: F811
-    studio = start()
-    studio.specimen("terfenol-rod")
-    opened = visit(studio)
-    identify = opened.go("identify")
-    identify.get_by_role("button", name="Start").click()
-    identify.get_by_role("progressbar").wait_for()
+    studio, opened, identify = begin_auto(start, visit)
     # The measured loop is there before any model; progress and convergence are beside it.
     identify.locator("canvas").first.wait_for(timeout=5_000)
     identify.locator(".remaining", has_text=re.compile(r"\d\s%, .* elapsed")).wait_for()

@@ -94,8 +94,8 @@ impl JilesAthertonState {
     }
 }
 
-/// Laws that [`JilesAtherton::advance_side_by_side`] takes.
-pub const SIDE_BY_SIDE: usize = 4;
+/// Laws that are advanced step by step together.
+const SIDE_BY_SIDE: usize = 4;
 
 /// The way from one field to the next, upwards: `parts` parts of length `part`.
 #[derive(Debug, Clone, Copy, Default)]
@@ -141,10 +141,16 @@ impl JilesAtherton {
         Way { direction, from, part: (to - from) / parts.max(1.0), parts, m: direction * state.m }
     }
 
-    /// Advances up to [`SIDE_BY_SIDE`] laws, with the numbers of [`Self::advance`]. A step waits for the one before, so that
-    /// several laws together take little longer than one.
+    /// Advances several laws, with the numbers of [`Self::advance`]. A step waits for the one before, so that several laws
+    /// together take little longer than one.
     pub fn advance_side_by_side(laws: &[Self], states: &mut [JilesAthertonState], h: f64) {
-        let count = laws.len().min(states.len()).min(SIDE_BY_SIDE);
+        for (laws, states) in laws.chunks(SIDE_BY_SIDE).zip(states.chunks_mut(SIDE_BY_SIDE)) {
+            Self::advance_few(laws, states, h);
+        }
+    }
+
+    fn advance_few(laws: &[Self], states: &mut [JilesAthertonState], h: f64) {
+        let count = laws.len().min(states.len());
         let mut ways = [Way::default(); SIDE_BY_SIDE];
         for lane in 0..count {
             ways[lane] = laws[lane].way(&states[lane], h);

@@ -68,13 +68,14 @@ impl NamedOptions {
     /// then has none by default, and needs no time.
     pub fn request_for(&self, choice: RateChoice, data: &Dataset) -> FitSpec {
         let rate = choice.method(self.model(), data);
-        let is_unseen = choice == RateChoice::Auto && data.has_time() && data.speeds() == SpeedEvidence::One;
-        let relaxation = self.relaxation.or(is_unseen.then_some(0));
-        let is_network = matches!(self.model(), ModelName::Network(family) if family.relaxes());
         let always_rate = matches!(choice, RateChoice::Method(_));
-        match is_network {
-            true => Self { relaxation, ..self.clone() }.request(rate, always_rate),
-            false => self.request(rate, always_rate),
+        // A network that relaxes uses the rate of data with time unless they have one speed.
+        let is_of_one_speed = choice == RateChoice::Auto && rate.is_none() && data.has_time();
+        match self.model() {
+            ModelName::Network(family) if family.relaxes() && is_of_one_speed => {
+                Self { relaxation: self.relaxation.or(Some(0)), ..self.clone() }.request(rate, always_rate)
+            }
+            _ => self.request(rate, always_rate),
         }
     }
 

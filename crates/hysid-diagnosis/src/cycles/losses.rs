@@ -33,8 +33,12 @@ pub struct LossAtFrequency {
     pub cycles: usize,
 }
 
-/// The losses of all cycles with a frequency, by amplitude, then by frequency.
-pub(super) fn losses(rows: &[CycleRow], separation: Option<&Separation>) -> Vec<LossAtFrequency> {
+/// The losses of all cycles with a frequency, by amplitude, then by frequency; per mass for magnets of a density.
+pub(super) fn losses(
+    rows: &[CycleRow],
+    separation: Option<&Separation>,
+    density: Option<f64>,
+) -> Vec<LossAtFrequency> {
     let mut groups: Vec<Vec<[f64; 4]>> = Vec::new();
     for row in rows {
         let figures = (row.amplitude, row.frequency, row.energy, row.output_min.zip(row.output_max));
@@ -47,10 +51,8 @@ pub(super) fn losses(rows: &[CycleRow], separation: Option<&Separation>) -> Vec<
             None => groups.push(vec![loss]),
         }
     }
-    let mut losses: Vec<LossAtFrequency> = groups.iter().map(|group| mean(group, separation)).collect();
-    if let Some(per_mass) = rows.iter().find_map(|row| Some(row.power_per_mass? / row.power?)) {
-        losses.iter_mut().for_each(|loss| loss.power_per_mass = Some(per_mass * loss.power));
-    }
+    let mut losses: Vec<LossAtFrequency> =
+        groups.iter().map(|group| mean(group, separation, density)).collect();
     losses.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
     for one_amplitude in losses.chunk_by_mut(|a, b| alike(a.amplitude, b.amplitude)) {
         one_amplitude.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
@@ -62,10 +64,11 @@ fn alike(a: f64, b: f64) -> bool {
     (a - b).abs() <= ALIKE * a.abs().max(b.abs())
 }
 
-fn mean(group: &[[f64; 4]], separation: Option<&Separation>) -> LossAtFrequency {
+fn mean(group: &[[f64; 4]], separation: Option<&Separation>, density: Option<f64>) -> LossAtFrequency {
     let mean = |of: &dyn Fn(&[f64; 4]) -> f64| group.iter().map(of).sum::<f64>() / group.len() as f64;
     let (output_amplitude, frequency) = (mean(&|cycle| cycle[3]), mean(&|cycle| cycle[1]));
     let parts = separation.map(|separation| separation.parts(output_amplitude, frequency));
+    let power = mean(&|cycle| cycle[1] * cycle[2]);
     LossAtFrequency {
         output_amplitude,
         hysteresis: parts.map(|parts| parts[0]),
@@ -74,8 +77,8 @@ fn mean(group: &[[f64; 4]], separation: Option<&Separation>) -> LossAtFrequency 
         amplitude: mean(&|cycle| cycle[0]),
         frequency,
         energy: mean(&|cycle| cycle[2]),
-        power: mean(&|cycle| cycle[1] * cycle[2]),
-        power_per_mass: None,
+        power,
+        power_per_mass: density.map(|density| power / density),
         cycles: group.len(),
     }
 }

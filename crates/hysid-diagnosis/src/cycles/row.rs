@@ -119,10 +119,18 @@ pub struct CycleRow {
     pub(crate) faults: LoopFaults,
 }
 
+/// Begins the note on an open loop.
+pub(super) const OPEN_LOOP: &str = "the loop is open by";
+
 impl CycleRow {
     /// Output at the end less output at the beginning, in the unit of the output, if the loop is open.
     pub fn opening(&self) -> Option<f64> {
         self.faults.opening
+    }
+
+    /// The notes on anything but an open loop.
+    pub fn other_notes(&self) -> impl Iterator<Item = &String> {
+        self.notes.iter().filter(|note| !note.starts_with(OPEN_LOOP))
     }
 }
 

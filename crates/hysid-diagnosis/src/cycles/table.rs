@@ -26,7 +26,7 @@ use super::path::{Closure, CyclePath, area, at, range, weights, width};
 use super::quantities::Quantities;
 use super::reading::{Widest, output_at_end, secant, widest};
 use super::record_figure::RecordFigure;
-use super::row::CycleRow;
+use super::row::{CycleRow, OPEN_LOOP};
 use super::saturation;
 use super::strand::{Strand, cross};
 use crate::branch::{Branch, BranchSet, JITTERS, ReversalRule};
@@ -186,7 +186,8 @@ impl CycleTable {
             cycles.extend(rows);
             points.extend(backbone);
         }
-        if let Some(density) = options.density.filter(|_| field.has_magnets()) {
+        let density = options.density.filter(|_| field.has_magnets());
+        if let Some(density) = density {
             for row in &mut cycles {
                 row.energy_per_mass = row.energy.map(|energy| energy / density);
                 row.power_per_mass = row.power.map(|power| power / density);
@@ -196,7 +197,7 @@ impl CycleTable {
             if field == Field::Magnet { LossLaws::read(data, &mut cycles) } else { LossLaws::default() };
         figures.extend(laws.figures);
         let notes = notes(&survey, &cycles, (field, division));
-        let losses = losses(&cycles, laws.separation.as_ref());
+        let losses = losses(&cycles, laws.separation.as_ref(), density);
         Ok(Self { field, division, losses, cycles, backbone: points, levels, figures, notes })
     }
 
@@ -633,7 +634,7 @@ impl CycleReader<'_> {
         if (adds || gap.abs() > OPEN * (high - low)) && gap.abs() > noise + LINE * (high - low) {
             row.faults.opening = Some(gap);
             row.notes.push(format!(
-                "the loop is open by {:.2} of {:.2}: its reversals differ, the output drifts (--subtract drift), or it \
+                "{OPEN_LOOP} {:.2} of {:.2}: its reversals differ, the output drifts (--subtract drift), or it \
                  began in another state",
                 Significant(gap.abs()),
                 Significant(high - low)

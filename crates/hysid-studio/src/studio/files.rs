@@ -126,8 +126,7 @@ impl Studio {
     /// Removes a file from the project. Gives its name if it stays in the folder, because it is no longer the one that came.
     pub fn remove_file(&self, id: u64) -> Result<Option<String>> {
         let (removed, place) = self.change(|project| {
-            project.file(id)?;
-            let place = project.files.iter().position(|file| file.id == id).unwrap_or_default();
+            let place = project.place_of_file(id)?;
             Ok((project.files.remove(place), place))
         })?;
         // A model that was made of it keeps its line.
@@ -212,12 +211,8 @@ impl Studio {
     /// Says which columns of a file have the roles of the first; those that are not chosen are found.
     pub fn choose_columns_of(&self, id: u64, columns: ChosenColumns) -> Result<()> {
         self.change_reading(|project| {
-            project.file(id)?;
-            project
-                .files
-                .iter_mut()
-                .filter(|file| file.id == id)
-                .for_each(|file| file.columns = columns.clone());
+            let place = project.place_of_file(id)?;
+            project.files[place].columns = columns;
             Ok(())
         })
     }

@@ -110,8 +110,7 @@ impl Studio {
     /// them or somebody changed them.
     pub fn remove_model(&self, id: u64) -> Result<Vec<String>> {
         let (removed, place) = self.change(|project| {
-            project.model(id)?;
-            let place = project.models.iter().position(|model| model.begun.id == id).unwrap_or_default();
+            let place = project.place_of_model(id)?;
             Ok((project.models.remove(place), place))
         })?;
         self.keep_removed(Removed::Model(Box::new(removed.clone()), place));
@@ -141,12 +140,8 @@ impl Studio {
         let name: String = name.chars().filter(|letter| !is_hidden(*letter)).take(LONGEST_NAME).collect();
         let name = Some(name.trim().to_string()).filter(|name| !name.is_empty());
         self.change(|project| {
-            project.model(id)?;
-            project
-                .models
-                .iter_mut()
-                .filter(|model| model.begun.id == id)
-                .for_each(|model| model.name.clone_from(&name));
+            let place = project.place_of_model(id)?;
+            project.models[place].name = name;
             Ok(())
         })
     }

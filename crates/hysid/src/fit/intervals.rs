@@ -124,11 +124,8 @@ impl ParameterIntervals {
         let (Some(law), FitSpec::Classical(options)) = (model.law(), &model.provenance().options) else {
             return Ok(None);
         };
-        if model.provenance().weighted {
-            return Ok(None);
-        }
-        let how = model.provenance().selection.as_ref().map(|selection| &selection.single);
-        if how.is_some_and(|single| single.as_ref().is_some_and(|single| single.distilled)) {
+        let single = model.provenance().selection.as_ref().and_then(|selection| selection.single.as_ref());
+        if model.provenance().weighted || single.is_some_and(|single| single.distilled) {
             return Ok(None);
         }
         check_trained_on(model, data)?;
