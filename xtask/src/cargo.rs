@@ -10,9 +10,21 @@ pub const EVERYTHING: [&str; 4] = ["--workspace", "--features", "hysid-python/ex
 
 /// Runs `cargo` with these arguments and environment variables at the root of the workspace, as one step.
 pub fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result<()> {
-    let step = format!("cargo {}", arguments.join(" "));
+    step("cargo", &program(), arguments, environment)
+}
+
+/// Runs `cargo` of the oldest Rust that the workspace names, as one step; rustup installs it where it is missing.
+pub fn oldest_cargo(arguments: &[&str]) -> Result<()> {
+    let rustup = Path::new("rustup");
+    let version = format!("{}.0", env!("CARGO_PKG_RUST_VERSION"));
+    step("rustup", rustup, &["toolchain", "install", "--profile", "minimal", &version], &[])?;
+    step("rustup", rustup, &[&["run", &version, "cargo"], arguments].concat(), &[])
+}
+
+fn step(name: &str, program: &Path, arguments: &[&str], environment: &[(&str, &str)]) -> Result<()> {
+    let step = format!("{name} {}", arguments.join(" "));
     println!("==> {step}");
-    let status = Command::new(program())
+    let status = Command::new(program)
         .args(arguments)
         .envs(environment.iter().copied())
         .current_dir(workspace_root())

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
 
-use crate::cargo::{cargo, target, workspace_root};
+use crate::cargo::{cargo, oldest_cargo, target, workspace_root};
 use crate::python;
 
 /// Members of the workspace that are not published as crates.
@@ -18,8 +18,9 @@ const IN_EACH: [&str; 4] = ["LICENSE-APACHE", "LICENSE-MIT", "README.md", "Cargo
 /// What no archive has.
 const IN_NONE: [&str; 4] = ["shared/", "lab/", "target/", ".ci/"];
 
-/// Checks that all places name one version, builds each crate from its own archive in order, looks into the archives, installs
-/// the program as locked, and builds and tests the source distribution of the Python package in an empty environment.
+/// Checks that all places name one version and that the oldest Rust compiles the workspace, builds each crate from its own
+/// archive in order, looks into the archives, installs the program as locked, and builds and tests the source distribution of
+/// the Python package in an empty environment.
 pub fn run() -> Result<()> {
     let root = workspace_root();
     let text = |name: &str| fs::read_to_string(root.join(name)).with_context(|| name.to_string());
@@ -34,6 +35,10 @@ pub fn run() -> Result<()> {
     );
     ensure!(git(&["status", "--porcelain"])?.is_empty(), "there are changes that are not committed");
 
+    let place = target()?.join("oldest");
+    let place = place.to_str().context("the target folder is no text")?;
+    let everything = ["--workspace", "--all-targets", "--exclude", "hysid-python"];
+    oldest_cargo(&[&["check", "--locked", "--target-dir", place], &everything[..]].concat())?;
     let mut package = vec!["package", "--workspace", "--locked"];
     package.extend(UNPUBLISHED.iter().flat_map(|member| ["--exclude", member]));
     cargo(&package, &[])?;

@@ -10,15 +10,17 @@ use std::time::{Duration, Instant};
 use hysid::Error;
 use hysid::data::known_beginning::KnownSpan;
 use hysid::data::metrics::Errors;
-use hysid::data::record::Dataset;
+use hysid::data::record::{Dataset, Record};
 use hysid::fit::identify;
 use hysid::fit::progress::Progress;
 use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid_core::significant::Significant;
 use hysid_core::termination::Termination;
+use hysid_document::plain::indented;
 use hysid_document::{Problem, Result, visible};
 
+use crate::fading_errors::{self, FadingErrors};
 use crate::models::parts;
 use crate::{check_memory, ns_per_sample};
 
@@ -77,6 +79,8 @@ pub struct CompareOutcome {
     pub is_tested: bool,
     /// Threads of each fit.
     pub threads_of_a_fit: usize,
+    /// Records that the best model follows only some rows after their beginning, in words.
+    pub faded: Option<String>,
 }
 
 /// A model and the result of its fit.
@@ -119,9 +123,9 @@ impl CompareRow {
             Ok(fit) => {
                 let stopped = if fit.is_stopped() { " (stopped)" } else { "" };
                 let error = percent(fit.judged());
-                format!("{name:<33} {error:>9} % {:7.1} s{stopped}", fit.fit_seconds)
+                format!("{error:>9} % {:7.1} s  {name}{stopped}", fit.fit_seconds)
             }
-            Err(why) => format!("{name:<33} {why}"),
+            Err(why) => format!("{:>9} {:>11}  {name}: {why}", "-", "-"),
         }
     }
 }
@@ -195,7 +199,19 @@ pub fn compare(request: &CompareRequest<'_>, observer: &dyn CompareObserver) -> 
         }
     }
     rows.sort_by(|a, b| a.error().total_cmp(&b.error()));
-    Ok(CompareOutcome { rows, is_tested: request.test.is_some(), threads_of_a_fit: threads })
+    let faded = rows.first().and_then(|best| faded(best, request.test.unwrap_or(request.train)));
+    Ok(CompareOutcome { rows, is_tested: request.test.is_some(), threads_of_a_fit: threads, faded })
+}
+
+/// Records that a model follows only some rows after their beginning, in words.
+fn faded(row: &CompareRow, data: &Dataset) -> Option<String> {
+    let model = &row.fit.as_ref().ok()?.model;
+    let words = |record: &Record| {
+        let mut errors = FadingErrors::default();
+        errors.add(record.output(), &model.simulate(record).ok()?);
+        Some(errors.fade(model)?.words(record.name(), &model.names().output))
+    };
+    fading_errors::first_of(data.records().iter().filter_map(words))
 }
 
 /// One of the fits of a comparison.
@@ -320,6 +336,11 @@ impl CompareOutcome {
         Some(format!("They are those after a known beginning of each record: {known}."))
     }
 
+    /// A doubt about the errors, in words.
+    fn doubt(&self) -> Option<String> {
+        Some(format!("With the best model, {}.", self.faded.as_ref()?))
+    }
+
     /// The comparison as plain text in 80 columns.
     pub fn text(&self) -> String {
         const NAME: usize = 33;
@@ -349,9 +370,10 @@ impl CompareOutcome {
         };
         text + &format!(
             "\nErrors: NRMSE of free runs, in % of the standard deviation of the output.\n{}Sorted by the error \
-             on {data}.\nEach fit ran on {}.\n{stopped}",
+             on {data}.\nEach fit ran on {}.\n{stopped}{}",
             self.beginning().map_or_else(String::new, |words| words + "\n"),
-            self.threads()
+            self.threads(),
+            self.doubt().map_or_else(String::new, |words| format!("\n{}", indented(&words, 0))),
         )
     }
 

@@ -6,12 +6,12 @@ use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::diagnosis::residuals::Residuals;
 use hysid::error::{Channel, DataError, DataProblem};
 use hysid::model::{BandLevel, Model};
-use hysid_document::{Result, count, object};
+use hysid_document::{Result, object};
 use hysid_records::{Roles, UnitFactors, explained, summarised};
 use hysid_tables::Rows;
 
 use crate::errors_table::{AFTER_WARM_UP, errors_table};
-use crate::fading_errors::FadingErrors;
+use crate::fading_errors::{FadingErrors, first_of};
 use crate::gathered::Gatherer;
 use crate::table_run::{self, KeptColumns, Simulated};
 use crate::{BandCoverage, residual_tests, residual_words};
@@ -46,7 +46,6 @@ pub fn evaluate(request: &EvaluateRequest<'_>, rows: &mut Rows) -> Result<Evalua
     let warm_up = model.warm_up();
     let (mut sums, mut sums_behind, mut covered) = (ErrorSums::default(), ErrorSums::default(), (0, 0));
     let mut gatherer = residuals.then(Gatherer::default);
-    let usual = model.provenance().validation.as_ref().unwrap_or(&model.provenance().train).rmse;
     let (mut fading, mut faded) = (FadingErrors::default(), Vec::new());
     let mut take = |simulated: &Simulated<'_>| -> Result<_> {
         let (prediction, measured) = (simulated.prediction, simulated.measured);
@@ -60,8 +59,8 @@ pub fn evaluate(request: &EvaluateRequest<'_>, rows: &mut Rows) -> Result<Evalua
         }
         fading.add(measured, &prediction.output);
         if simulated.ends_record {
-            let fades = std::mem::take(&mut fading).fade(usual).filter(|_| model.known_beginning().is_none());
-            faded.extend(fades.map(|fades| fades.words(simulated.record, &model.names().output)));
+            let fade = std::mem::take(&mut fading).fade(model);
+            faded.extend(fade.map(|fade| fade.words(simulated.record, &model.names().output)));
             sums.end_record();
             sums_behind.end_record();
         }
@@ -87,15 +86,13 @@ pub fn evaluate(request: &EvaluateRequest<'_>, rows: &mut Rows) -> Result<Evalua
         after_warm_up: (warm_up > 0).then(|| sums_behind.errors(output)).flatten(),
         band: band.map(|level| BandCoverage::of(covered, level)),
         residuals: residuals.map_err(|error| explained(&rows.head.file, None, error, roles))?,
-        warnings: end.note.into_iter().chain(summarised(&end.warnings)).chain(first_of(faded)).collect(),
+        warnings: end
+            .note
+            .into_iter()
+            .chain(summarised(&end.warnings))
+            .chain(first_of(faded.into_iter()))
+            .collect(),
     })
-}
-
-/// The first of several like statements, and how many more there are.
-fn first_of(statements: Vec<String>) -> Option<String> {
-    let more = statements.len().saturating_sub(1);
-    let first = statements.into_iter().next()?;
-    Some(if more > 0 { format!("{first}; {} alike", count(more, "more record")) } else { first })
 }
 
 impl Evaluation {

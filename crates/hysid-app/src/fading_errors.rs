@@ -1,7 +1,9 @@
 //! Errors that fade after the beginning of a record: the memory of the model began in another state than the specimen.
 
 use hysid::data::unit;
+use hysid::model::Model;
 use hysid_core::significant::Significant;
+use hysid_document::count;
 use hysid_document::shell::option;
 use hysid_document::visible::clipped;
 
@@ -45,8 +47,13 @@ impl FadingErrors {
     }
 
     /// The errors, if those of the first quarter of the record or less are far above those of its later half, and above the usual
-    /// error.
-    pub fn fade(&self, usual: f64) -> Option<Fade> {
+    /// error of the model. A model that takes a known beginning has none.
+    pub fn fade(&self, model: &Model) -> Option<Fade> {
+        let usual = model.provenance().validation.as_ref().unwrap_or(&model.provenance().train).rmse;
+        self.beside(usual).filter(|_| model.known_beginning().is_none())
+    }
+
+    fn beside(&self, usual: f64) -> Option<Fade> {
         let last = self.octaves.len().checked_sub(1)?;
         let rms = |octaves: &[(f64, usize)]| {
             let (sum, count) =
@@ -73,6 +80,13 @@ impl Fade {
     }
 }
 
+/// The first of several like statements, and how many more there are.
+pub(crate) fn first_of(mut statements: impl Iterator<Item = String>) -> Option<String> {
+    let first = statements.next()?;
+    let more = statements.count();
+    Some(if more > 0 { format!("{first}; {} alike", count(more, "more record")) } else { first })
+}
+
 #[cfg(test)]
 mod tests {
     use hysid_core::elementary::powf;
@@ -86,7 +100,7 @@ mod tests {
             let errors: Vec<f64> = block.iter().map(|&row| errors(row)).collect();
             found.add(&errors, &vec![0.0; errors.len()]);
         }
-        found.fade(0.1)
+        found.beside(0.1)
     }
 
     #[test]

@@ -100,8 +100,9 @@ pub fn purpose(model: &Model) -> [String; 3] {
     let percent = |error: Option<f64>| {
         error.map(|error| format!("{} % of the standard deviation of the output", number(error, 3)))
     };
-    let error = match (&provenance.validation, percent(provenance.trained_error().nrmse_std_percent)) {
-        (Some(errors), _) if let Some(error) = percent(errors.nrmse_std_percent) => {
+    let validation = provenance.validation.as_ref().and_then(|errors| percent(errors.nrmse_std_percent));
+    let error = match (validation, percent(provenance.trained_error().nrmse_std_percent)) {
+        (Some(error), _) => {
             format!("Expected error on new data like the training data: {error} (cross-validation).")
         }
         (_, Some(error)) => {

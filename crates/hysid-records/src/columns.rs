@@ -226,25 +226,29 @@ impl Roles {
         scored: bool,
     ) -> Result<Self> {
         let names = model.names();
-        let find = |given: &Option<String>, trained: &str, what: &str, option: &'static str| match given {
-            Some(name) => require(table, name, option).map(|()| full_name(table, name)),
-            None if table.column(trained).is_some() => Ok(full_name(table, trained)),
-            None if let Some(name) = in_another_unit(table, trained) => Ok(name.clone()),
-            None => {
-                table.require_columns()?;
-                let words =
-                    Words::from(format!("there is no column \"{}\", the model's {what}", clipped(trained)));
-                let columns = format!("columns: {}; ", listed(&table.header));
-                let taken = |name: &&String| !options.names().any(|taken| taken == *name);
-                let advice = match only(table.header.iter().filter(taken), |name| is_of_unit(name, trained)) {
-                    Some(name) => {
-                        Words::from(columns + "only one has a unit of this quantity: ")
-                            + Hint::Value(option, name.clone())
-                    }
-                    None => Words::from(columns + "name another with ") + Hint::Option(option),
-                };
-                Err(Problem::in_file(&table.file, words.advised(advice)))
+        let find = |given: &Option<String>, trained: &str, what: &str, option: &'static str| {
+            if let Some(name) = given {
+                return require(table, name, option).map(|()| full_name(table, name));
             }
+            if table.column(trained).is_some() {
+                return Ok(full_name(table, trained));
+            }
+            if let Some(name) = in_another_unit(table, trained) {
+                return Ok(name.clone());
+            }
+            table.require_columns()?;
+            let words =
+                Words::from(format!("there is no column \"{}\", the model's {what}", clipped(trained)));
+            let columns = format!("columns: {}; ", listed(&table.header));
+            let taken = |name: &&String| !options.names().any(|taken| taken == *name);
+            let advice = match only(table.header.iter().filter(taken), |name| is_of_unit(name, trained)) {
+                Some(name) => {
+                    Words::from(columns + "only one has a unit of this quantity: ")
+                        + Hint::Value(option, name.clone())
+                }
+                None => Words::from(columns + "name another with ") + Hint::Option(option),
+            };
+            Err(Problem::in_file(&table.file, words.advised(advice)))
         };
         let given_rate = rate_of_model(model, options)?;
         let inputs: Vec<String> = if options.input.is_empty() {

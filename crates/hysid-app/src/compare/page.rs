@@ -39,6 +39,7 @@ impl CompareOutcome {
             let doubt = "All models were fitted to these data. The error on other data was not measured: name test data (--test).";
             parts.push(Part::warnings(&[doubt.to_string()]));
         }
+        parts.extend(self.doubt().map(|doubt| Part::warnings(&[doubt])));
         let words = format!(
             "NRMSE of free runs, in percent of the standard deviation of the output. {}Each fit ran on {}. \
              {}",

@@ -62,6 +62,42 @@ fn a_law_is_compared_in_all_its_variants() {
     assert!(rows.as_array().unwrap().iter().all(|row| row["model"] == "bouc-wen"));
 }
 
+/// Two plays under a drive whose amplitude grows and falls; the test record begins after a past of its own.
+#[test]
+fn a_record_that_begins_in_the_middle_is_told() {
+    let bench = Workbench::with_data();
+    let drive = |row: usize, phase: f64| {
+        let angle = row as f64 * 0.05 + phase;
+        angle.sin() * (0.4 + 0.6 * (0.0037 * row as f64 + phase).sin().abs())
+    };
+    let table = |phase: f64, states: [f64; 2]| {
+        let (mut text, mut states) = ("x,y\n".to_string(), states);
+        for row in 0..1200 {
+            let x = drive(row, phase);
+            for (state, threshold) in states.iter_mut().zip([0.3, 0.7]) {
+                *state = state.clamp(x - threshold, x + threshold);
+            }
+            text += &format!("{x},{}\n", x + 0.6 * states[0] + 0.5 * states[1]);
+        }
+        text
+    };
+    bench.put("train.csv", table(0.0, [0.0, 0.0]));
+    bench.put("virgin.csv", table(1.3, [0.0, 0.0]));
+    bench.put("cut.csv", table(0.3, [0.9, 0.9]));
+    let compare = |test: &str| {
+        let models = "prandtl-ishlinskii,masing --no-report";
+        let text = bench.succeeds(&format!("compare train.csv --test {test} --models {models}")).stdout;
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let words = "With the best model, record \"cut\": the error falls from";
+    let text = compare("cut.csv");
+    assert!(text.contains(words) && text.contains("it may begin in the middle"), "{text}");
+    for test in ["virgin.csv", "cut.csv --known 100"] {
+        let text = compare(test);
+        assert!(!text.contains("begin in the middle"), "{test}: {text}");
+    }
+}
+
 #[test]
 fn what_cannot_be_compared_is_refused() {
     let bench = Workbench::with_data();
