@@ -64,6 +64,9 @@ const STEADIER: f64 = 0.5;
 /// Output at the end of a closed loop less output at its beginning, at most, as a share of the loop's range of the output.
 const CLOSED_OUTPUT: f64 = 0.05;
 
+/// As [`CLOSED_OUTPUT`], of a loop that no other follows: what is left of it is nowhere but at its beginning. Its opening is said.
+const ALMOST_CLOSED_OUTPUT: f64 = 0.1;
+
 /// A division is better than another if it has more of the way of the input in closed loops, by this share.
 const BETTER: f64 = 1e-3;
 
@@ -135,7 +138,7 @@ fn ways(survey: &BranchSet, record: usize, division: Division, output_too: bool)
         let rows = span.from.floor() as usize..span.to.ceil() as usize + 1;
         let swing = width(&x[rows.clone()]);
         let back = (at(x, span.to) - at(x, span.from)).abs() <= tolerance(survey, swing);
-        if back && (!output_too || output_closes(survey, y, (span.from, span.to))) {
+        if back && (!output_too || output_closes(survey, y, (span.from, span.to), false)) {
             closed += 2.0 * swing;
         } else {
             open += 2.0 * swing;
@@ -144,13 +147,14 @@ fn ways(survey: &BranchSet, record: usize, division: Division, output_too: bool)
     (closed, open)
 }
 
-/// True if the outputs at both ends of a part of a record are the same.
-pub(super) fn output_closes(survey: &BranchSet, y: &[f64], (from, to): (f64, f64)) -> bool {
+/// True if the outputs at both ends of a part of a record are the same, or almost the same at the end of a record.
+pub(super) fn output_closes(survey: &BranchSet, y: &[f64], (from, to): (f64, f64), is_last: bool) -> bool {
     let measured: Vec<f64> =
         y[from.floor() as usize..=to.ceil() as usize].iter().copied().filter(|y| !y.is_nan()).collect();
     let gap = (at(y, to) - at(y, from)).abs();
     let noise = 5.0 * survey.output_noise.deviation();
-    gap.is_nan() || gap <= CLOSED_OUTPUT * width(&measured) + noise
+    let share = if is_last { ALMOST_CLOSED_OUTPUT } else { CLOSED_OUTPUT };
+    gap.is_nan() || gap <= share * width(&measured) + noise
 }
 
 /// The branches between two turning points; all of them, if there are none.

@@ -509,7 +509,8 @@ impl CycleReader<'_> {
     fn strands(&self, tips: &Tips, (low, high): (f64, f64)) -> Option<(Strand, Strand)> {
         let (peak, valley) = (tips.peak?, tips.valley?);
         let beyond = CLOSED * (high - low);
-        let closes = output_closes(self.survey, self.record.output(), (self.span.from, self.span.to));
+        let (ends, is_last) = ((self.span.from, self.span.to), self.span.branches.end == self.branches.len());
+        let closes = output_closes(self.survey, self.record.output(), ends, is_last);
         let down = self.strand(&peak, valley.input + beyond, peak.input + beyond, closes);
         let up = self.strand(&valley, peak.input - beyond, valley.input - beyond, closes);
         Some((down, up))

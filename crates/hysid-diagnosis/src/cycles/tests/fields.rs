@@ -185,6 +185,31 @@ fn saturation_is_read_above_a_slope_and_not_where_the_loop_is_far_from_it() {
     assert!(found.value.is_none() && found.note.unwrap().contains("still rises too much"));
 }
 
+/// One period from the middle, as testers of ferroelectrics write it: the output was at -0.4 at the beginning, and relaxed. The
+/// rising branch passes zero in the first quarter, whether the loop closes or not; a virgin curve is no part of the loop.
+#[test]
+fn a_loop_that_almost_closes_has_the_coercive_field_of_its_beginning() {
+    let period = |opening: f64| {
+        let h = path(&[0.0, 10.0, -10.0, 0.0], 0.1);
+        let (peak, valley) = (100, 300);
+        let y = |(row, h): (usize, &f64)| {
+            let way = |shift: f64| ((h + shift) / 5.0).clamp(-1.0, 1.0);
+            match row {
+                _ if row <= peak => way(-2.0),
+                _ if row <= valley => way(2.0),
+                _ => way(-2.0) + opening * (row - valley) as f64 / 100.0,
+            }
+        };
+        let y = h.iter().enumerate().map(y).collect();
+        let table = table_of(&data(h, y), Field::Magnet);
+        table.complete().next().expect("a cycle").clone()
+    };
+    for opening in [0.0, 0.06, -0.12] {
+        assert_relative_eq!(period(opening).coercive_input.unwrap(), 2.0, epsilon = 1e-9);
+    }
+    assert!(period(0.3).coercive_input.is_none());
+}
+
 #[test]
 fn squareness_is_the_remanence_over_half_the_range() {
     let row = only(&losses(&[(1.0, 50.0, 100.0)]), Field::Magnet);
