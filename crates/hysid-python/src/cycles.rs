@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use hysid::diagnosis::cycles::{CycleOptions, CycleTable};
+use hysid::diagnosis::cycles::{CycleOptions, CycleTable, counted_through};
 use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves, without_calibration_points};
 use hysid::model::Model;
@@ -53,8 +53,10 @@ pub fn cycles(
     let find = move || {
         let cleaned = without_calibration_points(&set);
         let set = cleaned.as_ref().map_or(&*set, |(set, _)| set);
+        let joined = counted_through(set, options.field);
+        let set = joined.as_ref().map_or(set, |(set, _)| set);
         let mut table = CycleTable::of(set, &options)?;
-        table.notes.splice(..0, cleaned.iter().map(|(_, note)| note.clone()));
+        table.notes.splice(..0, cleaned.iter().chain(&joined).map(|(_, note)| note.clone()));
         Ok((table, ReversalCurves::of(set, &of_curves)?))
     };
     let (table, curves) = interruptible(py, find)?;

@@ -42,6 +42,9 @@ const WHOLE: f64 = 0.98;
 /// Rows further apart than this share of a swing do not show what the output does between them.
 const FAR_APART: f64 = 0.1;
 
+/// A step of a charge over this share of its swing is no measurement of what lies between.
+const JUMP: f64 = 0.5;
+
 /// Share of a swing that is rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -365,6 +368,10 @@ impl CycleReader<'_> {
                 "rows are up to {percent:.0} % of the swing apart: what lies between is interpolated"
             ));
         }
+        if self.field == Field::Battery && longest > JUMP * (high - low) {
+            row.notes.push("no figures: the charge jumps, as where it is counted from 0 again".into());
+            return;
+        }
         let strands = self.strands(tips, (low, high));
         if let Some((falling, rising)) = &strands {
             self.read_levels(row, falling, rising);
@@ -417,9 +424,10 @@ impl CycleReader<'_> {
                 strands.as_ref().is_some_and(|(falling, rising)| cross(falling, rising, (low, high)));
             self.read_area(row, &path, high - low, crosses);
         }
-        // Where the input passes its zero, the cycles of growing tests are open by their nature.
-        let should_close = self.field != Field::Structure
-            || matches!(self.division, Division::Reversals | Division::Start)
+        // The cycles of growing tests are open where the input passes its zero, and those of batteries by their resistance.
+        let should_close = !matches!(self.field, Field::Structure | Field::Battery)
+            || self.field == Field::Structure
+                && matches!(self.division, Division::Reversals | Division::Start)
                 && high - low >= WHOLE * (highest - lowest);
         if should_close && path.blanks() == 0 {
             self.note_open_loop(row, &path);
