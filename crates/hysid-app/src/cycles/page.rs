@@ -97,8 +97,9 @@ fn levels_section(cycles: &Cycles) -> Option<Part> {
     let names: Vec<&str> = LEVEL_FIGURES.iter().map(|figure| figure.name).collect();
     let words = "A level has successive cycles whose amplitudes differ by less than 5 %. Losses are from its first cycle \
                  to its last.";
-    // Levels of one cycle each are the table of cycles again.
-    let has_several = cycles.table.levels.iter().any(|level| level.cycles > 1);
+    // Levels of one cycle each are the table of cycles again, unless they have a drift.
+    let has_several =
+        cycles.table.levels.iter().any(|level| level.cycles > 1 || level.drift_percent.is_some());
     levels(cycles, &names, unit::label)
         .filter(|_| has_several)
         .map(|table| Part::section("Levels of amplitude", [Part::Table(table), Part::note(words)]))

@@ -226,6 +226,39 @@ fn nonlinearity_is_the_deviation_of_the_mean_way_from_the_best_line() {
     assert_relative_eq!(row.width_percent.unwrap(), 100.0 * 0.6 / 4.0, max_relative = 0.02);
 }
 
+/// Strain `k ∣E ± E_c∣` on the branches: minima at the coercive field, `k E_c` above them at the field 0.
+#[test]
+fn a_butterfly_has_its_coercive_field_at_the_extremes_and_other_loops_have_none() {
+    let (slope, coercive, largest) = (0.4, 0.8, 2.0);
+    let branch = |shift: f64, from: f64, to: f64| -> Vec<(f64, f64)> {
+        let corners = [from, -shift, to];
+        corners.map(|field| (field, slope * (field + shift).abs())).to_vec()
+    };
+    for sign in [1.0, -1.0] {
+        let signed = |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> {
+            points.into_iter().map(|(x, y)| (x, 7.0 + sign * y)).collect()
+        };
+        // Beyond its minimum, each branch ends where the other begins.
+        let mut down = branch(coercive, largest, -largest);
+        let mut up = branch(-coercive, -largest, largest);
+        (down[2].1, up[0].1) = (up[0].1, up[0].1);
+        up[2].1 = down[0].1;
+        let row = only(&ways(&signed(down), &signed(up), ("E [kV/mm]", "Strain [%]")), Field::Actuator);
+        assert_relative_eq!(row.butterfly_coercive_input.unwrap(), coercive, epsilon = 1e-9);
+        assert_relative_eq!(row.butterfly_remanence.unwrap(), slope * coercive, epsilon = 1e-9);
+        assert_relative_eq!(row.peak_to_peak.unwrap(), slope * (largest + coercive), epsilon = 1e-9);
+        assert_eq!(row.nonlinearity_percent, None);
+    }
+    // Without a lag the minima are at the field 0; a play has none.
+    let same = branch(0.0, largest, -largest);
+    let back = same.iter().rev().copied().collect::<Vec<_>>();
+    let play = [(2.0, 1.5), (-2.0, -1.5)];
+    for (down, up) in [(same.as_slice(), back.as_slice()), (&play[..], &[(-2.0, -1.5), (2.0, 1.5)][..])] {
+        let row = only(&ways(down, up, ("E [kV/mm]", "Strain [%]")), Field::Actuator);
+        assert_eq!((row.peak_to_peak, row.butterfly_coercive_input), (None, None));
+    }
+}
+
 /// Straight base lines and straight transitions: the tangents meet where they do.
 #[test]
 fn transitions_of_straight_lines_have_their_corners() {
