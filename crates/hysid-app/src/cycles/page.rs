@@ -145,7 +145,7 @@ fn curves_section(cycles: &Cycles) -> Option<Part> {
         parts.push(Part::chart(pictures::forc_diagram(cycles, found)));
         parts.push(Part::note(format!(
             "H_c: half the distance of input and reversal input, the coercivity of a relay; H_u: their mean, the \
-             interaction field. Both axes have the same scale. Colours are classes of the density, with their limits in the legend; the density is the mixed derivative of \
+             interaction field. Both axes have the same scale. Colours are classes of the density, with their limits beside them; the density is the mixed derivative of \
              parabolas over {} curves and as many steps of the input. Its largest magnitude is {}.",
             2 * found.smoothing_factor + 1,
             number(found.largest_density(), 3),
