@@ -72,7 +72,9 @@ pub fn forc_diagram(cycles: &Cycles, curves: &ReversalCurves) -> Chart {
     let sign = if curves.rising { 1.0 } else { -1.0 };
     let cells = cells(curves, |node| node.density.unwrap_or(f64::NAN));
     heat_map(description, [&x, &y, &value], &cells, |input, reversal| {
-        ((0.5 * sign * (input - reversal)).max(0.0), 0.5 * (input + reversal))
+        // A cell ends where the input is the reversal input, so that those of neighbouring curves stay side by side.
+        let input = if sign * (input - reversal) < 0.0 { reversal } else { input };
+        (0.5 * sign * (input - reversal), 0.5 * (input + reversal))
     })
 }
 

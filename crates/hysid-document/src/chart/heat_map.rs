@@ -53,7 +53,14 @@ impl ColourBar {
         let first = i8::from(self.levels.start() == LEVELS.start());
         let count = self.levels.clone().count() as i8;
         let low = f64::from(*self.levels.start()) - 0.5;
-        (first..=count).map(move |k| (f64::from(k), number((low + f64::from(k)) * self.step, 4)))
+        let value = move |k: i8| (low + f64::from(k)) * self.step;
+        // The smallest limit is half a step.
+        let is_long = self.step < 2e-3 || value(count).abs().max(value(0).abs()) >= 1e5;
+        let text = move |value: f64| match is_long {
+            true => format!("{:e}", format!("{value:.4e}").parse::<f64>().unwrap_or(value)).replace('-', "−"),
+            false => number(value, 4),
+        };
+        (first..=count).map(move |k| (f64::from(k), text(value(k))))
     }
 
     /// Its room to the right of the curves, in pixels.
