@@ -17,6 +17,7 @@ use hysid::Model;
 use hysid::data::record::Dataset;
 use hysid::diagnosis::cycles::{
     Correction, CycleOptions, CycleRow, CycleTable, FIGURES, Figure, LEVEL_FIGURES, corrected,
+    counted_through,
 };
 use hysid::diagnosis::model::{MagnetisationNode, ModelCycles};
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves, without_calibration_points};
@@ -62,6 +63,10 @@ impl<'a> Cycles<'a> {
         let (mut set, mut removed) = (Cow::Borrowed(data), Vec::new());
         if let Some((curves, note)) = without_calibration_points(data) {
             (set, removed) = (Cow::Owned(curves), vec![note]);
+        }
+        if let Some((joined, note)) = counted_through(&set, options.field) {
+            set = Cow::Owned(joined);
+            removed.push(note);
         }
         if !corrections.is_empty() {
             let (other, notes) = corrected(&set, corrections)?;

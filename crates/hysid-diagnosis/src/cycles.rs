@@ -6,6 +6,7 @@
 
 mod backbone;
 mod branches;
+mod charge;
 mod correction;
 mod creep;
 mod division;
@@ -34,6 +35,7 @@ mod tests;
 use std::collections::HashMap;
 
 pub use self::backbone::{BackbonePoint, Direction};
+pub use self::charge::counted_through;
 pub use self::correction::{Correction, corrected};
 pub use self::division::Division;
 pub use self::field::Field;

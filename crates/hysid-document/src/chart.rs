@@ -11,7 +11,7 @@ pub mod thin;
 
 pub use appearance::{Appearance, PIXELS_PER_MILLIMETRE, PIXELS_PER_POINT};
 pub use axis::Axis;
-pub use heat_map::{HeatCell, heat_map};
+pub use heat_map::{ColourBar, HeatCell, heat_map};
 pub use palette::style;
 pub use svg::sheet;
 use thin::Point;
@@ -98,6 +98,8 @@ pub struct Chart {
     pub shares_axis: bool,
     /// True if a unit is as long along one axis as along the other.
     pub has_equal_axes: bool,
+    /// Colours of the classes beside the curves, in the place of a legend.
+    pub bar: Option<ColourBar>,
 }
 
 /// Width and height of a chart over the width of the page, in pixels.
@@ -141,7 +143,20 @@ impl Chart {
         let (description, title) = (description.into(), String::new());
         let (labels, legend) = (Vec::new(), Vec::new());
         let (shares_axis, has_equal_axes) = (false, false);
-        Self { description, title, size: WIDE, x, y, curves, labels, legend, shares_axis, has_equal_axes }
+        let bar = None;
+        Self {
+            description,
+            title,
+            size: WIDE,
+            x,
+            y,
+            curves,
+            labels,
+            legend,
+            shares_axis,
+            has_equal_axes,
+            bar,
+        }
     }
 
     /// The chart in this size, in pixels.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use hysid::diagnosis::cycles::{CycleOptions, CycleTable};
+use hysid::diagnosis::cycles::{CycleOptions, CycleTable, counted_through};
 use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves, without_calibration_points};
 use hysid::model::Model;
@@ -35,7 +35,7 @@ pub fn level_figure_names() -> Vec<&'static str> {
 /// The cycles and first-order reversal curves of data, as JSON.
 #[pyfunction]
 #[allow(clippy::too_many_arguments, reason = "they are those of the function in Python")]
-#[pyo3(signature = (data, smallest_reversal, smoothing, division, field, smoothing_factor, smoothing_growth, density))]
+#[pyo3(signature = (data, smallest_reversal, smoothing, division, field, smoothing_factor, smoothing_growth, density, height))]
 pub fn cycles(
     py: Python<'_>,
     data: &Dataset,
@@ -46,15 +46,18 @@ pub fn cycles(
     smoothing_factor: Option<usize>,
     smoothing_growth: f64,
     density: Option<f64>,
+    height: Option<f64>,
 ) -> PyResult<String> {
-    let options = CycleOptions { smallest_reversal, smoothing, density, ..options(division, field)? };
+    let options = CycleOptions { smallest_reversal, smoothing, density, height, ..options(division, field)? };
     let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor, smoothing_growth };
     let set = Arc::clone(&data.set);
     let find = move || {
         let cleaned = without_calibration_points(&set);
         let set = cleaned.as_ref().map_or(&*set, |(set, _)| set);
+        let joined = counted_through(set, options.field);
+        let set = joined.as_ref().map_or(set, |(set, _)| set);
         let mut table = CycleTable::of(set, &options)?;
-        table.notes.splice(..0, cleaned.iter().map(|(_, note)| note.clone()));
+        table.notes.splice(..0, cleaned.iter().chain(&joined).map(|(_, note)| note.clone()));
         Ok((table, ReversalCurves::of(set, &of_curves)?))
     };
     let (table, curves) = interruptible(py, find)?;
@@ -68,9 +71,9 @@ pub fn of_model(
     division: Option<&str>,
     field: Option<&str>,
     smoothing_factor: Option<usize>,
-    density: Option<f64>,
+    (density, height): (Option<f64>, Option<f64>),
 ) -> PyResult<String> {
-    let (model, options) = (Arc::clone(model), CycleOptions { density, ..options(division, field)? });
+    let (model, options) = (Arc::clone(model), CycleOptions { density, height, ..options(division, field)? });
     let driven = interruptible(py, move || ModelCycles::of(&model, &options, smoothing_factor))?;
     told(&driven.table, driven.reversal_curves.as_ref())
 }

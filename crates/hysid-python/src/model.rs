@@ -294,7 +294,7 @@ impl Model {
     }
 
     /// Its cycles and first-order reversal curves, as JSON.
-    #[pyo3(signature = (division, field, smoothing_factor, density))]
+    #[pyo3(signature = (division, field, smoothing_factor, density, height))]
     fn cycles(
         &self,
         py: Python<'_>,
@@ -302,8 +302,9 @@ impl Model {
         field: Option<&str>,
         smoothing_factor: Option<usize>,
         density: Option<f64>,
+        height: Option<f64>,
     ) -> PyResult<String> {
-        crate::cycles::of_model(py, &self.model, division, field, smoothing_factor, density)
+        crate::cycles::of_model(py, &self.model, division, field, smoothing_factor, (density, height))
     }
 
     /// Runs it sample by sample, from its initial state or a state that was found.

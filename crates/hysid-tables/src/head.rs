@@ -93,7 +93,11 @@ impl Head {
         if let [name] = self.header.as_slice() {
             let line = *self.layout.header_lines.first().unwrap_or(&self.layout.line);
             let advice = match self.stored.starts_with("text") {
-                true => Words::from("what separates the columns? name it with ") + Hint::Option("delimiter"),
+                true => {
+                    Words::from("what separates the columns? name it with ")
+                        + Hint::Option("delimiter")
+                        + "; input and output in two files? hysid look FILE FILE --join -o both.csv joins them"
+                }
                 false => Words::from("choose what has more columns with ") + Hint::Option("sheet"),
             };
             let words = Words::from(format!("there is only one column, \"{}\"", clipped(name)));

@@ -9,7 +9,7 @@ use hysid_document::{Problem, Result};
 
 use crate::container::{TextSheet, is_lying, push_words};
 use crate::layout::{CellKind, Layout, LineCell, first_line, is_comment, is_name, is_record, split};
-use crate::number::{is_missing, parsed};
+use crate::number::{DecimalSign, is_missing, parsed};
 use crate::reading::{Delimiter, Reading};
 use branches::LoopBranches;
 
@@ -375,15 +375,25 @@ impl<'t> TablePart<'t> {
             };
             self.rows.iter().map(row).filter(|(_, [_, output])| !is_missing(output)).collect()
         };
-        let inputs = |rows: &[(u64, [String; 2])]| -> Option<Vec<f64>> {
-            let input =
-                |(_, [input, _]): &(u64, [String; 2])| parsed(input, self.layout.numbers.decimal).ok();
-            rows.iter().map(|row| Some(input(row)?.0)).collect()
+        let decimal = self.layout.numbers.decimal;
+        let numbers = |rows: &[(u64, [String; 2])], place: usize| -> Option<Vec<f64>> {
+            rows.iter()
+                .map(|(_, cells)| parsed(&cells[place], decimal).ok().map(|(number, _)| number))
+                .collect()
         };
         let (mut rows, mut returning) = (branch(branches.out), branch(branches.back));
-        let (out, back) = (inputs(&rows)?, inputs(&returning)?);
+        let [out, back] = [numbers(&rows, 0)?, numbers(&returning, 0)?];
         if LoopBranches::is_turned(&out, &back)? {
-            returning.reverse();
+            if LoopBranches::is_counted(&numbers(&rows, 1)?, &numbers(&returning, 1)?) {
+                for ((_, [input, _]), counted) in returning.iter_mut().zip(&back) {
+                    *input = (out[out.len() - 1] + back[0] - counted).to_string();
+                    if decimal == Some(DecimalSign::Comma) {
+                        *input = input.replace('.', ",");
+                    }
+                }
+            } else {
+                returning.reverse();
+            }
         }
         rows.append(&mut returning);
         let mut layout = self.layout.clone();

@@ -97,8 +97,9 @@ fn levels_section(cycles: &Cycles) -> Option<Part> {
     let names: Vec<&str> = LEVEL_FIGURES.iter().map(|figure| figure.name).collect();
     let words = "A level has successive cycles whose amplitudes differ by less than 5 %. Losses are from its first cycle \
                  to its last.";
-    // Levels of one cycle each are the table of cycles again.
-    let has_several = cycles.table.levels.iter().any(|level| level.cycles > 1);
+    // Levels of one cycle each are the table of cycles again, unless they have a drift.
+    let has_several =
+        cycles.table.levels.iter().any(|level| level.cycles > 1 || level.drift_percent.is_some());
     levels(cycles, &names, unit::label)
         .filter(|_| has_several)
         .map(|table| Part::section("Levels of amplitude", [Part::Table(table), Part::note(words)]))
@@ -144,7 +145,7 @@ fn curves_section(cycles: &Cycles) -> Option<Part> {
         parts.push(Part::chart(pictures::forc_diagram(cycles, found)));
         parts.push(Part::note(format!(
             "H_c: half the distance of input and reversal input, the coercivity of a relay; H_u: their mean, the \
-             interaction field. Both axes have the same scale. Colours are classes of the density, with their limits in the legend; the density is the mixed derivative of \
+             interaction field. Both axes have the same scale. Colours are classes of the density, with their limits beside them; the density is the mixed derivative of \
              parabolas over {} curves and as many steps of the input. Its largest magnitude is {}.",
             2 * found.smoothing_factor + 1,
             number(found.largest_density(), 3),

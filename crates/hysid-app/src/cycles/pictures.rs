@@ -71,8 +71,10 @@ pub fn forc_diagram(cycles: &Cycles, curves: &ReversalCurves) -> Chart {
     );
     let sign = if curves.rising { 1.0 } else { -1.0 };
     let cells = cells(curves, |node| node.density.unwrap_or(f64::NAN));
-    heat_map(description, &x, &y, &cells, |input, reversal| {
-        ((0.5 * sign * (input - reversal)).max(0.0), 0.5 * (input + reversal))
+    heat_map(description, [&x, &y, &value], &cells, |input, reversal| {
+        // A cell ends where the input is the reversal input, so that those of neighbouring curves stay side by side.
+        let input = if sign * (input - reversal) < 0.0 { reversal } else { input };
+        (0.5 * sign * (input - reversal), 0.5 * (input + reversal))
     })
 }
 
@@ -84,7 +86,9 @@ pub fn everett(cycles: &Cycles, curves: &ReversalCurves) -> Chart {
     let largest = curves.nodes.iter().map(|node| node.everett).fold(0.0, f64::max);
     let description =
         format!("{value} over {x} and {y}; largest value {}", hysid_document::number(largest, 3));
-    heat_map(description, &x, &y, &cells(curves, |node| node.everett), |input, reversal| (input, reversal))
+    heat_map(description, [&x, &y, &value], &cells(curves, |node| node.everett), |input, reversal| {
+        (input, reversal)
+    })
 }
 
 /// A cell around each node, half a step to each side and half way to the neighbouring curves, and never beyond the

@@ -42,9 +42,17 @@ fn main_figures(field: Field) -> &'static [&'static str] {
             "power",
             "squareness",
         ],
-        Field::Actuator => {
-            &["amplitude", "width", "width_percent", "nonlinearity_percent", "creep", "creep_per_decade"]
-        }
+        Field::Actuator => &[
+            "amplitude",
+            "peak_to_peak",
+            "butterfly_remanence",
+            "butterfly_coercive_input",
+            "width",
+            "width_percent",
+            "nonlinearity_percent",
+            "creep",
+            "creep_per_decade",
+        ],
         Field::Thermal => {
             &["heating_start", "heating_finish", "cooling_start", "cooling_finish", "thermal_width", "width"]
         }
@@ -110,6 +118,7 @@ fn main_table(cycles: &Cycles) -> Table {
 fn levels(cycles: &Cycles) -> Option<String> {
     let names = [
         "amplitude",
+        "drift_percent",
         "output_first",
         "strength_loss_percent",
         "energy_first",

@@ -4,6 +4,8 @@ use std::str::FromStr;
 
 use hysid::data::unit;
 
+use crate::quantities::number_and_unit;
+
 /// Units of mass that name other things in the columns of a table, and their factors to kg.
 const FURTHER_UNITS: [(&str, f64); 3] = [("t", 1e3), ("lb", 0.453_592_37), ("lbs", 0.453_592_37)];
 
@@ -22,14 +24,8 @@ impl FromStr for Mass {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let text = text.trim();
-        let is_of_number = |c: char| c.is_ascii_digit() || "+-.eE".contains(c);
-        // The number is the longest beginning that is one: `2e3 kg`, and not the `e` of a unit.
-        let places = (1..=text.len()).rev().filter(|&end| text.is_char_boundary(end));
-        let number =
-            |end: usize| text[..end].chars().all(is_of_number).then(|| text[..end].parse::<f64>().ok())?;
-        let found = places.into_iter().find_map(|end| Some((number(end)?, text[end..].trim())));
-        let (number, unit) = found.ok_or("a number is needed, such as 2, or with a unit, such as \"2 t\"")?;
+        let (number, unit) =
+            number_and_unit(text).ok_or("a number is needed, such as 2, or with a unit, such as \"2 t\"")?;
         if !(number > 0.0 && number.is_finite()) {
             return Err("a mass above 0 is needed".into());
         }

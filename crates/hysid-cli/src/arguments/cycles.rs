@@ -4,8 +4,12 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{ArgAction, Args};
+use hysid::data::unit;
 use hysid::diagnosis::cycles::{Correction, CycleOptions, Division, Field};
 use hysid::diagnosis::reversal_curves::{SMOOTHING_FACTORS, SMOOTHING_GROWTHS};
+use hysid_app::quantities::number_and_unit;
+use hysid_document::Problem;
+use hysid_document::visible::clipped;
 
 use super::{ColumnOptions, Overwriting, RUN, fraction, number_within};
 
@@ -62,6 +66,9 @@ pub struct Cycles {
     /// Mass density in kg/m3, for losses per kg
     #[arg(long, value_name = "NUMBER", value_parser = positive, help_heading = "Method")]
     pub density: Option<f64>,
+    /// Height of a structure, for drift ratios: 2.4m, or a number in the unit of the input
+    #[arg(long, value_name = "HEIGHT", value_parser = height, help_heading = "Method")]
+    pub height: Option<(f64, String)>,
     /// Ignore reversals of the input below this share of its range [default: the noise of the input decides]
     #[arg(long, value_name = "FRACTION", value_parser = fraction, help_heading = "Method", hide_short_help = true)]
     pub smallest_reversal: Option<f64>,
@@ -86,15 +93,24 @@ pub struct Cycles {
 }
 
 impl Cycles {
-    /// Options of the library.
-    pub fn options(&self) -> CycleOptions {
-        CycleOptions {
+    /// Options of the library, for data or a model with this input.
+    pub fn options(&self, input: &str) -> Result<CycleOptions, Problem> {
+        let in_unit_of_input = |(height, unit): &(f64, String)| {
+            let own = unit::of_column(input);
+            let factor =
+                if unit.is_empty() { Some(1.0) } else { own.and_then(|own| unit::factor(unit, &own)) };
+            let words =
+                || format!("\"{unit}\" cannot be converted to the unit of the input \"{}\"", clipped(input));
+            factor.map(|factor| factor * height).ok_or_else(|| Problem::option("height", words()))
+        };
+        Ok(CycleOptions {
             smallest_reversal: self.smallest_reversal,
             smoothing: self.smoothing,
             division: self.divide,
             field: self.field,
             density: self.density,
-        }
+            height: self.height.as_ref().map(in_unit_of_input).transpose()?,
+        })
     }
 
     /// Corrections of the outputs before the division into cycles.
@@ -111,6 +127,12 @@ pub(super) fn named<T: FromStr<Err = hysid::Error>>(name: &str) -> Result<T, Str
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
     number.ok_or_else(|| "a number above 0 is needed".into())
+}
+
+fn height(text: &str) -> Result<(f64, String), String> {
+    let found = number_and_unit(text).filter(|(number, _)| *number > 0.0 && number.is_finite());
+    let (number, unit) = found.ok_or("a number above 0 is needed, with or without a unit, such as 2.4m")?;
+    Ok((number, unit.to_string()))
 }
 
 fn growth(text: &str) -> Result<f64, String> {

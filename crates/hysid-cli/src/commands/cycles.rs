@@ -23,7 +23,7 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
     let contents: Vec<Vec<u8>> =
         arguments.files.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
     check_outputs(outputs.table.iter().chain(&outputs.page), &arguments.files)?;
-    let (options, factor) = (arguments.options(), arguments.smoothing_factor);
+    let factor = arguments.smoothing_factor;
     match Given::of(&arguments.files, contents, &arguments.columns.reading, "give it")? {
         Given::Model(content) => {
             let path = &arguments.files[0];
@@ -31,6 +31,7 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
             for option in useless_for_models(arguments) {
                 warning(format_args!("the cycles of a model ignore {option}"));
             }
+            let options = arguments.options(&model.names().inputs[0])?;
             let cycles = Cycles::of_model(path, &model, &options, factor)?;
             note_labelled(&cycles.understood);
             tell(arguments, &outputs, &cycles)
@@ -44,6 +45,7 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
             if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
                 warning("cycles ignores --rate: it needs no rate");
             }
+            let options = arguments.options(&data.set.names().inputs[0])?;
             let told = (data.source.tables[0].file.as_str(), understood);
             let smoothing = (factor, arguments.smoothing_growth);
             let cycles = Cycles::of_data(&data.set, &options, &arguments.corrections(), smoothing, told)

@@ -55,7 +55,7 @@ fn headers() {
             ("output alone", b"t,y\n0,1\n".into()),
         ],
         r#"
-        wrong delimiter => , line 1: there is only one column, "t:x:y" (what separates the columns? name it with --delimiter)
+        wrong delimiter => , line 1: there is only one column, "t:x:y" (what separates the columns? name it with --delimiter; input and output in two files? hysid look FILE FILE --join -o both.csv joins them)
         output alone => : no column is left for the input besides output "y" (columns: t, y; input and output in two files? hysid look FILE FILE --join -o both.csv joins them)
     "#,
     );

@@ -24,6 +24,15 @@ const TANGENT: f64 = 0.02;
 /// A transition is steeper than its base lines by this factor.
 const STEEP: f64 = 3.0;
 
+/// Least share of the swing by which the extreme of a branch of a butterfly lies behind the input 0.
+const LAG: f64 = 0.01;
+
+/// Least share of the height of a butterfly by which both ends of a branch are away from its extreme.
+const DEEP: f64 = 0.2;
+
+/// Largest share of the swing over which an extreme is flat within the noise.
+const FLAT: f64 = 0.05;
+
 /// Shares of the input from which the index of a storm is read: each twentieth between them.
 const SECTIONS: std::ops::RangeInclusive<u32> = 1..=19;
 
@@ -50,6 +59,28 @@ pub(super) fn nonlinearity_percent(falling: &Strand, rising: &Strand, ends: (f64
     }
     let percent = 100.0 * off(0.5 * (low + high)) / height;
     percent.is_finite().then_some(if percent < ROUNDING { 0.0 } else { percent })
+}
+
+/// Reads the figures of a butterfly, whose branches have their lowest outputs (or their highest) inside, behind the input 0.
+pub(super) fn read_butterfly(row: &mut CycleRow, falling: &Strand, rising: &Strand, (low, high): (f64, f64)) {
+    let (least, swing) = (LAG * (high - low), high - low);
+    let wings = [1.0, -1.0].into_iter().find_map(|sign| {
+        let (down, up) = (falling.deepest(sign)?, rising.deepest(sign)?);
+        let height = down.height.max(up.height);
+        let is_deep = [&down, &up].iter().all(|wing| wing.depth >= DEEP * height);
+        (is_deep && down.x < -least && up.x > least).then_some((sign, down, up, height))
+    });
+    let Some((sign, down, up, height)) = wings else { return };
+    let remanence = |strand: &Strand, own: f64| strand.output_at(0.0, 0.0).map(|output| sign * output - own);
+    let remanences = remanence(falling, down.lowest).zip(remanence(rising, up.lowest));
+    row.nonlinearity_percent = None;
+    row.peak_to_peak = Some(height);
+    row.butterfly_remanence = remanences.map(|(down, up)| 0.5 * (down + up));
+    if down.flat.max(up.flat) <= FLAT * swing {
+        row.butterfly_coercive_input = Some(0.5 * (up.x - down.x));
+    } else {
+        row.notes.push("no coercive field: the extremes of the branches are flat within the noise".into());
+    }
 }
 
 /// Reads the temperatures at which the transitions on both ways start and finish, and the width between their middles.

@@ -116,6 +116,9 @@ figures! {
     width_percent, "width", Percent, &[Actuator, Thermal, Battery];
     width_at_input, "widest at", Input, &[Actuator, Thermal, Battery];
     nonlinearity_percent, "non-linearity", Percent, &[Actuator];
+    peak_to_peak, "peak to peak", Output, &[Actuator];
+    butterfly_remanence, "at remanence", Output, &[Actuator];
+    butterfly_coercive_input, "coercive field", Input, &[Actuator];
     heating_start, "heating, start", Input, &[Thermal];
     heating_finish, "heating, finish", Input, &[Thermal];
     cooling_start, "cooling, start", Input, &[Thermal];
@@ -133,6 +136,7 @@ figures! {
 figures! {
     LEVEL_FIGURES of LevelRow:
     amplitude, "amplitude", Input, &[Structure];
+    drift_percent, "drift", Percent, &[Structure];
     output_first, "output, first", Output, &[Structure];
     strength_loss_percent, "strength loss", Percent, &[Structure];
     strength_percent, "of peak", Percent, &[Structure];

@@ -18,6 +18,8 @@ pub struct LevelRow {
     pub cycles: usize,
     /// Amplitude of its first cycle.
     pub amplitude: Option<f64>,
+    /// Amplitude of its first cycle in percent of the height of the structure.
+    pub drift_percent: Option<f64>,
     /// Output of its first cycle.
     pub output_first: Option<f64>,
     /// Loss of output from its first to its last cycle, in percent of the first.
@@ -44,8 +46,8 @@ pub struct LevelRow {
     pub cumulative_ductility: Option<f64>,
 }
 
-/// The levels of the rows of one record. `yielding` is the yield input of its mean backbone.
-pub(super) fn levels(rows: &[CycleRow], yielding: Option<f64>) -> Vec<LevelRow> {
+/// The levels of the rows of one record. `yielding` is the yield input of its mean backbone; `height` that of the structure.
+pub(super) fn levels(rows: &[CycleRow], yielding: Option<f64>, height: Option<f64>) -> Vec<LevelRow> {
     let complete: Vec<&CycleRow> = rows.iter().filter(|row| row.complete).collect();
     let is_same = |a: &&CycleRow, b: &&CycleRow| {
         a.amplitude.zip(b.amplitude).is_some_and(|(a, b)| (a - b).abs() <= ALIKE * a.max(b))
@@ -68,6 +70,7 @@ pub(super) fn levels(rows: &[CycleRow], yielding: Option<f64>) -> Vec<LevelRow> 
             level: number + 1,
             cycles: group.len(),
             amplitude: first.amplitude,
+            drift_percent: first.amplitude.zip(height).and_then(|(own, height)| percent(own, height)),
             output_first: own,
             strength_loss_percent: loss(group, own, output(last)),
             strength_percent: own.and_then(|own| percent(own, strongest)),

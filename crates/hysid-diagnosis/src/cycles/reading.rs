@@ -1,9 +1,15 @@
 //! Figures read from the branches of a loop: where they pass a level, how far they are apart, the slope of a secant.
 
-use hysid_core::elementary::hypot;
+use std::f64::consts::PI;
+
+use hysid_core::elementary::{hypot, square};
 
 use super::CLOSED;
 use crate::branch::Branch;
+use crate::smoothing::{BranchRow, Parabola};
+
+/// Fewest rows of a parabola at an end of a branch.
+const FEWEST_AT_AN_END: usize = 8;
 
 /// Input at which a branch first passes a level of the output, in the order of time.
 pub(super) fn crossing(branch: &Branch, level: f64) -> Option<f64> {
@@ -57,4 +63,32 @@ pub(super) fn widest(one: &Branch, other: &Branch, (low, high): (f64, f64)) -> O
         Some(Widest { apart: (p.y - q.y).abs(), x, deviation: hypot(p.deviation, q.deviation) })
     };
     inputs.filter_map(apart).max_by(|a, b| a.apart.total_cmp(&b.apart))
+}
+
+/// The input at an end of a branch, of the parabola through its last or its first quarter; `None` for a few rows.
+pub(super) fn end_without_noise(x: &[f64], branch: &Branch, is_last: bool) -> Option<f64> {
+    let count = branch.rows.len() / 4;
+    if count < FEWEST_AT_AN_END {
+        return None;
+    }
+    let rows = match is_last {
+        true => branch.rows.end - count..branch.rows.end,
+        false => branch.rows.start..branch.rows.start + count,
+    };
+    let end = if is_last { rows.end - 1 } else { rows.start } as f64;
+    let places: Vec<BranchRow> =
+        rows.map(|row| BranchRow { station: row as f64, x: x[row], y: x[row] }).collect();
+    let parabola = Parabola::over(&places, end);
+    Some(places.iter().map(|place| parabola.weight(place) * place.x).sum())
+}
+
+/// Equivalent viscous damping ratio: that of the viscous damper which loses as much energy in a cycle of the same amplitude
+/// at resonance; `None` if the energy or the stiffness is not positive.
+///
+/// ```text
+/// ζ = E_D / (4π E_S),    E_S = ½ K a²,    a half the swing                (Jacobsen 1930; ASCE/SEI 7-16, eq. 17.8-2)
+/// ```
+pub(super) fn damping(energy: f64, stiffness: f64, swing: f64) -> Option<f64> {
+    let stored = 0.5 * stiffness * square(0.5 * swing);
+    (stored > 0.0 && energy >= 0.0).then(|| energy / (4.0 * PI * stored))
 }

@@ -88,6 +88,12 @@ pub struct CycleRow {
     pub width_at_input: Option<f64>,
     /// Largest deviation of the mean of both branches from the best straight line, in percent of the range of the output.
     pub nonlinearity_percent: Option<f64>,
+    /// Range of the output of a butterfly loop.
+    pub peak_to_peak: Option<f64>,
+    /// Mean distance of the outputs of both branches at the input 0 from their extremes inside, of a butterfly loop.
+    pub butterfly_remanence: Option<f64>,
+    /// Half the distance along the input of these extremes.
+    pub butterfly_coercive_input: Option<f64>,
     /// Input at which the transition of the rising branch starts, by tangents.
     pub heating_start: Option<f64>,
     /// Input at which it is finished.

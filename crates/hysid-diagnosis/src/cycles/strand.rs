@@ -17,6 +17,20 @@ pub(super) struct Strand {
     points: Vec<StrandPoint>,
 }
 
+/// The lowest output of a way, of outputs times a sign.
+#[derive(Debug)]
+pub(super) struct Extreme {
+    /// Its input.
+    pub x: f64,
+    pub lowest: f64,
+    /// Distance of the lower end of the way from it.
+    pub depth: f64,
+    /// Distance of the highest output from it.
+    pub height: f64,
+    /// Range of the inputs whose outputs do not differ from it by more than noise.
+    pub flat: f64,
+}
+
 #[derive(Debug, Clone, Copy)]
 struct StrandPoint {
     x: f64,
@@ -77,6 +91,24 @@ impl Strand {
         let ends_there = self.points.last().is_some_and(|point| point.y == level);
         found.extend(between.last().filter(|_| ends_there && found.is_empty()));
         found
+    }
+
+    /// The lowest output, or with the sign -1 the highest.
+    pub fn deepest(&self, sign: f64) -> Option<Extreme> {
+        let outputs = || self.points.iter().map(|point| sign * point.y);
+        let deepest = self.points.iter().min_by(|a, b| (sign * a.y).total_cmp(&(sign * b.y)))?;
+        let lowest = sign * deepest.y;
+        let (first, last) = (outputs().next()?, outputs().next_back()?);
+        let near = self.points.iter().filter(|point| sign * point.y <= lowest + CLEAR * point.deviation);
+        let (left, right) =
+            near.fold((deepest.x, deepest.x), |(left, right), point| (left.min(point.x), right.max(point.x)));
+        Some(Extreme {
+            x: deepest.x,
+            lowest,
+            depth: first.min(last) - lowest,
+            height: outputs().fold(lowest, f64::max) - lowest,
+            flat: right - left,
+        })
     }
 
     /// The output at an input: in the middle of all passings of it. Beyond the ends by `reach` at most.

@@ -1,9 +1,8 @@
 //! The table of cycles of a data set.
 
-use std::f64::consts::{PI, SQRT_2};
+use std::f64::consts::SQRT_2;
 
 use hysid_core::data::record::{Dataset, Record};
-use hysid_core::elementary::square;
 use hysid_core::error::{Error, Result};
 use hysid_core::significant::Significant;
 use serde::Serialize;
@@ -24,13 +23,12 @@ use super::losses::{LossAtFrequency, losses};
 use super::notes::notes;
 use super::path::{Closure, CyclePath, area, at, range, weights, width};
 use super::quantities::Quantities;
-use super::reading::{Widest, output_at_end, secant, widest};
+use super::reading::{Widest, damping, end_without_noise, output_at_end, secant, widest};
 use super::record_figure::RecordFigure;
 use super::row::{CycleRow, OPEN_LOOP};
 use super::saturation;
 use super::strand::{Strand, cross};
 use crate::branch::{Branch, BranchSet, JITTERS, ReversalRule};
-use crate::smoothing::{BranchRow, Parabola};
 use crate::{DiagnosisOptions, FEWEST_ROWS};
 
 /// A loop over less than this share of a cycle's swing is smaller than the cycle: either that is said, or there is none.
@@ -42,11 +40,11 @@ const WHOLE: f64 = 0.98;
 /// Rows further apart than this share of a swing do not show what the output does between them.
 const FAR_APART: f64 = 0.1;
 
+/// A step of a charge over this share of its swing is no measurement of what lies between.
+const JUMP: f64 = 0.5;
+
 /// Share of a swing that is rounding.
 const ROUNDING: f64 = 1e-12;
-
-/// Fewest rows of a parabola at an end of a branch.
-const FEWEST_AT_AN_END: usize = 8;
 
 /// Deviations of the noise between the extremes of a turning point and of the rows beside it.
 const FAR_IN_NOISE: f64 = 6.0;
@@ -88,11 +86,20 @@ pub struct CycleOptions {
     pub field: Option<Field>,
     /// Mass density in kg/m³, for losses per mass.
     pub density: Option<f64>,
+    /// Height of a structure in the unit of the input, for the drift ratios of its levels.
+    pub height: Option<f64>,
 }
 
 impl Default for CycleOptions {
     fn default() -> Self {
-        Self { smallest_reversal: None, smoothing: true, division: None, field: None, density: None }
+        Self {
+            smallest_reversal: None,
+            smoothing: true,
+            division: None,
+            field: None,
+            density: None,
+            height: None,
+        }
     }
 }
 
@@ -155,7 +162,7 @@ impl CycleTable {
     ///
     /// # Errors
     /// Data without loops: a constant input or output, hardly any rows. A density for data whose loops are no energy per
-    /// volume.
+    /// volume, or a height for data of no structure.
     pub fn of(data: &Dataset, options: &CycleOptions) -> Result<Self> {
         data.check_identifiable(FEWEST_ROWS)?;
         let unit = Quantities::of(data.names()).other_than_energy_per_volume();
@@ -167,6 +174,11 @@ impl CycleTable {
         }
         let survey = options.survey(data);
         let field = options.field.unwrap_or_else(|| Field::of(data.names()));
+        if options.height.is_some() && field != Field::Structure {
+            return Err(Error::Parts(format!(
+                "a height gives the drift of structures, and the field is {field}"
+            )));
+        }
         let division = options.division.unwrap_or_else(|| choose(&survey, field));
         let (mut cycles, mut points) = (Vec::new(), Vec::new());
         let (mut levels, mut figures) = (Vec::new(), Vec::new());
@@ -177,7 +189,7 @@ impl CycleTable {
             let rows = rows_of(&survey, number, (field, division), &backbone);
             if field == Field::Structure {
                 let own = elastic_plastic::figures(record.name(), &backbone, level);
-                levels.extend(levels::levels(&rows, elastic_plastic::mean_yield_input(&own)));
+                levels.extend(levels::levels(&rows, elastic_plastic::mean_yield_input(&own), options.height));
                 figures.extend(own);
             }
             if field == Field::Magnet && rows.iter().any(|row| row.complete) {
@@ -365,12 +377,17 @@ impl CycleReader<'_> {
                 "rows are up to {percent:.0} % of the swing apart: what lies between is interpolated"
             ));
         }
+        if self.field == Field::Battery && longest > JUMP * (high - low) {
+            row.notes.push("no figures: the charge jumps, as where it is counted from 0 again".into());
+            return;
+        }
         let strands = self.strands(tips, (low, high));
         if let Some((falling, rising)) = &strands {
             self.read_levels(row, falling, rising);
             match self.field {
                 Field::Actuator | Field::General => {
                     row.nonlinearity_percent = branches::nonlinearity_percent(falling, rising, (low, high));
+                    branches::read_butterfly(row, falling, rising, (low, high));
                 }
                 Field::Thermal => branches::read_transitions(row, falling, rising, (low, high)),
                 Field::Hydrology => {
@@ -417,9 +434,10 @@ impl CycleReader<'_> {
                 strands.as_ref().is_some_and(|(falling, rising)| cross(falling, rising, (low, high)));
             self.read_area(row, &path, high - low, crosses);
         }
-        // Where the input passes its zero, the cycles of growing tests are open by their nature.
-        let should_close = self.field != Field::Structure
-            || matches!(self.division, Division::Reversals | Division::Start)
+        // The cycles of growing tests are open where the input passes its zero, and those of batteries by their resistance.
+        let should_close = !matches!(self.field, Field::Structure | Field::Battery)
+            || self.field == Field::Structure
+                && matches!(self.division, Division::Reversals | Division::Start)
                 && high - low >= WHOLE * (highest - lowest);
         if should_close && path.blanks() == 0 {
             self.note_open_loop(row, &path);
@@ -727,23 +745,6 @@ impl CycleReader<'_> {
     }
 }
 
-/// The input at an end of a branch, of the parabola through its last or its first quarter; `None` for a few rows.
-fn end_without_noise(x: &[f64], branch: &Branch, is_last: bool) -> Option<f64> {
-    let count = branch.rows.len() / 4;
-    if count < FEWEST_AT_AN_END {
-        return None;
-    }
-    let rows = match is_last {
-        true => branch.rows.end - count..branch.rows.end,
-        false => branch.rows.start..branch.rows.start + count,
-    };
-    let end = if is_last { rows.end - 1 } else { rows.start } as f64;
-    let places: Vec<BranchRow> =
-        rows.map(|row| BranchRow { station: row as f64, x: x[row], y: x[row] }).collect();
-    let parabola = Parabola::over(&places, end);
-    Some(places.iter().map(|place| parabola.weight(place) * place.x).sum())
-}
-
 /// Which branch does not pass a level.
 fn missed(after_peak: bool, after_valley: bool) -> Option<&'static str> {
     match (after_peak, after_valley) {
@@ -779,15 +780,4 @@ impl Tips {
             *side = Some(tip);
         }
     }
-}
-
-/// Equivalent viscous damping ratio: that of the viscous damper which loses as much energy in a cycle of the same amplitude
-/// at resonance; `None` if the energy or the stiffness is not positive.
-///
-/// ```text
-/// ζ = E_D / (4π E_S),    E_S = ½ K a²,    a half the swing                (Jacobsen 1930; ASCE/SEI 7-16, eq. 17.8-2)
-/// ```
-fn damping(energy: f64, stiffness: f64, swing: f64) -> Option<f64> {
-    let stored = 0.5 * stiffness * square(0.5 * swing);
-    (stored > 0.0 && energy >= 0.0).then(|| energy / (4.0 * PI * stored))
 }

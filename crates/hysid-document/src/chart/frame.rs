@@ -150,7 +150,7 @@ impl ChartLayout<'_> {
         self.draw_header(&top, EDGE + left, &legend)?;
         let mut context = ChartBuilder::on(&body)
             .margin_left(fine(EDGE))
-            .margin_right(fine(RIGHT))
+            .margin_right(fine(RIGHT + chart.bar.as_ref().map_or(0.0, |bar| bar.room(appearance))))
             .x_label_area_size(fine(bottom))
             .y_label_area_size(fine(left))
             .build_cartesian_2d(x.clone(), y.clone())?;
@@ -235,13 +235,13 @@ const AFTER_NAME: f64 = 1.08;
 /// Room to the left of a title, in sizes of the text.
 const BEFORE_TITLE: f64 = 9.0;
 
-/// Entries of the legend whose colour is drawn, in as many lines as they need. The first line is empty where the title needs
-/// it.
+/// Entries of the legend whose colour is drawn and not beside the curves, in as many lines as they need. The first line is empty
+/// where the title needs it.
 pub(super) fn legend_lines<'c>(chart: &'c Chart, appearance: &Appearance) -> Vec<Vec<&'c (Colour, String)>> {
     let is_used =
         |colour| chart.curves.iter().any(|curve| curve.colour == colour && !curve.points.is_empty());
     let mut lines: Vec<Vec<&(Colour, String)>> = Vec::new();
-    for entry in chart.legend.iter().filter(|(colour, _)| is_used(*colour)) {
+    for entry in chart.legend.iter().filter(|(colour, _)| chart.bar.is_none() && is_used(*colour)) {
         let room = chart.size.0 - LEGEND_EDGE - entry_width(&entry.1, appearance);
         match lines.last_mut() {
             Some(line) if width_of(line, appearance) <= room => line.push(entry),

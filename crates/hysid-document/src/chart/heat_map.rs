@@ -1,13 +1,20 @@
 //! Heat maps: values over two axes, as areas in the colours of classes of values.
 //!
-//! The classes have round limits, which the legend names, so that the values can be read without the colours. The class
+//! The classes have round limits, which the colour bar shows, so that the values can be read without the colours. The class
 //! around 0 is next to the page's colour; positive values get darker on a light page and lighter on a dark one, and
 //! negative values have another hue.
 
+use std::fmt::Write;
+use std::ops::RangeInclusive;
+
 use hysid_core::elementary::{log10, powf};
 
+use super::appearance::Appearance;
+use super::frame::FINE;
+use super::palette::{INK, written};
 use super::thin::Point;
 use super::{Chart, Colour, Curve, LEVELS};
+use crate::escape::escape;
 use crate::number::number;
 
 /// Width and height of a heat map, in pixels.
@@ -24,20 +31,92 @@ pub struct HeatCell {
     pub value: f64,
 }
 
+/// Distance of a colour bar from the curves, its width, and the length of its ticks with a gap, in sizes of the text.
+const BAR: [f64; 3] = [1.2, 1.2, 0.6];
+
+/// Height of the label beside a colour bar, in sizes of the text.
+const LABEL: f64 = 1.6;
+
+/// A strip with the colours of all classes from the lowest to the highest that is used, and ticks at their limits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColourBar {
+    /// Quantity with its unit.
+    pub label: String,
+    levels: RangeInclusive<i8>,
+    step: f64,
+}
+
+impl ColourBar {
+    /// Limits of the classes as text, the lowest first, each with its distance from the lower end in classes.
+    fn ticks(&self) -> impl Iterator<Item = (f64, String)> {
+        // What lies below the lowest class of all has its colour too.
+        let first = i8::from(self.levels.start() == LEVELS.start());
+        let count = self.levels.clone().count() as i8;
+        let low = f64::from(*self.levels.start()) - 0.5;
+        let value = move |k: i8| (low + f64::from(k)) * self.step;
+        // The smallest limit is half a step.
+        let is_long = self.step < 2e-3 || value(count).abs().max(value(0).abs()) >= 1e5;
+        let text = move |value: f64| match is_long {
+            true => format!("{:e}", format!("{value:.4e}").parse::<f64>().unwrap_or(value)).replace('-', "−"),
+            false => number(value, 4),
+        };
+        (first..=count).map(move |k| (f64::from(k), text(value(k))))
+    }
+
+    /// Its room to the right of the curves, in pixels.
+    pub(super) fn room(&self, appearance: &Appearance) -> f64 {
+        let letters = self.ticks().map(|(_, text)| text.chars().count()).max().unwrap_or(0);
+        appearance.em(BAR.iter().sum::<f64>() + LABEL) + appearance.letter() * letters as f64
+    }
+
+    /// The strip as markup, beside a place of curves in units of the drawing.
+    pub(super) fn drawn(&self, [left, top, width, height]: [f64; 4], appearance: &Appearance) -> String {
+        let em = |times: f64| FINE * appearance.em(times);
+        let (x, ink) = (left + width + em(BAR[0]), written(INK));
+        let (right, size) = (x + em(BAR[1]), FINE * appearance.text);
+        let y = |place: f64| top + height * (1.0 - place / self.levels.clone().count() as f64);
+        let font =
+            format!("font-family=\"{}\" font-size=\"{size}\" fill=\"{ink}\"", escape(&appearance.family));
+        let mut text = String::from("<g class=\"bar\">\n");
+        for (k, level) in self.levels.clone().enumerate() {
+            let (low, high) = (y(k as f64), y(k as f64 + 1.0));
+            let fill = written(Colour::Level(level).marker());
+            write!(text, "<polygon fill=\"{fill}\" points=\"{x:.1},{low:.1} {right:.1},{low:.1} {right:.1},{high:.1} {x:.1},{high:.1}\"/>\n")
+                .expect("a string takes all");
+        }
+        for (place, words) in self.ticks() {
+            let (y, end) = (y(place), right + em(0.3));
+            write!(
+                text,
+                "<polyline fill=\"none\" stroke=\"{ink}\" stroke-width=\"4\" points=\"{right:.1},{y:.1} {end:.1},{y:.1}\"/>\n\
+                 <text x=\"{:.1}\" y=\"{:.1}\" {font}>{words}</text>\n",
+                right + em(BAR[2]),
+                y + em(0.36),
+            )
+            .expect("a string takes all");
+        }
+        let (x, middle) = (left + width + FINE * self.room(appearance), top + 0.5 * height);
+        text + &format!(
+            "<text x=\"{x:.1}\" y=\"{middle:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 {x:.1} {middle:.1})\" {font}>\
+             {}</text>\n</g>\n",
+            escape(&self.label)
+        )
+    }
+}
+
 /// A heat map of cells, which are in rows along the first coordinate. `place` gives the point of the chart at two coordinates.
-/// Cells without a finite value are left out; both axes have the same scale. `x` and `y` are the labels of the axes, `description` is for readers who cannot
-/// see the chart.
+/// Cells without a finite value are left out; both axes have the same scale. `labels` are those of both axes and of the values, `description` is for readers
+/// who cannot see the chart.
 ///
 /// ```
 /// use hysid_document::chart::{HeatCell, heat_map};
 /// let cell = |k: f64| HeatCell { u: (k, k + 1.0), v: (0.0, 1.0), value: k };
-/// let chart = heat_map("values from 0 to 4", "x", "y", &[0.0, 1.0, 2.0, 3.0, 4.0].map(cell), |u, v| (u, v));
+/// let chart = heat_map("values from 0 to 4", ["x", "y", "value"], &[0.0, 1.0, 2.0, 3.0, 4.0].map(cell), |u, v| (u, v));
 /// assert_eq!(chart.legend.last().unwrap().1, "3.75 to 4.25");
 /// ```
 pub fn heat_map(
     description: impl Into<String>,
-    x: &str,
-    y: &str,
+    [x, y, value]: [&str; 3],
     cells: &[HeatCell],
     place: impl Fn(f64, f64) -> Point,
 ) -> Chart {
@@ -66,8 +145,11 @@ pub fn heat_map(
     let used = LEVELS.filter(|level| areas.iter().any(|(used, _)| used == level));
     let legend: Vec<(Colour, String)> =
         used.map(|level| (Colour::Level(level), limits(level, step))).collect();
+    let level = |(level, _): &(i8, HeatCell)| *level;
+    let ends = areas.iter().map(level).min().zip(areas.iter().map(level).max());
+    let bar = ends.map(|(low, high)| ColourBar { label: value.into(), levels: low..=high, step });
     let chart = Chart::new(description, x, y, curves).sized(WIDTH, HEIGHT).with_legend(legend);
-    Chart { has_equal_axes: true, ..chart }
+    Chart { has_equal_axes: true, bar, ..chart }
 }
 
 /// The width of a class: round, and such that the values have at most as many classes as there are levels.
@@ -107,7 +189,7 @@ mod tests {
     #[test]
     fn neighbours_of_one_class_are_one_area_and_blanks_are_none() {
         let cells = [row(&[0.0, 0.01, 8.0, 8.1], 0.0), row(&[f64::NAN, -8.0, 4.0], 1.0)].concat();
-        let chart = heat_map("d", "x", "y", &cells, |u, v| (u, v));
+        let chart = heat_map("d", ["x", "y", "value, T"], &cells, |u, v| (u, v));
         let colours: Vec<Colour> = chart.curves.iter().map(|curve| curve.colour).collect();
         assert_eq!(colours, [0, 8, -3, 4].map(Colour::Level));
         assert_eq!(chart.curves[0].points, [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]);
@@ -116,11 +198,18 @@ mod tests {
         let svg = chart.svg();
         assert_balanced(&svg);
         // The first area is two units wide and one high.
+        let curves = svg.split("class=\"curves\"").nth(1).unwrap();
         let polygon =
-            svg.split("<polygon fill=\"#102030\" points=\"").nth(1).unwrap().split('"').next().unwrap();
+            curves.split("<polygon fill=\"#102030\" points=\"").nth(1).unwrap().split('"').next().unwrap();
         let points: Vec<f64> = polygon.split([' ', ',']).map(|number| number.parse().unwrap()).collect();
         let (width, height) = ((points[2] - points[0]).abs(), (points[5] - points[3]).abs());
         assert!((width / height / 2.0 - 1.0).abs() < 0.01, "{polygon}");
+        // A strip with all classes from the lowest to the highest; the legend is for narrow pages.
+        let bar = svg.split("<g class=\"bar\">").nth(1).unwrap().split("</g>").next().unwrap();
+        assert_eq!((bar.matches("<polygon").count(), bar.matches("<polyline").count()), (12, 12));
+        for text in [">−2.5<", ">8.5<", ">value, T<"] {
+            assert!(bar.contains(text) && svg.matches(text).count() == 1, "{text}: {bar}");
+        }
         for marker in ["#102038", "#102133", "#102034", "#102030"] {
             assert!(svg.contains(&format!("fill=\"{marker}\"")), "{marker}");
             assert!(super::super::style().contains(&format!("[fill=\"{marker}\"]")), "{marker}");
@@ -139,7 +228,7 @@ mod tests {
 
     #[test]
     fn coordinates_can_be_turned() {
-        let chart = heat_map("d", "x", "y", &row(&[1.0], 0.0), |u, v| (u - v, u + v));
+        let chart = heat_map("d", ["x", "y", "value, T"], &row(&[1.0], 0.0), |u, v| (u - v, u + v));
         assert_eq!(chart.curves[0].points, [(0.0, 0.0), (1.0, 1.0), (0.0, 2.0), (-1.0, 1.0)]);
     }
 }

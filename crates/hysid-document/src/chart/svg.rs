@@ -100,7 +100,8 @@ fn element(chart: &Chart, appearance: &Appearance, outer: &str, beginning: &str,
     let (chart, frame) = (&*chart, frame::frame(&chart, appearance));
     let curves = curves(chart, &frame, appearance, tracks);
     let attributes = if tracks { attributes(chart, &frame) } else { String::new() };
-    let drawing = format!("<g class=\"frame\">{}</g>\n{curves}", frame.markup);
+    let bar = chart.bar.as_ref().map(|bar| bar.drawn(frame.place.map(f64::from), appearance));
+    let drawing = format!("<g class=\"frame\">{}{}</g>\n{curves}", frame.markup, bar.unwrap_or_default());
     let drawing = if appearance.fixed_colours { fixed(&drawing) } else { drawing };
     format!(
         "<svg class=\"plot\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {} {}\" \

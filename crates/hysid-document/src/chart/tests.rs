@@ -16,6 +16,7 @@ fn chart(points: Vec<Point>) -> Chart {
         legend: vec![(Colour::Simulated, "model".into())],
         shares_axis: false,
         has_equal_axes: false,
+        bar: None,
     }
 }
 

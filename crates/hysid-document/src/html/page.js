@@ -248,10 +248,11 @@
         line(left, bottom, right, bottom, "#111111", 4), line(left, top, left, bottom, "#111111", 4),
         text(left + width / 2, bottom + 2.8 * size, this.axes[0].label, "middle"),
         text(1.2 * size, middle, this.axes[1].label, "middle", { transform: `rotate(-90 ${1.2 * size} ${middle})` }));
-      // Title and legend stay; on a narrow screen they are above the figure.
+      // Title and legend or colour bar stay; on a narrow screen they are above the figure.
       for (const child of this.width ? [] : this.frame.children) {
         if (Number(child.getAttribute("y")) < top - 0.2 * size && child.localName === "text"
-          || child.localName === "polyline" && numbers(child.getAttribute("points"))[1] < top - 1) {
+          || child.localName === "polyline" && numbers(child.getAttribute("points"))[1] < top - 1
+          || child.matches("g.bar")) {
           this.own.append(child.cloneNode(true));
         }
       }

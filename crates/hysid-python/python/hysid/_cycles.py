@@ -182,6 +182,7 @@ def cycles(
     smoothing_factor: int | None = None,
     smoothing_growth: float = 0.0,
     density: float | None = None,
+    height: float | None = None,
 ) -> Cycles:
     """Read the figures of each cycle in measured data: energy, damping, stiffness, coercive field, losses, width, creep.
 
@@ -210,6 +211,8 @@ def cycles(
         Growth of the smoothing factor in each step away from the ridges of a FORC diagram, 0 to 1.
     density : float, optional
         Mass density in kg/m³, for losses of magnets per mass.
+    height : float, optional
+        Height of a structure in the unit of x, for the drift ratios of its levels.
 
     Returns
     -------
@@ -245,15 +248,16 @@ def cycles(
         smallest_reversal=smallest_reversal,
         smoothing=smoothing,
         smoothing_growth=smoothing_growth,
-        density=density_of(density),
+        density=above_zero("density", density),
+        height=above_zero("height", height),
     )
 
 
-def density_of(density: float | None) -> float | None:
-    """A mass density that is given, checked."""
-    if density is not None and not (density := real("density", density)) > 0:
-        raise ValueError(f"density: a number above 0 is needed, not {density}")
-    return density
+def above_zero(name: str, value: float | None) -> float | None:
+    """A number above 0 that is given, checked."""
+    if value is not None and not (value := real(name, value)) > 0:
+        raise ValueError(f"{name}: a number above 0 is needed, not {value}")
+    return value
 
 
 def cycles_of(
@@ -266,8 +270,9 @@ def cycles_of(
     smoothing: bool = True,
     smoothing_growth: float = 0.0,
     density: float | None = None,
+    height: float | None = None,
 ) -> Cycles:
     """The figures of each cycle in columns; arguments as of `cycles`."""
     options = (division, field, smoothing_factor)
-    rest = (*options, smoothing_growth, density)
+    rest = (*options, smoothing_growth, density, height)
     return Cycles._of(_hysid.cycles(arranged.dataset(), smallest_reversal, smoothing, *rest))

@@ -13,7 +13,7 @@ import numpy as np
 from hysid import _hysid
 from hysid._arguments import name_of, pair, real, truth, whole
 from hysid._columns import Column, column_of
-from hysid._cycles import Cycles, density_of, named_options
+from hysid._cycles import Cycles, above_zero, named_options
 from hysid._data import Columns, columns, in_units_of, is_record_list, shaped_like
 from hysid._diagnosis import ModelDiagnosis
 from hysid._inverse import Inverse, Inversion, Reference
@@ -793,6 +793,7 @@ class Model(StoredModel):
         field: str | None = None,
         smoothing_factor: int | None = None,
         density: float | None = None,
+        height: float | None = None,
     ) -> Cycles:
         """Drive the model through cycles and first-order reversal curves over its trained range and read their figures.
 
@@ -807,6 +808,8 @@ class Model(StoredModel):
             Smoothing factor of the density of the reversal curves, 1 to 10; chosen by default.
         density : float, optional
             Mass density in kg/m³, for losses of magnets per mass.
+        height : float, optional
+            Height of a structure in the unit of the input, for the drift ratios of its levels.
 
         Returns
         -------
@@ -814,7 +817,7 @@ class Model(StoredModel):
             The figures of the model's cycles, not of measured data.
         """
         options = named_options(division, field, smoothing_factor)
-        return Cycles._of(self._native.cycles(*options, density_of(density)))
+        return Cycles._of(self._native.cycles(*options, above_zero("density", density), above_zero("height", height)))
 
     def _columns(self, x: Any, y: Any, time: Any, rate: Any, records: Any) -> Columns:
         return columns(x, y, time, rate, records, self.inputs)

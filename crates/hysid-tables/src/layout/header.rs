@@ -76,7 +76,11 @@ impl Header {
                 break;
             }
             let cells = split(line.content(), run.delimiter);
-            let fit = row(line, &cells, run, is_first(lines, place));
+            let below = rows.last().and_then(|row| lines.iter().find(|line| line.number == row.line));
+            let fit = match below.and_then(|below| stages_over(line, below, run.width)) {
+                Some(cells) => HeaderFit::Row(HeaderLine { line: line.number, cells, remarks: None }),
+                None => row(line, &cells, run, is_first(lines, place)),
+            };
             match fit {
                 // Between the names and the rows, only units count.
                 HeaderFit::Row(row) if is_remark && !are_units(&row.cells) => {}
@@ -218,6 +222,32 @@ fn row(line: &TextLine<'_>, cells: &[LineCell<'_>], run: &LineRun, is_first: boo
     } else {
         HeaderFit::Nothing
     }
+}
+
+/// The labels of stages of a measurement that stand above some names alone, in columns of blanks: `Adjusted` over the second
+/// field and moment of a magnetometer.
+fn stages_over(line: &TextLine<'_>, names: &TextLine<'_>, width: usize) -> Option<Vec<String>> {
+    let labels = words_with_middles(line.content());
+    let names = words_with_middles(names.content());
+    if names.len() != width || labels.len() >= width || !labels.iter().all(|(label, _)| is_stage(label)) {
+        return None;
+    }
+    let mut cells = vec![String::new(); width];
+    for (label, middle) in labels {
+        let distance = |place: &usize| names[*place].1.abs_diff(middle);
+        cells[(0..width).min_by_key(distance)?] = label.into();
+    }
+    Some(cells)
+}
+
+/// Words between blanks, each with twice the place of its middle in the line.
+fn words_with_middles(line: &str) -> Vec<(&str, usize)> {
+    let place = |word: &str| line[..word.as_ptr() as usize - line.as_ptr() as usize].chars().count();
+    line.split_whitespace().map(|word| (word, 2 * place(word) + word.chars().count())).collect()
+}
+
+fn is_stage(label: &str) -> bool {
+    STAGES.contains(&label.to_lowercase().as_str())
 }
 
 pub fn is_remark(name: &str) -> bool {
@@ -378,8 +408,7 @@ fn column_groups(names: &[String], above: Option<&[String]>) -> Option<ColumnGro
             Some(above) => above[shared..].iter().step_by(width).cloned().collect(),
             None => Vec::new(),
         };
-        let is_stage = |label: &String| STAGES.contains(&label.to_lowercase().as_str());
-        if labels.iter().any(is_stage) {
+        if labels.iter().any(|label| is_stage(label)) {
             return None;
         }
         let is_labelled =

@@ -60,7 +60,20 @@ impl LoopBranches {
             _ => None,
         }
     }
+
+    /// True if the outputs run in opposite directions over inputs that run in the same: each branch counts its input from its
+    /// own beginning, as the charge of a battery.
+    pub fn is_counted(out: &[f64], back: &[f64]) -> bool {
+        let gain = |values: &[f64]| values[values.len() - 1] - values[0];
+        let all = || out.iter().chain(back).copied();
+        let range = all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min);
+        let (gains, least) = ([gain(out), gain(back)], CLEAR * range);
+        gains[0] * gains[1] < 0.0 && gains.iter().all(|gain| gain.abs() > least)
+    }
 }
+
+/// Least share of the range of both outputs by which each of them rises or falls over its branch, to tell a direction.
+const CLEAR: f64 = 0.2;
 
 /// Largest gap between the branches, as a share of the range of the input.
 const NEAR: f64 = 0.1;
@@ -130,5 +143,12 @@ mod tests {
         assert_eq!(LoopBranches::is_turned(&[0.0, 1.0, 2.0], &[0.0, 1.0, 2.0]), Some(true));
         assert_eq!(LoopBranches::is_turned(&[0.0, 1.0, 2.0], &[5.0, 6.0]), None);
         assert_eq!(LoopBranches::is_turned(&[0.0, 2.0, 1.0], &[1.0, 0.0]), None);
+    }
+
+    #[test]
+    fn a_branch_that_counts_from_its_own_beginning_has_the_opposite_direction() {
+        assert!(LoopBranches::is_counted(&[3.6, 3.7], &[3.5, 3.4]));
+        assert!(!LoopBranches::is_counted(&[3.6, 3.7], &[3.4, 3.5]));
+        assert!(!LoopBranches::is_counted(&[-1.0, 0.9, -0.99], &[-1.0, 0.9, -1.01]), "a butterfly");
     }
 }

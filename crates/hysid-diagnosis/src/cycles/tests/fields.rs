@@ -251,6 +251,39 @@ fn nonlinearity_is_the_deviation_of_the_mean_way_from_the_best_line() {
     assert_relative_eq!(row.width_percent.unwrap(), 100.0 * 0.6 / 4.0, max_relative = 0.02);
 }
 
+/// Strain `k ∣E ± E_c∣` on the branches: minima at the coercive field, `k E_c` above them at the field 0.
+#[test]
+fn a_butterfly_has_its_coercive_field_at_the_extremes_and_other_loops_have_none() {
+    let (slope, coercive, largest) = (0.4, 0.8, 2.0);
+    let branch = |shift: f64, from: f64, to: f64| -> Vec<(f64, f64)> {
+        let corners = [from, -shift, to];
+        corners.map(|field| (field, slope * (field + shift).abs())).to_vec()
+    };
+    for sign in [1.0, -1.0] {
+        let signed = |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> {
+            points.into_iter().map(|(x, y)| (x, 7.0 + sign * y)).collect()
+        };
+        // Beyond its minimum, each branch ends where the other begins.
+        let mut down = branch(coercive, largest, -largest);
+        let mut up = branch(-coercive, -largest, largest);
+        (down[2].1, up[0].1) = (up[0].1, up[0].1);
+        up[2].1 = down[0].1;
+        let row = only(&ways(&signed(down), &signed(up), ("E [kV/mm]", "Strain [%]")), Field::Actuator);
+        assert_relative_eq!(row.butterfly_coercive_input.unwrap(), coercive, epsilon = 1e-9);
+        assert_relative_eq!(row.butterfly_remanence.unwrap(), slope * coercive, epsilon = 1e-9);
+        assert_relative_eq!(row.peak_to_peak.unwrap(), slope * (largest + coercive), epsilon = 1e-9);
+        assert_eq!(row.nonlinearity_percent, None);
+    }
+    // Without a lag the minima are at the field 0; a play has none.
+    let same = branch(0.0, largest, -largest);
+    let back = same.iter().rev().copied().collect::<Vec<_>>();
+    let play = [(2.0, 1.5), (-2.0, -1.5)];
+    for (down, up) in [(same.as_slice(), back.as_slice()), (&play[..], &[(-2.0, -1.5), (2.0, 1.5)][..])] {
+        let row = only(&ways(down, up, ("E [kV/mm]", "Strain [%]")), Field::Actuator);
+        assert_eq!((row.peak_to_peak, row.butterfly_coercive_input), (None, None));
+    }
+}
+
 /// Straight base lines and straight transitions: the tangents meet where they do.
 #[test]
 fn transitions_of_straight_lines_have_their_corners() {
@@ -284,6 +317,50 @@ fn a_battery_has_the_gap_and_the_efficiency_of_parallel_branches() {
     );
     assert_relative_eq!(row.mean_gap.unwrap(), 0.2, epsilon = 1e-9);
     assert_relative_eq!(row.energy_efficiency_percent.unwrap(), 100.0 * 3.45 / 3.65, epsilon = 1e-9);
+}
+
+/// Charge and discharge as cyclers write them: counted from 0 in each half cycle, with or without rests, or in two records;
+/// or the state of charge in two records.
+#[test]
+fn half_cycles_of_a_battery_are_one_loop_on_one_axis_of_charge() {
+    let names = ColumnNames::of(None, &["Capacity (Ah)"], "Voltage (V)");
+    let line = |from: (f64, f64), to: (f64, f64)| -> Vec<(f64, f64)> {
+        let at = |k: i32| f64::from(k) / 50.0;
+        (0..=50).map(|k| (from.0 + at(k) * (to.0 - from.0), from.1 + at(k) * (to.1 - from.1))).collect()
+    };
+    let set = |parts: &[(&str, Vec<(f64, f64)>)]| {
+        let record = |(name, points): &(&str, Vec<(f64, f64)>)| {
+            let (x, y) = points.iter().copied().unzip();
+            Record::new(*name, vec![x], y).unwrap()
+        };
+        Dataset::new(names.clone(), parts.iter().map(record).collect()).unwrap()
+    };
+    let (charge, discharge) = (line((0.0, 3.6), (1.0, 3.7)), line((0.0, 3.5), (1.0, 3.4)));
+    let state = line((1.0, 3.5), (0.0, 3.4));
+    let rest = |voltage: f64| line((0.0, voltage), (0.0, voltage));
+    let whole = |parts: &[&Vec<(f64, f64)>]| parts.iter().flat_map(|part| part.iter().copied()).collect();
+    for (data, counted) in [
+        (set(&[("r", whole(&[&charge, &discharge]))]), true),
+        (set(&[("r", whole(&[&discharge, &charge]))]), true),
+        (set(&[("r", whole(&[&charge, &rest(3.6), &discharge, &rest(3.5)]))]), true),
+        (set(&[("charge", charge.clone()), ("discharge", discharge.clone())]), true),
+        (set(&[("charge", charge.clone()), ("discharge", state.clone())]), false),
+    ] {
+        let (joined, note) = counted_through(&data, None).unwrap();
+        assert_eq!(note.contains("counted up while Voltage (V) rises"), counted, "{note}");
+        assert_eq!(joined.input_range(0), (0.0, 1.0));
+        let table = CycleTable::of(&joined, &CycleOptions::default()).unwrap();
+        let row = table.complete().next().expect("a cycle");
+        assert_relative_eq!(row.mean_gap.unwrap(), 0.2, epsilon = 1e-9);
+        assert_relative_eq!(row.width.unwrap(), 0.2, epsilon = 1e-6);
+        assert_relative_eq!(row.energy_efficiency_percent.unwrap(), 100.0 * 3.45 / 3.65, epsilon = 1e-9);
+    }
+    // What is one axis already, and what has one direction alone, stays; a jump of the charge gives no figures.
+    assert_eq!(counted_through(&set(&[("r", whole(&[&charge, &state]))]), None), None);
+    assert_eq!(counted_through(&set(&[("a", charge.clone()), ("b", charge.clone())]), None), None);
+    let jumps =
+        CycleTable::of(&set(&[("r", whole(&[&charge, &discharge]))]), &CycleOptions::default()).unwrap();
+    assert!(jumps.complete().all(|row| row.mean_gap.is_none() && row.energy.is_none()));
 }
 
 /// A parallelogram between (0, 0), (1, 1) and the opposite corners: the rising way lies above the falling one by `gap` of 1.

@@ -91,6 +91,13 @@ fn levels_have_the_losses_within_them_and_from_one_to_the_next() {
     let yielding = value(&table, "mean of both sides", "yield_input");
     near(of(|level| level.cumulative_ductility), [1.0, 7.0, 15.0].map(|sum| Some(sum / yielding)));
     near(of(|level| level.ductility), [0.5, 1.0, 2.0].map(|amplitude| Some(amplitude / yielding)));
+    near(of(|level| level.drift_percent.or(Some(0.0))), [Some(0.0); 3]);
+    // With a height, of structures alone.
+    let with = |field| CycleOptions { height: Some(250.0), field: Some(field), ..CycleOptions::default() };
+    let table = CycleTable::of(&lines(&tips, 1.0), &with(Field::Structure)).unwrap();
+    let drifts = table.levels.iter().map(|level| level.drift_percent).collect::<Vec<_>>();
+    near(drifts, [Some(0.2), Some(0.4), Some(0.8)]);
+    assert!(CycleTable::of(&lines(&tips, 1.0), &with(Field::Actuator)).is_err());
 }
 
 #[test]

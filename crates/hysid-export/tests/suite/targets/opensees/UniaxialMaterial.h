@@ -39,3 +39,5 @@ class UniaxialMaterial : public Material
     virtual int revertToStart(void) = 0;
     virtual UniaxialMaterial *getCopy(void) = 0;
 };
+
+bool OPS_addUniaxialMaterial(UniaxialMaterial *material);
