@@ -105,8 +105,8 @@ fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> Vec<P
     let is_distilled = how.is_none_or(|single| single.distilled);
     let (first, words) = match is_distilled {
         _ if how.is_some_and(|single| single.is_law) => (
-            "The model is a law, in place of an ensemble: its errors, on the data and on the rows held \
-             out, are about the lowest of all candidates. Where the data say nothing, such a law \
+            "The model is a law, in place of an ensemble: the product of its errors, on the data and on the \
+             rows held out, is about the lowest of all candidates. Where the data say nothing, such a law \
              usually predicts better than networks do.",
             "The candidates are not part of the model.",
         ),

@@ -1,5 +1,7 @@
 //! `hysid compare` as a user runs it, and models that are no networks in the other commands.
 
+use hysid_core::elementary::sin;
+
 use crate::workbench::{Workbench, json, must_contain};
 
 #[test]
@@ -68,7 +70,7 @@ fn a_record_that_begins_in_the_middle_is_told() {
     let bench = Workbench::with_data();
     let drive = |row: usize, phase: f64| {
         let angle = row as f64 * 0.05 + phase;
-        angle.sin() * (0.4 + 0.6 * (0.0037 * row as f64 + phase).sin().abs())
+        sin(angle) * (0.4 + 0.6 * sin(0.0037 * row as f64 + phase).abs())
     };
     let table = |phase: f64, states: [f64; 2]| {
         let (mut text, mut states) = ("x,y\n".to_string(), states);

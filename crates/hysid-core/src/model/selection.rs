@@ -135,7 +135,7 @@ impl Selection {
                 let reason = match (is_lowest, law, self.one_loop) {
                     (true, ..) => "",
                     (false, Some(_), _) => {
-                        "; a law of few numbers, or one that holds beyond the data, is preferred where its errors on the data and on the folds are about the lowest"
+                        "; a law of few numbers, or one that holds beyond the data, is preferred where the product of its errors, on the data and on the folds, is about the lowest"
                     }
                     (false, None, true) => "; one loop does not tell how well smaller loops are predicted",
                     (false, None, false) => {
@@ -211,8 +211,8 @@ pub struct SingleModel {
     pub distilled_percent: Option<f64>,
     /// Held-out error of the best candidate fitted to the data alone, in percent, as that of the ensemble.
     pub plain_percent: Option<f64>,
-    /// True for a law of few numbers, or one that holds beyond the data, whose errors are about the lowest of all
-    /// candidates: it was not requested, but takes the place of the ensemble.
+    /// True for a law of few numbers, or one that holds beyond the data: the product of its errors, on the data and on the
+    /// folds, is about the lowest of all candidates. It was not requested, but takes the place of the ensemble.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_law: bool,
 }

@@ -59,7 +59,7 @@ fn no_verdict_is_wrong_without_noise() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Prints the table of `docs/diagnosis.md`:
+/// Prints the verdicts that `docs/diagnosis.md` sums up:
 /// `HYSID_SEEDS=50 cargo test --release -p hysid --test suite -- --nocapture diagnosis::hardly`.
 #[test]
 fn hardly_any_verdict_is_wrong_under_noise() {

@@ -1,5 +1,5 @@
-//! A law that is the model by itself: one of few numbers, or one of many that stands alone, whose errors are about the
-//! lowest of all candidates, on the data and on the folds. Whatever the data do not show, it predicts better than a
+//! A law that is the model by itself: one of few numbers, or one of many that stands alone. The product of its errors, on
+//! the data and on the folds, is about the lowest of all candidates. Whatever the data do not show, it predicts better than a
 //! combination of networks: few numbers cannot follow the data by chance, and equations as those of a Preisach plane hold
 //! everywhere.
 
