@@ -277,6 +277,14 @@ def pandas_table(path):
     return pandas.read_csv(path)
 
 
+def test_levels_of_structures_have_a_drift_with_a_height():
+    x = np.repeat([1.0, 2.0], 400) * np.sin(np.linspace(0, 8 * np.pi, 800))
+    table = hysid.cycles(x, hysid.operators.stop(x, 0.5), field="structure", height=200)
+    assert np.allclose(table.levels["drift_percent"], table.levels["amplitude"] / 2)
+    with pytest.raises(ValueError, match="height: a number above 0"):
+        hysid.cycles(x, x, height=-1)
+
+
 def test_losses_of_magnets_are_given_per_mass():
     time = np.linspace(0, 0.06, 1201)
     field, flux = 100 * np.sin(100 * np.pi * time), 1.2 * np.sin(100 * np.pi * time - 0.3)

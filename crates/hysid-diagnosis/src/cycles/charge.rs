@@ -35,20 +35,18 @@ pub fn counted_through(data: &Dataset, field: Option<Field>) -> Option<(Dataset,
     if groups.iter().any(|group| group.len() < 2 || !has_both(group)) {
         return None;
     }
-    let is_counted =
-        groups.iter().flatten().any(|half| half.charges.is_some_and(|charges| charges != half.rises));
-    let names: Vec<&str> = data.records().iter().map(Record::name).collect();
-    let mut notes = Vec::new();
-    if is_one_each {
-        notes.push(format!("{} are one record, in this order", names.join(", ")));
-    }
-    if is_counted {
-        let ColumnNames { inputs, output, .. } = data.names();
-        notes.push(format!(
-            "{} begins anew in each half cycle: it is counted up while {output} rises, and down while it falls",
-            inputs[0]
-        ));
-    }
+    // A state of charge rises in every charge and falls in every discharge, and a depth of discharge the other way round.
+    let ways: Vec<bool> =
+        groups.iter().flatten().filter_map(|half| Some(half.charges? == half.rises)).collect();
+    let is_counted = ways.iter().any(|way| *way != ways[0]);
+    let notes = [
+        (is_one_each, "the records are taken as one, in their order"),
+        (
+            is_counted,
+            "the charge begins anew in each half cycle: it is counted up while the voltage rises, and down while it falls",
+        ),
+    ];
+    let notes: Vec<&str> = notes.into_iter().filter(|(is_so, _)| *is_so).map(|(_, words)| words).collect();
     let records = groups.iter().map(|group| joined(data, group, is_counted)).collect::<Option<Vec<_>>>()?;
     let time = data.names().time.clone().filter(|_| records.iter().all(|record| record.time().is_some()));
     let names = ColumnNames {

@@ -4,7 +4,6 @@
 //! around 0 is next to the page's colour; positive values get darker on a light page and lighter on a dark one, and
 //! negative values have another hue.
 
-use std::fmt::Write;
 use std::ops::RangeInclusive;
 
 use hysid_core::elementary::{log10, powf};
@@ -81,19 +80,18 @@ impl ColourBar {
         for (k, level) in self.levels.clone().enumerate() {
             let (low, high) = (y(k as f64), y(k as f64 + 1.0));
             let fill = written(Colour::Level(level).marker());
-            write!(text, "<polygon fill=\"{fill}\" points=\"{x:.1},{low:.1} {right:.1},{low:.1} {right:.1},{high:.1} {x:.1},{high:.1}\"/>\n")
-                .expect("a string takes all");
+            let corners =
+                format!("{x:.1},{low:.1} {right:.1},{low:.1} {right:.1},{high:.1} {x:.1},{high:.1}");
+            text += &format!("<polygon fill=\"{fill}\" points=\"{corners}\"/>\n");
         }
         for (place, words) in self.ticks() {
             let (y, end) = (y(place), right + em(0.3));
-            write!(
-                text,
+            text += &format!(
                 "<polyline fill=\"none\" stroke=\"{ink}\" stroke-width=\"4\" points=\"{right:.1},{y:.1} {end:.1},{y:.1}\"/>\n\
                  <text x=\"{:.1}\" y=\"{:.1}\" {font}>{words}</text>\n",
                 right + em(BAR[2]),
                 y + em(0.36),
-            )
-            .expect("a string takes all");
+            );
         }
         let (x, middle) = (left + width + FINE * self.room(appearance), top + 0.5 * height);
         text + &format!(

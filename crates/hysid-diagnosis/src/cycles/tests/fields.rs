@@ -345,9 +345,10 @@ fn half_cycles_of_a_battery_are_one_loop_on_one_axis_of_charge() {
         (set(&[("r", whole(&[&charge, &rest(3.6), &discharge, &rest(3.5)]))]), true),
         (set(&[("charge", charge.clone()), ("discharge", discharge.clone())]), true),
         (set(&[("charge", charge.clone()), ("discharge", state.clone())]), false),
+        (set(&[("charge", line((1.0, 3.6), (0.0, 3.7))), ("discharge", discharge.clone())]), false),
     ] {
         let (joined, note) = counted_through(&data, None).unwrap();
-        assert_eq!(note.contains("counted up while Voltage (V) rises"), counted, "{note}");
+        assert_eq!(note.contains("counted up while the voltage rises"), counted, "{note}");
         assert_eq!(joined.input_range(0), (0.0, 1.0));
         let table = CycleTable::of(&joined, &CycleOptions::default()).unwrap();
         let row = table.complete().next().expect("a cycle");
