@@ -46,10 +46,10 @@ pub struct Cycles {
     /// actuators.
     #[arg(long, value_name = "FIELD", value_parser = named::<Field>, help_heading = "Method")]
     pub field: Option<Field>,
-    /// Where cycles begin: zero, mean, reversals or start [default: as suits the data]
+    /// Where cycles begin: zero, mean, reversals or start
     ///
-    /// Where the input passes zero, its centre (mean), or the value with which the record starts, always in the same direction;
-    /// or at every other turning point.
+    /// By default as suits the data. Where the input passes zero, its centre (mean), or the value with which the record starts,
+    /// always in the same direction; or at every other turning point.
     #[arg(long, value_name = "WHERE", value_parser = named::<Division>, help_heading = "Method")]
     pub divide: Option<Division>,
     /// Remove from the output first: slope, drift
@@ -66,7 +66,9 @@ pub struct Cycles {
     /// Mass density in kg/m3, for losses per kg
     #[arg(long, value_name = "NUMBER", value_parser = positive, help_heading = "Method")]
     pub density: Option<f64>,
-    /// Height of a structure, for drift ratios: 2.4m, or a number in the unit of the input
+    /// Height of a structure, for drift ratios: 2.4m
+    ///
+    /// A number without a unit is in the unit of the input.
     #[arg(long, value_name = "HEIGHT", value_parser = height, help_heading = "Method")]
     pub height: Option<(f64, String)>,
     /// Ignore reversals of the input below this share of its range [default: the noise of the input decides]
