@@ -5,6 +5,9 @@ use hysid_core::elementary::hypot;
 use super::CLOSED;
 use crate::branch::Branch;
 
+/// Deviations of the noise below which a figure is not distinguished from noise.
+pub(super) const SURE: f64 = 3.0;
+
 /// Input at which a branch first passes a level of the output, in the order of time.
 pub(super) fn crossing(branch: &Branch, level: f64) -> Option<f64> {
     let mut points: Vec<(f64, f64)> = branch.curve.points().collect();
