@@ -20,7 +20,8 @@ type Measure = fn(&Errors) -> String;
 /// One column for each named set of errors, one row for each measure.
 pub fn errors_table(sets: &[(&str, &Errors)]) -> String {
     let column = sets.first().map_or("", |(_, errors)| errors.output.as_str());
-    let unit = unit::of_column(column).map_or_else(String::new, |unit| format!(", {}", clipped(&unit)));
+    let unit = unit::of_column(column)
+        .map_or_else(String::new, |unit| format!(", {}", clipped(&unit::written(&unit))));
     let output = clipped(column);
     let rows: [(String, Measure); 5] = [
         (format!("RMSE of {output}{unit}"), |errors| number(errors.rmse)),

@@ -5,8 +5,8 @@ use hysid::model::history::Phase;
 use hysid::model::{Model, Provenance};
 use hysid::options::FitSpec;
 use hysid::options::network::Method;
-use hysid_document::chart::Track;
 use hysid_document::chart::thin::thin_path;
+use hysid_document::chart::{Track, records_in_colour};
 use hysid_document::{Chart, Colour, Curve, Part, convergence, count, unit};
 
 use crate::ReportSet;
@@ -78,17 +78,24 @@ fn record_loops(set: &ReportSet, index: usize) -> Chart {
 fn loop_chart(set: &ReportSet, shown: &[usize], title: &str, points: usize) -> Chart {
     let names = set.data.names();
     let most = (points / shown.len().max(1)).max(16);
-    let (mut all, simulated): (Vec<Curve>, Vec<Curve>) =
+    let (mut all, mut simulated): (Vec<Curve>, Vec<Curve>) =
         shown.iter().map(|&index| loop_curves(set, index, most)).unzip();
+    let mut legend = vec![(Colour::Measured, "measured".to_string()), (Colour::Simulated, "model".into())];
+    // A small chart has no legend.
+    if title.is_empty() && shown.len() > 1 {
+        let named: Vec<&str> = shown.iter().map(|&index| set.data.records()[index].name()).collect();
+        let (colours, entries) = records_in_colour(&named);
+        simulated.iter_mut().zip(colours).for_each(|(curve, colour)| curve.colour = colour);
+        legend.truncate(1);
+        legend.extend(entries.into_iter().map(|(colour, name)| (colour, format!("model, {name}"))));
+    }
     all.extend(simulated);
     let (x, y) = (unit::label(&names.inputs[0]), unit::label(&names.output));
     let of = if title.is_empty() { format!("{} data", set.name) } else { title.to_string() };
     let description = format!("Loops of {y} over {x}, measured and simulated: {of}");
     let chart = Chart::new(description, &x, &y, all);
     match title {
-        "" => chart
-            .sized(560.0, 400.0)
-            .with_legend([(Colour::Measured, "measured"), (Colour::Simulated, "model")]),
+        "" => chart.sized(560.0, 400.0).with_legend(legend),
         title => chart.small(title),
     }
 }

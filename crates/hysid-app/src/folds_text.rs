@@ -9,7 +9,7 @@ use hysid_document::plain::{WIDTH, aligned, wrapped};
 /// The folds as a table, in 80 columns where units are short, and what its numbers mean.
 pub fn folds_text(errors: &CrossValidation) -> String {
     let all = &errors.unseen;
-    let unit = unit::of_column(&all.output).unwrap_or_else(|| "RMSE".into());
+    let unit = unit::of_column(&all.output).map_or_else(|| "RMSE".into(), |unit| unit::written(&unit));
     let headings = ["%".to_string(), unit].map(|unit| [format!("train {unit}"), format!("unseen {unit}")]);
     let row = |name: &str, numbers: [String; 4]| [vec![name.to_string()], numbers.to_vec()].concat();
     let mut rows = vec![row("held out", headings.concat().try_into().expect("two times two"))];

@@ -131,7 +131,7 @@ impl<'m> Inspected<'m> {
         let (names, ranges) = (self.model.names(), self.model.trained_ranges());
         let mut table = Table::new(["role", "column", "unit", "trained from", "to"]);
         let mut push = |role: &str, name: &str, range: Option<(f64, f64)>| {
-            let unit = unit::of_column(name).unwrap_or_default();
+            let unit = unit::of_column(name).map_or_else(String::new, |unit| unit::written(&unit));
             let (low, high) = range.map_or((None, None), |(low, high)| (Some(low), Some(high)));
             table.push([role.into(), name.into(), unit.into(), Cell::number(low, 5), Cell::number(high, 5)]);
         };

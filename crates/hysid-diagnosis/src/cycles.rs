@@ -113,10 +113,56 @@ pub(crate) fn backbones(survey: &BranchSet) -> Vec<BackbonePoint> {
 
 /// All cycles of the input whose rows have an output. They do not overlap: after one the next begins.
 pub(crate) fn cycles(survey: &BranchSet) -> Vec<Cycle> {
+    walk(survey, |_, _| false)
+}
+
+/// A cycle loses what matters from this share on, see [`cycles_up_to_growth`].
+const LOSS: f64 = 0.05;
+
+/// All cycles, and the second cycle of each level of a growing test, which goes on beyond its beginning to the next level: it
+/// ends where it comes back to its beginning. A law without wear may settle on the way that first goes to a new amplitude.
+/// So a loss counts only if a quarter of it, of the half that wear gives, is between the next way and the one that goes on.
+pub(crate) fn cycles_up_to_growth(survey: &BranchSet) -> Vec<Cycle> {
+    let tolerance = survey.same_input();
+    let area = |branch: usize| {
+        let place = survey.openings.binary_search_by_key(&branch, |opening| opening.branch).ok();
+        place.map(|place| survey.openings[place].area)
+    };
+    walk(survey, |found, index| {
+        let [out, back] = [index, index + 1].map(|number| &survey.branches[number]);
+        let is_alike = |earlier: usize| {
+            let before = found.len().checked_sub(earlier).map(|place| found[place].branches);
+            before.filter(|before| before.1 + 2 * earlier - 1 == index).is_some_and(|before| {
+                let before = &survey.branches[before.0];
+                (before.from - out.from).abs().max((before.to - out.to).abs()) <= tolerance
+            })
+        };
+        let goes_on = if out.rises() { back.to <= out.from } else { back.to >= out.from };
+        if !goes_on || !is_alike(1) || is_alike(2) {
+            return false;
+        }
+        let (low, high) = (out.from.min(out.to) - tolerance, out.from.max(out.to) + tolerance);
+        let first =
+            index - survey.branches[..index].iter().rev().take_while(|b| b.record == out.record).count();
+        let is_furthest = survey.branches[first..index]
+            .iter()
+            .all(|branch| branch.from.min(branch.to) >= low && branch.from.max(branch.to) <= high);
+        let areas = area(index - 2).zip(area(index - 1)).zip(area(index));
+        is_furthest
+            && areas.is_some_and(|((whole, shared), last)| {
+                let loss = 1.0 - last / whole;
+                loss <= LOSS || 1.0 - last / shared >= 0.25 * loss
+            })
+    })
+}
+
+/// The cycles from the first branch on. `passes` says, after the cycles so far, that a branch and the next are a cycle that
+/// goes on beyond its beginning.
+fn walk(survey: &BranchSet, passes: impl Fn(&[Cycle], usize) -> bool) -> Vec<Cycle> {
     let mut found = Vec::new();
     let mut index = 0;
     while index + 1 < survey.branches.len() {
-        match cycle(survey, index) {
+        match cycle(survey, index, passes(&found, index)) {
             Some(cycle) => {
                 found.push(cycle);
                 index += 2;
@@ -127,16 +173,19 @@ pub(crate) fn cycles(survey: &BranchSet) -> Vec<Cycle> {
     found
 }
 
-fn cycle(survey: &BranchSet, index: usize) -> Option<Cycle> {
+fn cycle(survey: &BranchSet, index: usize, passes: bool) -> Option<Cycle> {
     let (out, back) = (&survey.branches[index], &survey.branches[index + 1]);
     let swing = out.travel().max(back.travel());
     let closed = (back.to - out.from).abs() <= CLOSED * swing + 2.0 * survey.input_noise.deviation();
-    if out.record != back.record || !closed {
+    if out.record != back.record || !(closed || passes) {
         return None;
     }
     let place = survey.openings.binary_search_by_key(&index, |opening| opening.branch).ok()?;
     let record = &survey.data.records()[out.record];
-    let rows = out.rows.start..back.rows.end;
+    let inputs = &record.inputs()[0][back.rows.clone()];
+    let beyond = |x: &f64| if out.rises() { *x < out.from } else { *x > out.from };
+    let past = inputs.iter().position(beyond).filter(|_| !closed).unwrap_or(inputs.len());
+    let rows = out.rows.start..back.rows.start + past;
     let (x, y) = (&record.inputs()[0][rows.clone()], &record.output()[rows.clone()]);
     if y.iter().any(|y| y.is_nan()) || out.curve.is_empty() || back.curve.is_empty() {
         return None;

@@ -182,3 +182,80 @@ fn energies(trends: &[CycleTrend]) -> Picture {
         curves: kinds.iter().take(SHOWN).map(curve).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use hysid_core::data::record::{ColumnNames, Dataset, Record};
+    use hysid_core::elementary::powf;
+
+    use crate::{Diagnosis, DiagnosisOptions, Finding, Property, Verdict};
+
+    /// Findings on wear and on symmetry for a member of four elastic-plastic springs on two cycles of each of six amplitudes,
+    /// the last of which is left after half a cycle. All forces lose a share in each
+    /// cycle, evenly; noise is a share of the range.
+    fn findings(loss: f64, noise: f64, seed: u64) -> [Finding; 2] {
+        const ROWS: usize = 60;
+        let ends = [5.0, 8.0, 12.0, 18.0, 27.0].into_iter().flat_map(|a| [a, -a, a, -a]).chain([40.0, -40.0]);
+        let (mut x, mut y, mut last, mut halves) = (vec![0.0], vec![0.0], 0.0, 0.0);
+        let mut forces = [0.0; 4];
+        for end in ends {
+            let step = (end - last) / ROWS as f64;
+            for row in 1..=ROWS {
+                for (place, force) in (1..).zip(&mut forces) {
+                    let most = 4.0 * f64::from(place);
+                    *force = (*force + step).clamp(-most, most);
+                }
+                let strength = powf(1.0 - loss, 0.5 * (halves + row as f64 / ROWS as f64));
+                x.push(last + step * row as f64);
+                y.push(strength * forces.iter().sum::<f64>());
+            }
+            (last, halves) = (end, halves + 1.0);
+        }
+        let range = y.iter().copied().fold(0.0, f64::max) - y.iter().copied().fold(0.0, f64::min);
+        for (row, y) in (0u64..).zip(&mut y) {
+            let even = |part: u64| {
+                let bits = hysid_core::random::mix(seed * 1_000_003 + 16 * row + part) >> 40;
+                f64::from(bits as u32) / f64::from(1u32 << 24) - 0.5
+            };
+            // Twelve even numbers together are nearly normal.
+            *y += noise * range * (0..12).map(even).sum::<f64>();
+        }
+        let names = ColumnNames::of(None, &["disp_mm"], "force_kN");
+        let data = Dataset::new(names, vec![Record::new("member", vec![x], y).unwrap()]).unwrap();
+        let diagnosis = Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap();
+        [Property::Deterioration, Property::OddSymmetry].map(|property| diagnosis.finding(property).clone())
+    }
+
+    /// The last cycle of each level goes on to the next: two loops of a level are one closed loop and one that is passed.
+    #[test]
+    fn two_cycles_a_level_show_wear() {
+        for loss in [0.1, 0.2] {
+            for noise in [0.0, 0.003, 0.01] {
+                let [wear, _] = findings(loss, noise, 1);
+                assert_eq!(wear.verdict, Verdict::Yes, "{loss} {noise}: {}", wear.statement);
+                let found = wear.index.unwrap();
+                assert!((found - loss).abs() < 0.02 + 8.0 * noise, "{loss} {noise}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn two_cycles_a_level_of_a_sound_member_show_none() {
+        for seed in 0..6 {
+            for noise in [0.0, 0.003, 0.01, 0.03] {
+                let [wear, _] = findings(0.0, noise, seed);
+                assert_ne!(wear.verdict, Verdict::Yes, "{noise} {seed}: {}", wear.statement);
+                assert!(noise > 0.003 || wear.verdict == Verdict::No, "{noise} {seed}: {}", wear.statement);
+            }
+        }
+    }
+
+    /// No three branches in succession go to the last tips: the level before decides.
+    #[test]
+    fn the_largest_level_with_three_branches_shows_symmetry() {
+        for noise in [0.0, 0.003] {
+            let [_, symmetry] = findings(0.0, noise, 1);
+            assert_eq!(symmetry.verdict, Verdict::Yes, "{noise}: {}", symmetry.statement);
+        }
+    }
+}

@@ -264,7 +264,7 @@ impl Diagnosis {
         let (rate, delay) = rate_dependence::verdict(survey);
         // Branches of different speed say nothing about memory where the speed matters, or may matter.
         let equal_speed = data.has_time() && rate.verdict != Verdict::No;
-        let wear = deterioration::verdict(survey, &cycles);
+        let wear = deterioration::verdict(survey, &cycles::cycles_up_to_growth(survey));
         // Memory that fades keeps loops open at first, but loses no energy.
         let may_fade = equal_speed && wear.verdict != Verdict::Yes;
         let at_rest =

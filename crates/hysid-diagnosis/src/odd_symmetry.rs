@@ -29,15 +29,14 @@ const EXPERIMENT: &str = "run a few equal loops over the whole range of the inpu
 pub(crate) fn verdict(survey: &BranchSet, equal_speed: bool) -> Finding {
     let middle = 0.5 * (survey.input.0 + survey.input.1);
     let centre = if middle.abs() <= ABOUT_ZERO * survey.width() { 0.0 } else { middle };
-    let half = (survey.input.1 - centre).min(centre - survey.input.0);
-    let mut pairs = pairs(survey, centre, half);
+    let (half, mut pairs) = pairs(survey, centre);
     // Where the speed matters, so does that of the branch before: the memory may fade.
     pairs.retain(|pair| !equal_speed || pair.iter().all(|branch| survey.similar_speed(branch, pair[0])));
     let step = pairs.len().div_ceil(MOST).max(1);
     let comparisons: Vec<Comparison> =
         pairs.into_iter().step_by(step).filter_map(|pair| compare(survey, centre, half, pair)).collect();
     let Some(judgement) = judge(&comparisons, EFFECT, BOUND) else {
-        let statement = "no successive rising and falling branches over the whole range";
+        let statement = "no three successive branches over most of the range";
         return Finding::not_testable(Property::OddSymmetry, statement, EXPERIMENT);
     };
     let percent = 100.0 * judgement.index;
@@ -60,23 +59,38 @@ pub(crate) fn verdict(survey: &BranchSet, equal_speed: bool) -> Finding {
     survey.finding(Property::OddSymmetry, &judgement, &comparisons, statement, EXPERIMENT)
 }
 
-/// Branches over the whole range that follow each other, with the one before the first where that is over
-/// the whole range too: half way between before and after, what a loop loses by wear is in both directions alike.
-fn pairs<'s>(survey: &'s BranchSet, centre: f64, half: f64) -> Vec<[&'s Branch; 3]> {
-    if half < 0.5 * COVERED * survey.width() {
-        return Vec::new();
-    }
+/// The largest distance from the centre that three successive branches reach on both sides, and all triples that reach it,
+/// if it covers enough of the input's range. Below the whole range the record went as far to both sides before and no
+/// further, so that the loops have a symmetric past. Half way between before and after, what a loop loses by wear is in both
+/// directions alike.
+fn pairs<'s>(survey: &'s BranchSet, centre: f64) -> (f64, Vec<[&'s Branch; 3]>) {
     let tolerance = survey.same_input();
-    let whole = |branch: &Branch| {
+    let whole = (survey.input.1 - centre).min(centre - survey.input.0);
+    let reach = |branch: &Branch| {
         let (low, high) = branch.curve.range();
-        !branch.curve.is_empty() && low <= centre - half + tolerance && high >= centre + half - tolerance
+        if branch.curve.is_empty() { 0.0 } else { (centre - low).min(high - centre) }
     };
-    survey
-        .branches
-        .windows(3)
-        .filter(|three| three.iter().all(|b| b.record == three[0].record) && three.iter().all(whole))
-        .map(|three| [&three[0], &three[1], &three[2]])
-        .collect()
+    let mut found: Vec<(f64, [&Branch; 3])> = Vec::new();
+    let (mut record, mut low, mut high) = (usize::MAX, 0.0f64, 0.0f64);
+    for three in survey.branches.windows(3) {
+        if three[0].record != record {
+            (record, low, high) = (three[0].record, three[0].from, three[0].from);
+        }
+        for end in [three[0].to, three[1].to] {
+            (low, high) = (low.min(end), high.max(end));
+        }
+        let half = three.iter().map(reach).fold(f64::INFINITY, f64::min);
+        let is_furthest = (high - centre - half).abs().max((centre - low - half).abs()) <= tolerance;
+        if three[2].record == record && (is_furthest || half >= whole - tolerance) {
+            found.push((half, [&three[0], &three[1], &three[2]]));
+        }
+    }
+    let half = whole.min(found.iter().map(|(half, _)| *half).fold(0.0, f64::max) + tolerance);
+    if half < 0.5 * COVERED * survey.width() {
+        return (half, Vec::new());
+    }
+    let far = found.into_iter().filter(|(reach, _)| *reach >= half - tolerance);
+    (half, far.map(|(_, three)| three).collect())
 }
 
 fn compare(

@@ -30,6 +30,8 @@ pub enum Colour {
     Band,
     /// One of several curves of the same kind, counted from 0; colours repeat after [`SERIES`].
     Series(usize),
+    /// A place in the order of several curves, from 0 for the first to [`RAMP`]` - 1` for the last.
+    Ramp(usize),
     /// A class of values of a heat map: an area, from [`LEVELS`]`.start()` for the lowest to [`LEVELS`]`.end()` for the highest
     /// values; 0 is the class around 0.
     Level(i8),
@@ -47,6 +49,35 @@ impl Colour {
 
 /// Number of different colours of [`Colour::Series`].
 pub const SERIES: usize = 6;
+
+/// Number of different colours of [`Colour::Ramp`].
+pub const RAMP: usize = 12;
+
+/// Records up to which a legend names each.
+const MOST_NAMED: usize = 8;
+
+/// Letters of a record's name in a legend.
+const LONGEST_NAME: usize = 40;
+
+/// The colour of each of several records, in their order, and the legend: the names of all of a few, those of the first and
+/// the last of many. A single record has no colour of its own.
+pub fn records_in_colour(names: &[&str]) -> (Vec<Colour>, Vec<(Colour, String)>) {
+    let last = names.len().saturating_sub(1);
+    if last == 0 {
+        return (Vec::new(), Vec::new());
+    }
+    let colours: Vec<Colour> =
+        (0..=last).map(|place| Colour::Ramp((place * (RAMP - 1) + last / 2) / last)).collect();
+    let name = |place: usize| names[place].chars().take(LONGEST_NAME).collect::<String>();
+    let legend = match names.len() > MOST_NAMED {
+        true => vec![
+            (colours[0], format!("{} (first of {})", name(0), names.len())),
+            (colours[last], format!("{} (last)", name(last))),
+        ],
+        false => (0..=last).map(|place| (colours[place], name(place))).collect(),
+    };
+    (colours, legend)
+}
 
 /// A line, or dots where a point has no neighbours; or the outline of an area, see [`Colour::is_area`].
 #[derive(Debug, Clone, PartialEq)]

@@ -3,27 +3,7 @@
 /// The quantity and its unit, if the column name ends with one, as a page shows it.
 pub fn split(column: &str) -> (String, Option<String>) {
     let (quantity, unit) = hysid_core::data::unit::split(column);
-    (quantity.to_string(), unit.map(|unit| written(&unit)))
-}
-
-/// Units that a leading `u` makes millionths of.
-const MICRO: [&str; 10] = ["s", "m", "m2", "m3", "V", "A", "C", "T", "J", "W"];
-
-/// A unit with the signs that a column name cannot have: `uC/cm2` is µC/cm².
-fn written(unit: &str) -> String {
-    let symbol = |symbol: &str| match symbol {
-        "percent" | "pct" => "%".into(),
-        "degC" => "°C".into(),
-        "deg" => "°".into(),
-        "ohm" => "Ω".into(),
-        _ => {
-            let micro = symbol.strip_prefix('u').filter(|of| MICRO.contains(of));
-            let symbol = micro.map_or(symbol.to_string(), |of| format!("µ{of}"));
-            symbol.replace('2', "²").replace('3', "³")
-        }
-    };
-    let product = |text: &str| text.split(' ').map(symbol).collect::<Vec<String>>().join(" ");
-    unit.split('/').map(product).collect::<Vec<String>>().join("/")
+    (quantity.to_string(), unit.map(|unit| hysid_core::data::unit::written(&unit)))
 }
 
 /// The column as a label: `force (kN)`.

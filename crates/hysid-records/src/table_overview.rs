@@ -149,7 +149,7 @@ impl ColumnSummary {
         vec![
             clipped(&self.name).into_owned(),
             self.role.unwrap_or("?").into(),
-            self.unit.as_deref().map(clipped).unwrap_or_default().into_owned(),
+            clipped(&self.unit.as_deref().map(unit::written).unwrap_or_default()).into_owned(),
             number(self.minimum),
             number(self.maximum),
             self.missing.to_string(),

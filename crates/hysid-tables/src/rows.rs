@@ -62,6 +62,9 @@ pub struct Rows {
 pub struct LeftOut {
     /// Comments among the rows.
     pub comments: u64,
+    /// Remarks behind rows, where no column has a name for them, and the line of the first.
+    pub remarks: u64,
+    pub first_remark: Option<u64>,
     /// Lines of text behind the table, and the first of them.
     pub end: Option<(u64, u64)>,
     /// Other tables of the file.
@@ -74,11 +77,14 @@ impl LeftOut {
     /// Number and kind of the lines left out, in words; `None` if there were none.
     pub fn described(&self) -> Option<String> {
         let comments = (self.comments > 0).then(|| counted(self.comments, "comment line", "among the rows"));
+        let remarks = self
+            .first_remark
+            .map(|line| format!("{} (from line {line})", counted(self.remarks, "remark", "behind the rows")));
         let end = self
             .end
             .map(|(line, lines)| format!("{} (from line {line})", counted(lines, "line", "after the table")));
         let tables = (!self.tables.is_empty()).then(|| listed(&self.tables));
-        let all: Vec<String> = comments.into_iter().chain(end).chain(tables).collect();
+        let all: Vec<String> = comments.into_iter().chain(remarks).chain(end).chain(tables).collect();
         (!all.is_empty()).then(|| all.join(", "))
     }
 }
@@ -273,6 +279,11 @@ impl Rows {
             if self.cells == width + 1 && self.row()?.cell(width).trim().is_empty() {
                 self.cells = width;
             }
+            if width > 1 && self.cells > width && self.ends_with_remark(width)? {
+                self.left_out.remarks += 1;
+                self.left_out.first_remark.get_or_insert(self.row()?.line);
+                self.cells = width;
+            }
             if self.cells + 1 == width && self.head.layout.ends_with_remarks() {
                 let end = self.ends[self.cells - 1];
                 self.ends.resize(self.ends.len().max(width), 0);
@@ -305,6 +316,13 @@ impl Rows {
             };
             return Err(Problem::at(&self.head.file, line, problem));
         }
+    }
+
+    /// True for a row of the table with words behind it, in a column that has no name and no cell in the rows before.
+    fn ends_with_remark(&self, width: usize) -> Result<bool> {
+        let cells: Vec<&str> = self.row()?.cells().collect();
+        let begins_with_letter = cells[width].trim_start().starts_with(char::is_alphabetic);
+        Ok(begins_with_letter && !is_row(&cells[width..=width]) && is_row(&cells[..width]))
     }
 
     /// How many lines stand from the present row to the end of the file, if none of them is a row.
@@ -542,6 +560,27 @@ mod tests {
         // A quotation mark that is not closed swallows the rest.
         let rest = read(cases[3].0, 3).unwrap();
         assert_eq!(rest.last().unwrap().1, ["5", "6\n7,8\n"]);
+    }
+
+    /// A remark in a column without a name, first behind the lines that the layout is found from.
+    #[test]
+    fn a_late_remark_without_a_column_is_left_out_and_numbers_are_not() {
+        for (end, late) in [("", ",crack, 2 mm north"), (",", "crack"), (",", "crack, north")] {
+            let mut lines = vec![format!("t_s,x_mm,F_kN{end}")];
+            lines.extend(
+                (1..=600).map(|row| format!("{row},0.1,2.3{end}{}", if row == 500 { late } else { "" })),
+            );
+            let mut rows = rows(lines.join("\n").as_bytes(), 1 << 20, &Reading::default()).unwrap();
+            let mut count = 0;
+            while let Some(row) = rows.next_row().unwrap() {
+                (count, _) = (count + 1, assert_eq!(row.width(), 3, "{end} {late}"));
+            }
+            assert_eq!(count, 600);
+            assert_eq!(rows.left_out.described().unwrap(), "1 remark behind the rows (from line 501)");
+            lines[500] = "500,0.1,2.3,4.5".into();
+            let error = read(lines.join("\n").as_bytes(), 1 << 20).unwrap_err().to_string();
+            assert!(error.starts_with("f, line 501: has 4 cells"), "{error}");
+        }
     }
 
     /// The header was said to have a name less where the first remark came after the lines that the layout is found from.

@@ -2,7 +2,7 @@
 
 use hysid::diagnosis::reversal_curves::{ReversalCurves, ReversalNode};
 use hysid_document::chart::thin::{Point, thin, thin_path};
-use hysid_document::chart::{HeatCell, heat_map};
+use hysid_document::chart::{HeatCell, heat_map, records_in_colour};
 use hysid_document::{Chart, Colour, Curve, unit};
 
 use super::Cycles;
@@ -10,37 +10,40 @@ use super::over_amplitude::{MOST_CURVES, backbone};
 
 const LOOP_POINTS: usize = 6000;
 
-/// All loops, the last complete cycle, and the backbone.
+/// All loops and the backbone; the largest cycle of a single record, and a colour for each of several.
 pub fn loops(cycles: &Cycles) -> Chart {
     let records = cycles.data.records();
     let every = records.len().div_ceil(MOST_CURVES).max(1);
     let most = (LOOP_POINTS * every / records.len().max(1)).max(100);
     let mut curves = Vec::new();
-    for record in records.iter().step_by(every) {
+    let what = if cycles.of_model { "all loops of the model" } else { "all loops" };
+    let names: Vec<&str> = records.iter().step_by(every).map(|record| record.name()).collect();
+    let (colours, mut legend) = records_in_colour(&names);
+    for (place, record) in records.iter().step_by(every).enumerate() {
         let (x, y) = (&*record.inputs()[0], record.output());
-        curves.push(Curve::new(path(x, y, most), Colour::Faint, 1.2));
+        let colour = colours.get(place).copied().unwrap_or(Colour::Faint);
+        curves.push(Curve::new(path(x, y, most), colour, 1.2));
     }
     let largest = cycles
         .table
         .complete()
         .max_by(|a, b| a.amplitude.unwrap_or(0.0).total_cmp(&b.amplitude.unwrap_or(0.0)));
-    if let Some(row) = largest
+    if names.len() == 1
+        && let Some(row) = largest
         && let Some(record) = records.iter().find(|record| record.name() == row.record)
     {
         let rows = row.rows.0..row.rows.1 + 1;
         let points = path(&record.inputs()[0][rows.clone()], &record.output()[rows], 2000);
         curves.push(Curve::new(points, Colour::Simulated, 1.8));
+        legend = vec![(Colour::Faint, what.into()), (Colour::Simulated, "largest cycle".into())];
     }
     curves.extend(backbone(cycles, Colour::Error, (1.6, 3.0)));
     let q = &cycles.quantities;
     let (x, y) = (unit::label(&q.input), unit::label(&q.output));
-    let what = if cycles.of_model { "all loops of the model" } else { "all loops" };
-    let description = format!("{y} over {x}: {what}, the cycle of the largest amplitude, and the backbone");
-    Chart::new(description, &x, &y, curves).sized(760.0, 460.0).with_legend([
-        (Colour::Faint, what),
-        (Colour::Simulated, "largest cycle"),
-        (Colour::Error, "backbone"),
-    ])
+    legend.push((Colour::Error, "backbone".into()));
+    let named: Vec<&str> = legend.iter().map(|(_, name)| name.as_str()).collect();
+    let description = format!("{y} over {x}, {what}: {}", named.join(", "));
+    Chart::new(description, &x, &y, curves).sized(760.0, 460.0).with_legend(legend)
 }
 
 /// Input and output where one or the other has moved visibly.

@@ -92,9 +92,14 @@ fn chart(finding: &Finding, picture: &Picture, quantities: &Quantities) -> Chart
         (label, _) => label.to_string(),
     };
     let (x, y) = (label(&picture.x_label, &quantities.input), label(&picture.y_label, &quantities.output));
+    let factor = match finding.property {
+        Property::Deterioration => quantities.energy_factor(),
+        _ => 1.0,
+    };
     let (mut curves, mut legend) = (Vec::new(), Vec::new());
     for curve in &picture.curves {
-        let points = thin(&curve.points, POINTS);
+        let points: Vec<_> = curve.points.iter().map(|&(x, y)| (x, factor * y)).collect();
+        let points = thin(&points, POINTS);
         // What has no name is there for comparison only, and lies behind the rest.
         if curve.label.is_empty() {
             curves.insert(0, Curve::new(points, Colour::Faint, 1.0));

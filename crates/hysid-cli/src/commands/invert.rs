@@ -81,7 +81,8 @@ fn understood(
 ) -> Vec<(String, String)> {
     let names = model.names();
     let with_unit = |value: f64, name: &str| {
-        let unit = unit::of_column(name).map_or_else(String::new, |unit| format!(" {}", clipped(&unit)));
+        let unit = unit::of_column(name)
+            .map_or_else(String::new, |unit| format!(" {}", clipped(&unit::written(&unit))));
         format!("{:.4}{unit}", Significant(value))
     };
     let input = &names.inputs[0];
@@ -98,7 +99,9 @@ fn understood(
     if let Some(slew) = arguments.slew {
         let time = names.time.as_ref().or(roles.time.as_ref());
         let per = match (unit::of_column(input), time.and_then(|name| unit::of_column(name))) {
-            (Some(unit), Some(time)) => format!("{}/{}", clipped(&unit), clipped(&time)),
+            (Some(unit), Some(time)) => {
+                format!("{}/{}", clipped(&unit::written(&unit)), clipped(&unit::written(&time)))
+            }
             _ => "per unit of time".into(),
         };
         lines.push(("slew", format!("at most {:.4} {per}", Significant(slew))));

@@ -1,6 +1,7 @@
 //! Loops of measured data and of a model.
 
 use hysid_app::{MEASURED_WIDTH, MODEL_WIDTH, path_curves, scored_rows};
+use hysid_document::chart::records_in_colour;
 use hysid_document::{Chart, Colour, Curve, unit};
 
 use super::PlotData;
@@ -30,12 +31,24 @@ pub fn loops(subject: &PlotData, width: f64) -> Chart {
             }
         }
     }
+    let names: Vec<&str> = subject.data.records().iter().map(|record| record.name()).collect();
+    let (colours, mut named) = records_in_colour(&names);
+    front.iter_mut().zip(colours).for_each(|(curve, colour)| curve.colour = colour);
+    let mut entries: Vec<(Colour, String)> =
+        legend(subject).into_iter().map(|(colour, name)| (colour, name.to_string())).collect();
+    if !named.is_empty() {
+        if !entries.is_empty() {
+            named.iter_mut().for_each(|(_, name)| *name = format!("model, {name}"));
+        }
+        entries.retain(|(colour, _)| *colour == Colour::Measured);
+        entries.extend(named);
+    }
     back.extend(front);
     let names = subject.data.names();
     let (x, y) = (unit::label(&names.inputs[0]), unit::label(&names.output));
     Chart::new(format!("Loops of {y} over {x}"), &x, &y, back)
         .sized(width, SHAPE * width)
-        .with_legend(legend(subject))
+        .with_legend(entries)
 }
 
 /// The legend of measured data and a model; nothing for one of both.

@@ -6,8 +6,8 @@ use hysid::model::Prediction;
 use hysid_app::histories::{Panel, difference, error_label};
 use hysid_app::tracks::times;
 use hysid_app::{MODEL_WIDTH, scored_rows, time_label};
-use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, thin};
+use hysid_document::chart::{PIXELS_PER_MILLIMETRE, Track};
 use hysid_document::{Chart, Colour, Curve, unit};
 
 use super::PlotData;
@@ -16,6 +16,11 @@ use crate::messages::{Usage, note};
 
 /// Most records that are drawn over time.
 const MOST_RECORDS: usize = 4;
+
+/// Height of a page of A4 within its margins, in pixels. Charts that are higher together are drawn lower, but not below this
+/// share of their height: fewer records are drawn then.
+const PAGE: f64 = 230.0 * PIXELS_PER_MILLIMETRE;
+const LOWEST: f64 = 0.5;
 
 const POINTS: usize = 4000;
 
@@ -30,7 +35,8 @@ const OVER_INPUT: f64 = 0.6;
 pub fn histories(subject: &PlotData, width: f64) -> Vec<Chart> {
     let names = subject.data.names();
     let mut charts = Vec::new();
-    for (record, predicted) in drawn(subject) {
+    let of_record = OUTPUT + BELOW * names.inputs.len().min(MOST_INPUTS) as f64;
+    for (record, predicted) in drawn(subject, of_record * width, 0.0) {
         let (time, output) = (times(record), unit::label(&names.output));
         let panel = panel(subject, record, &time);
         let simulated = predicted.map(|predicted| predicted.output.as_slice());
@@ -58,7 +64,7 @@ pub fn histories(subject: &PlotData, width: f64) -> Vec<Chart> {
         of_record[..lowest].iter_mut().for_each(|chart| chart.shares_axis = true);
         charts.extend(of_record);
     }
-    charts.into_iter().map(|chart| wide(chart, width)).collect()
+    on_a_page(charts, width)
 }
 
 /// Error of each record over time, and of all over the input.
@@ -77,7 +83,7 @@ pub fn errors(subject: &PlotData, width: f64) -> Result<Vec<Chart>> {
     };
     let errors: Vec<Vec<f64>> = subject.records().map(error).collect();
     let mut charts = Vec::new();
-    for ((record, _), error) in drawn(subject).zip(&errors) {
+    for ((record, _), error) in drawn(subject, OUTPUT * width, OVER_INPUT * width).zip(&errors) {
         let (time, rows) = (times(record), scored_rows(record));
         let panel = panel(subject, record, &time[rows.clone()]);
         let line = (Colour::Error, "error", 1.1, &error[rows]);
@@ -93,17 +99,36 @@ pub fn errors(subject: &PlotData, width: f64) -> Result<Vec<Chart>> {
     let input = unit::label(&names.inputs[0]);
     let chart = Chart::new(format!("{label}, model less measured, over {input}"), &input, &label, curves);
     charts.push(chart.with_height(OVER_INPUT * width));
-    Ok(charts.into_iter().map(|chart| wide(chart, width)).collect())
+    Ok(on_a_page(charts, width))
 }
 
-fn drawn(subject: &PlotData) -> impl Iterator<Item = (&Record, Option<&Prediction>)> {
+/// The first records whose charts, `height` pixels high each, fit on a page below `further` pixels.
+fn drawn(
+    subject: &PlotData,
+    height: f64,
+    further: f64,
+) -> impl Iterator<Item = (&Record, Option<&Prediction>)> {
     let count = subject.data.records().len();
-    if count > MOST_RECORDS {
+    let fitting = (PAGE / LOWEST - further) / height;
+    let most = (fitting as usize).clamp(1, MOST_RECORDS);
+    if count > most {
         note(format_args!(
-            "the first {MOST_RECORDS} of {count} records are drawn over time: choose others with --only RECORD"
+            "the first {most} of {} are drawn over time: choose others with --only RECORD",
+            hysid_document::count(count, "record")
         ));
     }
-    subject.records().take(MOST_RECORDS)
+    subject.records().take(most)
+}
+
+/// The charts in this width, together no higher than a page.
+fn on_a_page(charts: Vec<Chart>, width: f64) -> Vec<Chart> {
+    let height: f64 = charts.iter().map(|chart| chart.size.1).sum();
+    let factor = (PAGE / height).min(1.0);
+    let sized = |chart: Chart| {
+        let height = factor * chart.size.1;
+        chart.sized(width, height)
+    };
+    charts.into_iter().map(sized).collect()
 }
 
 fn panel<'a>(subject: &PlotData, record: &'a Record, time: &'a [f64]) -> Panel<'a> {
@@ -123,9 +148,4 @@ fn titled(chart: Chart, subject: &PlotData, record: &Record) -> Chart {
         1 => chart,
         _ => Chart { title: record.name().to_string(), ..chart },
     }
-}
-
-fn wide(chart: Chart, width: f64) -> Chart {
-    let height = chart.size.1;
-    chart.sized(width, height)
 }

@@ -80,7 +80,7 @@ fn a_member_has_the_figures_of_its_law_in_csv_text_and_json() {
         [("yield_output", 2.0, "kN"), ("yield_input", 2.0, "mm"), ("ductility", 2.0, "")]
     {
         let figure =
-            figures.iter().find(|row| row["figure"] == name && row["of"] == "mean of both sides").unwrap();
+            figures.iter().find(|row| row["figure"] == name && row["of"] == "mean backbone").unwrap();
         assert!((number(figure, "value") - expected).abs() < 1e-6, "{figure:?}");
         assert_eq!((figure["unit"].as_str(), figure["source"].as_str()), (unit, "ASTM E2126"));
     }

@@ -110,6 +110,55 @@ fn every_kind_has_its_figure() {
     }
 }
 
+/// Ellipses in records of their own, and one more input.
+fn ellipses(records: usize) -> String {
+    let mut text = String::from("record,t_s,disp_mm,v_mm_s,force_kN\n");
+    for record in 1..=records {
+        for row in 0..80 {
+            let phase = std::f64::consts::TAU * f64::from(row) / 40.0;
+            let size = record as f64;
+            text += &format!(
+                "r{record},{row},{},{},{}\n",
+                size * sin(phase),
+                cos(phase),
+                size * sin(phase + 0.3)
+            );
+        }
+    }
+    text
+}
+
+#[test]
+fn records_have_colours_and_a_legend_and_histories_fit_on_a_page() {
+    let bench = Workbench::new();
+    bench.put("few.csv", ellipses(3));
+    bench.put("many.csv", ellipses(20));
+    bench.succeeds("plot few.csv --output force_kN -o few.svg");
+    let drawing = bench.text("few.svg");
+    let strokes = |drawing: &str| {
+        let lines = drawing.split("<polyline ").skip(1).filter_map(|line| line.split("stroke=\"").nth(1));
+        lines.filter_map(|line| line.split('"').next().map(String::from)).collect::<Vec<_>>()
+    };
+    let own: std::collections::BTreeSet<String> = strokes(&drawing).into_iter().collect();
+    assert!(own.len() >= 3, "{own:?}");
+    assert!(["r1", "r2", "r3"].iter().all(|name| has_text(&drawing, name)));
+    bench.succeeds("plot many.csv --output force_kN -o many.svg");
+    let drawing = bench.text("many.svg");
+    assert!(has_text(&drawing, "r1 (first of 20)") && has_text(&drawing, "r20 (last)"));
+    for (inputs, most) in [("disp_mm", 4), ("disp_mm --input v_mm_s", 2)] {
+        let ran = bench.succeeds(&format!(
+            "plot many.csv --width 170 --kind histories --input {inputs} --output force_kN -o time.svg --force"
+        ));
+        assert!(ran.stderr.contains("records are drawn over time"), "{}", ran.stderr);
+        let drawing = bench.text("time.svg");
+        let height: f64 =
+            drawing.split(" height=\"").nth(1).unwrap().split("mm").next().unwrap().parse().unwrap();
+        assert!(height < 260.0, "{inputs}: {height} mm");
+        let charts = drawing.matches("class=\"curves\"").count();
+        assert!(charts <= 3 * most, "{inputs}: {charts} charts");
+    }
+}
+
 #[test]
 fn losses_over_frequency_are_those_of_the_cycles() {
     let bench = Workbench::new();

@@ -2,11 +2,13 @@
 
 mod derived;
 mod quantity;
+mod written;
 
 use crate::data::usual_role::UsualRole;
 use crate::elementary::{log10, powi};
 pub use derived::{energy, power, pure_quotient, quotient};
 use quantity::UnitQuantity;
+pub use written::written;
 
 /// Known units that are no multiples of others: a temperature in degrees Celsius has another zero.
 const OTHER: [&str; 1] = ["degC"];
@@ -113,7 +115,7 @@ fn is_in_unit_of_time(unit: Option<&str>) -> bool {
 
 /// A unit as it is printed after a number.
 pub fn suffix(unit: Option<&str>) -> String {
-    unit.map_or_else(String::new, |unit| format!(" {unit}"))
+    unit.map_or_else(String::new, |unit| format!(" {}", written(unit)))
 }
 
 /// A name, divided into quantity and unit.

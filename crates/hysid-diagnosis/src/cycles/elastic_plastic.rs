@@ -33,7 +33,7 @@ record_figures! {
     DUCTILITY: "ductility", "ductility", "μ", Ratio, "ASTM E2126";
 }
 
-const MEAN_SIDE: &str = "mean of both sides";
+const MEAN_SIDE: &str = "mean backbone";
 
 /// The figures of both sides of the backbone of a record and of their mean. Inputs are counted from `level`.
 pub(super) fn figures(record: &str, backbone: &[BackbonePoint], level: f64) -> Vec<RecordFigure> {

@@ -47,8 +47,9 @@ pub(super) struct Waveform {
 }
 
 impl Waveform {
-    /// The output of a complete cycle with a period and without blank rows.
-    pub fn of(record: &Record, row: &CycleRow) -> Option<Self> {
+    /// The output of a complete cycle with a period and without blank rows, over time in the unit in which `rate` units of
+    /// time are one.
+    pub fn of(record: &Record, row: &CycleRow, rate: f64) -> Option<Self> {
         let (time, rows) = (record.time()?, row.rows.0..row.rows.1 + 1);
         let period = row.period.filter(|_| row.complete && row.frequency.is_some())?;
         let first = *time.get(rows.start)?;
@@ -58,6 +59,7 @@ impl Waveform {
             rows.map(|row| (time[row], record.output()[row])).unzip();
         time.push(first + period);
         output.push(*output.first()?);
+        time.iter_mut().for_each(|time| *time /= rate);
         let is_measured = output.iter().all(|y| !y.is_nan());
         is_measured.then_some(Self { time, output })
     }

@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
+use super::reading::SURE;
 use super::row::CycleRow;
+use hysid_core::elementary::hypot;
 
 /// Successive cycles whose amplitudes differ by less than this share are of one level.
 const ALIKE: f64 = 0.05;
@@ -22,13 +24,13 @@ pub struct LevelRow {
     pub drift_percent: Option<f64>,
     /// Output of its first cycle.
     pub output_first: Option<f64>,
-    /// Loss of output from its first to its last cycle, in percent of the first.
+    /// Loss of output from its first to its last cycle, in percent of the first; `None` within noise.
     pub strength_loss_percent: Option<f64>,
     /// Output of its first cycle in percent of the largest so far.
     pub strength_percent: Option<f64>,
     /// Secant stiffness of its first cycle.
     pub stiffness_first: Option<f64>,
-    /// Loss of secant stiffness from its first to its last cycle, in percent of the first.
+    /// Loss of secant stiffness from its first to its last cycle, in percent of the first; `None` within noise.
     pub stiffness_loss_percent: Option<f64>,
     /// Secant stiffness of its first cycle in percent of that of the first level.
     pub stiffness_percent: Option<f64>,
@@ -46,8 +48,14 @@ pub struct LevelRow {
     pub cumulative_ductility: Option<f64>,
 }
 
-/// The levels of the rows of one record. `yielding` is the yield input of its mean backbone; `height` that of the structure.
-pub(super) fn levels(rows: &[CycleRow], yielding: Option<f64>, height: Option<f64>) -> Vec<LevelRow> {
+/// The levels of the rows of one record. `yielding` is the yield input of its mean backbone, `height` that of the structure;
+/// `noise` are the deviations of input and output.
+pub(super) fn levels(
+    rows: &[CycleRow],
+    yielding: Option<f64>,
+    height: Option<f64>,
+    noise: (f64, f64),
+) -> Vec<LevelRow> {
     let complete: Vec<&CycleRow> = rows.iter().filter(|row| row.complete).collect();
     let is_same = |a: &&CycleRow, b: &&CycleRow| {
         a.amplitude.zip(b.amplitude).is_some_and(|(a, b)| (a - b).abs() <= ALIKE * a.max(b))
@@ -56,6 +64,10 @@ pub(super) fn levels(rows: &[CycleRow], yielding: Option<f64>, height: Option<f6
     let groups = complete.chunk_by(is_same).enumerate();
     let of_group = |(number, group): (usize, &[&CycleRow])| {
         let (first, last) = (group[0], group[group.len() - 1]);
+        // Noise of the input moves the output along the secant.
+        let slope = first.secant_stiffness.unwrap_or_default();
+        let deviation = hypot(noise.1, slope * noise.0);
+        let least = output(first).map_or(0.0, |own| 100.0 * SURE * deviation / own);
         let of_all =
             |of: fn(&CycleRow) -> Option<f64>| group.iter().map(|row| of(row)).collect::<Option<Vec<f64>>>();
         let mean = |of| of_all(of).map(|values| values.iter().sum::<f64>() / values.len() as f64);
@@ -72,10 +84,10 @@ pub(super) fn levels(rows: &[CycleRow], yielding: Option<f64>, height: Option<f6
             amplitude: first.amplitude,
             drift_percent: first.amplitude.zip(height).and_then(|(own, height)| percent(own, height)),
             output_first: own,
-            strength_loss_percent: loss(group, own, output(last)),
+            strength_loss_percent: loss(group, own, output(last), least),
             strength_percent: own.and_then(|own| percent(own, strongest)),
             stiffness_first: first.secant_stiffness,
-            stiffness_loss_percent: loss(group, first.secant_stiffness, last.secant_stiffness),
+            stiffness_loss_percent: loss(group, first.secant_stiffness, last.secant_stiffness, least),
             stiffness_percent: first
                 .secant_stiffness
                 .zip(stiffness)
@@ -100,8 +112,38 @@ fn percent(part: f64, whole: f64) -> Option<f64> {
     (whole > 0.0).then(|| 100.0 * part / whole)
 }
 
-/// Loss from the first to the last of several cycles.
-fn loss(group: &[&CycleRow], first: Option<f64>, last: Option<f64>) -> Option<f64> {
+/// Loss in percent from the first to the last of several cycles, if it or the gain is not below `least`.
+fn loss(group: &[&CycleRow], first: Option<f64>, last: Option<f64>, least: f64) -> Option<f64> {
     let (first, last) = first.zip(last).filter(|_| group.len() > 1)?;
-    percent(first - last, first)
+    percent(first - last, first).filter(|loss| loss.abs() >= least)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two cycles of amplitude 2 with these outputs.
+    fn level(outputs: [f64; 2], noise: (f64, f64)) -> LevelRow {
+        let row = |output: f64| CycleRow {
+            complete: true,
+            amplitude: Some(2.0),
+            peak_output: Some(output),
+            valley_output: Some(-output),
+            secant_stiffness: Some(0.5 * output),
+            ..CycleRow::default()
+        };
+        levels(&outputs.map(row), None, None, noise).remove(0)
+    }
+
+    #[test]
+    fn a_loss_within_noise_is_absent() {
+        let losses = |level: LevelRow| (level.strength_loss_percent, level.stiffness_loss_percent);
+        assert_eq!(losses(level([10.0, 9.0], (0.0, 0.3))), (Some(10.0), Some(10.0)));
+        // Three deviations of the difference of two halves of a range.
+        assert_eq!(losses(level([10.0, 9.0], (0.0, 0.4))), (None, None));
+        assert_eq!(losses(level([10.0, 11.0], (0.0, 0.4))), (None, None));
+        // Noise of the input of 0.08 along a secant of 5.
+        assert_eq!(losses(level([10.0, 9.0], (0.08, 0.0))), (None, None));
+        assert_eq!(losses(level([10.0, 8.0], (0.08, 0.3))), (Some(20.0), Some(20.0)));
+    }
 }

@@ -80,11 +80,12 @@ pub(super) struct LossLaws {
 }
 
 impl LossLaws {
-    /// Finds the laws and gives each cycle the loss that they have for its waveform.
-    pub fn read(data: &Dataset, cycles: &mut [CycleRow]) -> Self {
+    /// Finds the laws and gives each cycle the loss that they have for its waveform. `rate` is the number of units of time
+    /// in that of the frequencies.
+    pub fn read(data: &Dataset, cycles: &mut [CycleRow], rate: f64) -> Self {
         let record = |row: &CycleRow| data.records().iter().find(|record| record.name() == row.record);
         let waveforms: Vec<Option<Waveform>> =
-            cycles.iter().map(|row| Waveform::of(record(row)?, row)).collect();
+            cycles.iter().map(|row| Waveform::of(record(row)?, row, rate)).collect();
         let laws = laws(cycles, &waveforms);
         for (row, waveform) in cycles.iter_mut().zip(&waveforms) {
             row.igse_energy =

@@ -42,7 +42,7 @@ impl Quantities {
 
     /// A quantity in the product of both units over that of time, as a loss.
     pub fn as_power(&self, name: &str) -> String {
-        let power = self.energy().zip(self.time.clone());
+        let power = self.energy().zip(self.rate_time());
         named(name, power.map(|(energy, time)| unit::power(&energy, &time)))
     }
 
@@ -76,13 +76,13 @@ impl Quantities {
             FigureQuantity::Power => self.as_power(name),
             FigureQuantity::Stiffness => self.as_stiffness(name),
             FigureQuantity::Time => named(name, self.time.clone()),
-            FigureQuantity::Frequency => named(name, self.time.as_deref().map(frequency)),
+            FigureQuantity::Frequency => named(name, self.rate_time().as_deref().map(frequency)),
             FigureQuantity::Percent => named(name, Some("%".into())),
             FigureQuantity::Ratio => name.into(),
             FigureQuantity::Angle => named(name, Some("deg".into())),
             FigureQuantity::EnergyPerMass => named(name, self.energy().and_then(|unit| per_mass(&unit))),
             FigureQuantity::PowerPerMass => {
-                let power = self.energy().and_then(|unit| per_mass(&unit)).zip(self.time.clone());
+                let power = self.energy().and_then(|unit| per_mass(&unit)).zip(self.rate_time());
                 named(
                     name,
                     power.map(|(energy, time)| match time.as_str() {
@@ -109,9 +109,33 @@ impl Quantities {
         self.energy().filter(|unit| per_mass(unit).is_none())
     }
 
+    /// Factor from the area of a loop to its energy in its unit.
+    pub fn energy_factor(&self) -> f64 {
+        self.energy_and_factor().map_or(1.0, |(_, factor)| factor)
+    }
+
+    /// Factor from cycles per unit of time to the unit of frequencies.
+    pub(super) fn rate_factor(&self) -> f64 {
+        self.per_second().unwrap_or(1.0)
+    }
+
     fn energy(&self) -> Option<String> {
+        self.energy_and_factor().map(|(unit, _)| unit)
+    }
+
+    fn energy_and_factor(&self) -> Option<(String, f64)> {
         let units = unit::of_column(&self.output).zip(unit::of_column(&self.input));
         units.map(|(output, input)| unit::energy(&output, &input))
+    }
+
+    /// The unit of time of frequencies and powers: seconds for seconds and their parts.
+    fn rate_time(&self) -> Option<String> {
+        self.per_second().map(|_| "s".to_string()).or_else(|| self.time.clone())
+    }
+
+    /// Units of time in a second, where they are no longer than one.
+    fn per_second(&self) -> Option<f64> {
+        unit::factor("s", self.time.as_deref()?).filter(|per_second| *per_second >= 1.0)
     }
 }
 
@@ -123,8 +147,7 @@ fn per_mass(energy: &str) -> Option<String> {
 /// The unit of a frequency.
 fn frequency(time: &str) -> String {
     match time {
-        "s" | "sec" | "secs" | "second" | "seconds" => "Hz".into(),
-        "ms" => "kHz".into(),
+        "s" => "Hz".into(),
         other => format!("1/{other}"),
     }
 }
@@ -155,6 +178,18 @@ mod tests {
         assert_eq!(magnet.as_density("density"), "density [T/(A/m)2]");
         assert_eq!(magnet.as_energy("energy"), "energy [J/m3]");
         assert_eq!(magnet.as_speed("speed"), "speed");
+        let cgs = quantities(Some("t_ms"), "H_Oe", "B_kG");
+        assert_eq!(cgs.as_energy("energy"), "energy [J/m3]");
+        // 1000/(4π) erg/cm³, in J/m³.
+        approx::assert_relative_eq!(cgs.energy_factor(), 7.957_747_154_594_767, max_relative = 1e-12);
+        assert_eq!(cgs.as_power("loss"), "loss [W/m3]");
+        assert_eq!(cgs.as_figure("frequency", FigureQuantity::Frequency), "frequency [Hz]");
+        assert_eq!(cgs.as_figure("specific loss", FigureQuantity::PowerPerMass), "specific loss [W/kg]");
+        assert_eq!(cgs.as_speed("speed"), "speed [Oe/ms]");
+        assert_eq!((cgs.rate_factor(), joint.rate_factor(), joint.energy_factor()), (1000.0, 1.0, 1.0));
+        let slow = quantities(Some("t_min"), "disp_mm", "force_kN");
+        assert_eq!(slow.as_figure("frequency", FigureQuantity::Frequency), "frequency [1/min]");
+        assert_eq!(slow.rate_factor(), 1.0);
         assert_eq!(quantities(None, "strain", "stress_MPa").as_energy("energy"), "energy");
     }
 }

@@ -11,6 +11,9 @@ use crate::smoothing::{BranchRow, Parabola};
 /// Fewest rows of a parabola at an end of a branch.
 const FEWEST_AT_AN_END: usize = 8;
 
+/// Deviations of the noise below which a figure is not distinguished from noise.
+pub(super) const SURE: f64 = 3.0;
+
 /// Input at which a branch first passes a level of the output, in the order of time.
 pub(super) fn crossing(branch: &Branch, level: f64) -> Option<f64> {
     let mut points: Vec<(f64, f64)> = branch.curve.points().collect();

@@ -129,6 +129,14 @@ pub struct CycleRow {
 pub(super) const OPEN_LOOP: &str = "the loop is open by";
 
 impl CycleRow {
+    /// Multiplies energies, and frequencies, by these factors.
+    pub(super) fn scale(&mut self, energy: f64, rate: f64) {
+        let energies = [&mut self.energy, &mut self.energy_deviation, &mut self.cumulative_energy];
+        energies.into_iter().flatten().for_each(|value| *value *= energy);
+        self.power.iter_mut().for_each(|power| *power *= energy * rate);
+        self.frequency.iter_mut().for_each(|frequency| *frequency *= rate);
+    }
+
     /// Output at the end less output at the beginning, in the unit of the output, if the loop is open.
     pub fn opening(&self) -> Option<f64> {
         self.faults.opening

@@ -23,7 +23,7 @@ use super::losses::{LossAtFrequency, losses};
 use super::notes::notes;
 use super::path::{Closure, CyclePath, area, at, range, weights, width};
 use super::quantities::Quantities;
-use super::reading::{Widest, damping, end_without_noise, output_at_end, secant, widest};
+use super::reading::{SURE, Widest, damping, end_without_noise, output_at_end, secant, widest};
 use super::record_figure::RecordFigure;
 use super::row::{CycleRow, OPEN_LOOP};
 use super::saturation;
@@ -69,9 +69,6 @@ const UNEVEN: f64 = 1.5;
 
 /// Share of the way through a loop, before its middle, to which the input goes back on smaller loops.
 const BACK: f64 = 0.1;
-
-/// Deviations of the noise below which a figure is not distinguished from noise.
-const SURE: f64 = 3.0;
 
 /// How cycles are found and what is read from them.
 #[derive(Debug, Clone, PartialEq)]
@@ -165,7 +162,8 @@ impl CycleTable {
     /// volume, or a height for data of no structure.
     pub fn of(data: &Dataset, options: &CycleOptions) -> Result<Self> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let unit = Quantities::of(data.names()).other_than_energy_per_volume();
+        let quantities = Quantities::of(data.names());
+        let unit = quantities.other_than_energy_per_volume();
         if let Some(unit) = unit.filter(|_| options.density.is_some()) {
             return Err(Error::Parts(format!(
                 "losses per mass need an energy per volume, as of A/m and T, and the loops of these data are in {unit}: \
@@ -182,14 +180,17 @@ impl CycleTable {
         let division = options.division.unwrap_or_else(|| choose(&survey, field));
         let (mut cycles, mut points) = (Vec::new(), Vec::new());
         let (mut levels, mut figures) = (Vec::new(), Vec::new());
+        let noise = (survey.input_noise.deviation(), survey.output_noise.deviation());
         for (number, record) in data.records().iter().enumerate() {
             let begins = record.inputs()[0].first().copied().unwrap_or_default();
             let level = level(&survey, number, division).unwrap_or(begins);
             let backbone = if field.has_structures() { backbone(&survey, number, level) } else { Vec::new() };
-            let rows = rows_of(&survey, number, (field, division), &backbone);
+            let mut rows = rows_of(&survey, number, (field, division), &backbone);
+            rows.iter_mut().for_each(|row| row.scale(quantities.energy_factor(), quantities.rate_factor()));
             if field == Field::Structure {
                 let own = elastic_plastic::figures(record.name(), &backbone, level);
-                levels.extend(levels::levels(&rows, elastic_plastic::mean_yield_input(&own), options.height));
+                let yielding = elastic_plastic::mean_yield_input(&own);
+                levels.extend(levels::levels(&rows, yielding, options.height, noise));
                 figures.extend(own);
             }
             if field == Field::Magnet && rows.iter().any(|row| row.complete) {
@@ -205,8 +206,11 @@ impl CycleTable {
                 row.power_per_mass = row.power.map(|power| power / density);
             }
         }
-        let laws =
-            if field == Field::Magnet { LossLaws::read(data, &mut cycles) } else { LossLaws::default() };
+        let laws = if field == Field::Magnet {
+            LossLaws::read(data, &mut cycles, quantities.rate_factor())
+        } else {
+            LossLaws::default()
+        };
         figures.extend(laws.figures);
         let notes = notes(&survey, &cycles, (field, division));
         let losses = losses(&cycles, laws.separation.as_ref(), density);

@@ -232,6 +232,9 @@ const BEFORE_NAME: f64 = 1.77;
 /// From an entry's name to the next entry, in sizes of the text.
 const AFTER_NAME: f64 = 1.08;
 
+/// Width of the letters of names with many figures, in mean widths of a letter.
+const WIDE_LETTER: f64 = 1.15;
+
 /// Room to the left of a title, in sizes of the text.
 const BEFORE_TITLE: f64 = 9.0;
 
@@ -267,7 +270,7 @@ fn line_width(chart: &Chart, colour: Colour) -> f64 {
 }
 
 fn entry_width(name: &str, appearance: &Appearance) -> f64 {
-    appearance.em(BEFORE_NAME + AFTER_NAME) + appearance.letter() * name.chars().count() as f64
+    appearance.em(BEFORE_NAME + AFTER_NAME) + WIDE_LETTER * appearance.letter() * name.chars().count() as f64
 }
 
 fn fine(pixels: f64) -> i32 {

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use plotters::style::RGBColor;
 
-use super::{Colour, LEVELS, SERIES};
+use super::{Colour, LEVELS, RAMP, SERIES};
 
 /// A marker and the colours that it stands for.
 struct Tone {
@@ -43,6 +43,23 @@ const ONE_OF_SERIES: [Tone; SERIES] = [
     tone((0x06, 0x90, 0x90), "#0e7490", "#5cc5d6"),
 ];
 
+/// The ramp: hue and lightness go one way, so that it is told apart without colour vision. From the map viridis of Stéfan
+/// van der Walt and Nathaniel Smith, without the end that is too pale or too dark for the page.
+const ONE_OF_RAMP: [Tone; RAMP] = [
+    tone((0x30, 0x40, 0x50), "#45085b", "#f0e524"),
+    tone((0x30, 0x40, 0x51), "#482374", "#c9e023"),
+    tone((0x30, 0x40, 0x52), "#433b83", "#a2da38"),
+    tone((0x30, 0x40, 0x53), "#3b518a", "#7cd150"),
+    tone((0x30, 0x40, 0x54), "#32658d", "#59c764"),
+    tone((0x30, 0x40, 0x55), "#2a798e", "#3dba74"),
+    tone((0x30, 0x40, 0x56), "#238b8d", "#28ac81"),
+    tone((0x30, 0x40, 0x57), "#209d89", "#209e88"),
+    tone((0x30, 0x40, 0x58), "#2aaf7f", "#22908c"),
+    tone((0x30, 0x40, 0x59), "#49c06e", "#26828e"),
+    tone((0x30, 0x40, 0x5A), "#72ce55", "#2c738e"),
+    tone((0x30, 0x40, 0x5B), "#a2da38", "#32648d"),
+];
+
 /// The levels of a heat map, from the lowest.
 const LEVEL: [Tone; 12] = [
     tone((0x10, 0x21, 0x33), "#b8651b", "#e08b4a"),
@@ -75,6 +92,7 @@ fn of(colour: Colour) -> &'static Tone {
         Colour::Faint => &FAINT,
         Colour::Band => &BAND,
         Colour::Series(index) => &ONE_OF_SERIES[index % SERIES],
+        Colour::Ramp(place) => &ONE_OF_RAMP[place.min(RAMP - 1)],
         Colour::Level(level) => {
             let level = level.clamp(*LEVELS.start(), *LEVELS.end());
             &LEVEL[usize::from(level.abs_diff(*LEVELS.start()))]
@@ -83,7 +101,11 @@ fn of(colour: Colour) -> &'static Tone {
 }
 
 fn all() -> impl Iterator<Item = &'static Tone> {
-    [&MEASURED, &SIMULATED, &INPUT, &ERROR, &FAINT, &BAND].into_iter().chain(&ONE_OF_SERIES).chain(&LEVEL)
+    [&MEASURED, &SIMULATED, &INPUT, &ERROR, &FAINT, &BAND]
+        .into_iter()
+        .chain(&ONE_OF_SERIES)
+        .chain(&ONE_OF_RAMP)
+        .chain(&LEVEL)
 }
 
 impl Colour {

@@ -2,6 +2,22 @@ use hysid_core::elementary::sin;
 
 use super::frame::legend_lines;
 use super::*;
+
+#[test]
+fn records_have_colours_of_their_own_and_a_legend() {
+    for count in 2..=8 {
+        let names: Vec<String> = (0..count).map(|k| format!("r{k}")).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let (colours, legend) = records_in_colour(&names);
+        assert_eq!((colours[0], colours[count - 1]), (Colour::Ramp(0), Colour::Ramp(RAMP - 1)));
+        assert!(colours.windows(2).all(|pair| pair[0] != pair[1]), "{colours:?}");
+        assert_eq!(legend.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>(), names);
+    }
+    let (colours, legend) = records_in_colour(&["r"; 30]);
+    assert_eq!((colours.len(), legend.len()), (30, 2));
+    assert_eq!(legend[0], (Colour::Ramp(0), "r (first of 30)".to_string()));
+    assert_eq!(records_in_colour(&["r"]), (Vec::new(), Vec::new()));
+}
 use crate::balance::assert_balanced;
 
 fn chart(points: Vec<Point>) -> Chart {

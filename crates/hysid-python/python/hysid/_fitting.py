@@ -171,9 +171,10 @@ def fit(
         Default: normal.
     starts : int, optional
         Number of random starts: networks, populations or parameter sets from which the training begins. Default: 2 for
-        subgradient and auto; 1 for hybrid and genetic; 32 for generalized-prandtl-ishlinskii; 16 for
-        rate-dependent-prandtl-ishlinskii, neuro-madelung, peak-oriented and menegotto-pinto; 6 for duhem-nn; 4 for
-        hysteretic-oscillator and hysteretic-state-space; otherwise 8.
+        subgradient and auto; 8 for levenberg-marquardt, dynamic-prandtl-ishlinskii, ramberg-osgood, jiles-atherton and
+        lugre; 1 for hybrid and genetic; 32 for generalized-prandtl-ishlinskii; 16 for
+        rate-dependent-prandtl-ishlinskii, neuro-madelung, peak-oriented and menegotto-pinto; 8 (16 with degradation)
+        for bouc-wen; 6 for duhem-nn; 4 for hysteretic-oscillator and hysteretic-state-space.
     epochs : int, optional
         Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm, iterations of the
         sub-gradient method; the hybrid uses half of them for each. Default: 400 for subgradient; 2000 for hybrid and

@@ -11,11 +11,21 @@ const PREFIXES: [(&str, f64); 5] = [("u", 1e-6), ("m", 1e-3), ("", 1.0), ("k", 1
 const NAMED: [(&str, Dimension); 4] =
     [("J", ENERGY), ("J/m3", ENERGY_DENSITY), ("W", POWER), ("W/m3", POWER_DENSITY)];
 
-/// The unit of the area of a loop, which is the product of the units of output and input: `J` of kN and mm, `J/m3` of T
-/// and A/m, and `lbf inch` where the product is no decimal multiple of a unit of energy. The number does not change.
-pub fn energy(output: &str, input: &str) -> String {
-    let product = UnitQuantity::of(output).zip(UnitQuantity::of(input)).map(|(a, b)| a.times(b, 1));
-    product.and_then(name).unwrap_or_else(|| format!("{output} {input}"))
+/// The unit of the energy of a loop and the factor from its area, which is in the product of the units of output and input.
+/// The factor is 1 for `J` of kN and mm, `J/m3` of T and A/m, and `lbf inch`, where the product is no decimal multiple of a
+/// unit of energy. Of a flux density and a field in other units, such as kG and Oe, the energy is in `J/m3`.
+pub fn energy(output: &str, input: &str) -> (String, f64) {
+    let both = UnitQuantity::of(output).zip(UnitQuantity::of(input));
+    let is_magnetic = |(a, b): &(UnitQuantity, UnitQuantity)| {
+        [[FLUX_DENSITY, FIELD], [FIELD, FLUX_DENSITY]].contains(&[a.dimension, b.dimension])
+    };
+    match both.and_then(|(a, b)| name(a.times(b, 1))) {
+        Some(unit) => (unit, 1.0),
+        None => match both.filter(is_magnetic) {
+            Some((a, b)) => ("J/m3".into(), a.factor * b.factor),
+            None => (format!("{output} {input}"), 1.0),
+        },
+    }
 }
 
 /// The unit of an energy over time: `W` of J and s, `W/m3` of J/m3 and s.
@@ -69,11 +79,19 @@ mod tests {
             ("mWb", "A", "mJ"),
             ("um", "V", "um V"),
             ("lbf", "inch", "lbf inch"),
-            ("G", "Oe", "G Oe"),
             ("MPa", "percent", "MPa percent"),
             ("ticks", "mm", "ticks mm"),
         ] {
-            assert_eq!(energy(output, input), expected, "{output} {input}");
+            assert_eq!(energy(output, input), (expected.to_string(), 1.0), "{output} {input}");
+        }
+        // ∮ H dB/(4π) in erg/cm³, a tenth of it in J/m³.
+        let per_gauss_oersted = 0.1 / (4.0 * std::f64::consts::PI);
+        for (output, input, factor) in
+            [("G", "Oe", 1.0), ("kG", "Oe", 1e3), ("Oe", "kG", 1e3), ("G", "kOe", 1e3), ("T", "Oe", 1e4)]
+        {
+            let (unit, found) = energy(output, input);
+            assert_eq!(unit, "J/m3", "{output} {input}");
+            approx::assert_relative_eq!(found, factor * per_gauss_oersted, max_relative = 1e-12);
         }
     }
 

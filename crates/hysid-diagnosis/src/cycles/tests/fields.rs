@@ -376,3 +376,38 @@ fn a_storm_has_the_index_of_the_difference_of_its_limbs() {
         assert_relative_eq!(row.hysteresis_index.unwrap(), expected, epsilon = 1e-6);
     }
 }
+
+/// The same magnet in A/m, T and s, and in Oe, kG and ms.
+#[test]
+fn losses_do_not_depend_on_the_system_of_units() {
+    let si = losses(&grid(|peak, frequency| 40.0 * powf(frequency, 0.3) * powf(peak, 1.9)));
+    let of = |data: &Dataset| {
+        CycleTable::of(data, &CycleOptions { density: Some(7650.0), ..CycleOptions::default() }).unwrap()
+    };
+    let scaled = |values: &[f64], factor: f64| values.iter().map(|value| factor * value).collect::<Vec<_>>();
+    let records = si.records().iter().map(|record| {
+        let input = scaled(&record.inputs()[0], 4.0 * PI / 1000.0);
+        let record_in = Record::new(record.name(), vec![input], scaled(record.output(), 10.0)).unwrap();
+        record_in.with_time(scaled(record.time().unwrap(), 1000.0)).unwrap()
+    });
+    let names = ColumnNames::of(Some("t_ms"), &["H_Oe"], "B_kG");
+    let (si, cgs) = (of(&si), of(&Dataset::new(names, records.collect()).unwrap()));
+    assert_eq!((cgs.cycles.len(), cgs.losses.len()), (si.cycles.len(), si.losses.len()));
+    let figures: [fn(&CycleRow) -> Option<f64>; 6] = [
+        |row| row.energy,
+        |row| row.frequency,
+        |row| row.power,
+        |row| row.igse_energy,
+        |row| row.power_per_mass,
+        |row| row.energy_per_mass,
+    ];
+    for (a, b) in si.complete().zip(cgs.complete()) {
+        for of in figures {
+            assert_relative_eq!(of(a).unwrap(), of(b).unwrap(), max_relative = 1e-6);
+        }
+    }
+    // Exponents are pure numbers, the coefficient is that of a flux density in kG.
+    for name in ["steinmetz_frequency_exponent", "steinmetz_amplitude_exponent"] {
+        assert_relative_eq!(value(&si, "", name), value(&cgs, "", name), max_relative = 1e-6);
+    }
+}

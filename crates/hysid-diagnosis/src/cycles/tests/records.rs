@@ -29,7 +29,7 @@ fn an_elastic_plastic_backbone_is_its_own_equivalent() {
     let x = path(&[0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 0.0], 0.05);
     let y = Stop::new(1.0).unwrap().run(&x).into_iter().map(|y| 2.0 * y).collect();
     let table = table_of(&data(x, y), Field::Structure);
-    for (of, sign) in [("positive side", 1.0), ("negative side", -1.0), ("mean of both sides", 1.0)] {
+    for (of, sign) in [("positive side", 1.0), ("negative side", -1.0), ("mean backbone", 1.0)] {
         for (name, expected) in
             [("peak_output", 2.0), ("yield_output", 2.0), ("yield_input", 1.0), ("ultimate_input", 4.0)]
         {
@@ -48,7 +48,7 @@ fn a_falling_backbone_fails_at_eight_tenths_and_both_sides_have_a_mean() {
     let yielding =
         |stiffness: f64, area: f64| stiffness * (2.8 - (2.8 * 2.8 - 2.0 * area / stiffness).sqrt());
     for (of, sign, share) in
-        [("positive side", 1.0, 1.0), ("negative side", -1.0, 0.5), ("mean of both sides", 1.0, 0.75)]
+        [("positive side", 1.0, 1.0), ("negative side", -1.0, 0.5), ("mean backbone", 1.0, 0.75)]
     {
         let (stiffness, strength) = (2.0 * share, yielding(2.0 * share, 4.44 * share));
         assert_relative_eq!(value(&table, of, "elastic_stiffness"), stiffness, epsilon = 1e-9);
@@ -88,7 +88,7 @@ fn levels_have_the_losses_within_them_and_from_one_to_the_next() {
     near(of(|level| level.strength_percent), [Some(100.0), Some(100.0), Some(75.0)]);
     near(of(|level| level.stiffness_percent), [Some(100.0), Some(100.0), Some(37.5)]);
     // Each cycle has two half cycles; their sums are 1, 7 and 15.
-    let yielding = value(&table, "mean of both sides", "yield_input");
+    let yielding = value(&table, "mean backbone", "yield_input");
     near(of(|level| level.cumulative_ductility), [1.0, 7.0, 15.0].map(|sum| Some(sum / yielding)));
     near(of(|level| level.ductility), [0.5, 1.0, 2.0].map(|amplitude| Some(amplitude / yielding)));
     near(of(|level| level.drift_percent.or(Some(0.0))), [Some(0.0); 3]);
