@@ -6,6 +6,7 @@ use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::diagnosis::residuals::Residuals;
 use hysid::error::{Channel, DataError, DataProblem};
 use hysid::model::{BandLevel, Model};
+use hysid_core::significant::Significant;
 use hysid_document::{Result, object};
 use hysid_records::{Roles, UnitFactors, explained, summarised};
 use hysid_tables::Rows;
@@ -78,6 +79,7 @@ pub fn evaluate(request: &EvaluateRequest<'_>, rows: &mut Rows) -> Result<Evalua
         let defect = DataError { record: String::new(), row: None, channel: Some(Channel::Output), problem };
         return Err(explained(&rows.head.file, None, defect.into(), roles));
     };
+    let unlike = model.provenance().validation.as_ref().and_then(|expected| unlike(&errors, expected));
     let residuals =
         gatherer.map(|gatherer| residual_tests::tests(gatherer, model, output, &end.warnings)).transpose();
     Ok(Evaluation {
@@ -90,8 +92,25 @@ pub fn evaluate(request: &EvaluateRequest<'_>, rows: &mut Rows) -> Result<Evalua
             .note
             .into_iter()
             .chain(summarised(&end.warnings))
+            .chain(unlike)
             .chain(first_of(faded.into_iter()))
             .collect(),
+    })
+}
+
+/// How much larger the error may be than that of the validation before it is told. Designed.
+const UNLIKE: f64 = 3.0;
+
+/// Errors far above those of the validation, in words.
+fn unlike(errors: &Errors, expected: &Errors) -> Option<String> {
+    let percent =
+        |errors: &Errors| errors.nrmse_std_percent.map(|percent| format!("{:.3} %", Significant(percent)));
+    let (found, expected_percent) = (percent(errors)?, percent(expected)?);
+    (errors.rmse > UNLIKE * expected.rmse).then(|| {
+        format!(
+            "the error, {found} of the standard deviation, is far above that of the validation ({expected_percent}): these data are \
+             not like the training data, or are of another specimen"
+        )
     })
 }
 

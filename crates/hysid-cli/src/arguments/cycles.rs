@@ -68,7 +68,7 @@ pub struct Cycles {
     pub density: Option<f64>,
     /// Height of a structure, for drift ratios: 2.4m
     ///
-    /// A number without a unit is in the unit of the input.
+    /// With a unit, where the input has one.
     #[arg(long, value_name = "HEIGHT", value_parser = height, help_heading = "Method")]
     pub height: Option<(f64, String)>,
     /// Ignore reversals of the input below this share of its range [default: the noise of the input decides]
@@ -99,10 +99,19 @@ impl Cycles {
     pub fn options(&self, input: &str) -> Result<CycleOptions, Problem> {
         let in_unit_of_input = |(height, unit): &(f64, String)| {
             let own = unit::of_column(input);
-            let factor =
-                if unit.is_empty() { Some(1.0) } else { own.and_then(|own| unit::factor(unit, &own)) };
-            let words =
-                || format!("\"{unit}\" cannot be converted to the unit of the input \"{}\"", clipped(input));
+            let factor = match own {
+                None if unit.is_empty() => Some(1.0),
+                own => own.and_then(|own| unit::factor(unit, &own)),
+            };
+            let words = || match unit.as_str() {
+                "" => format!(
+                    "the input \"{}\" has a unit: give that of the height too, such as 2.4m",
+                    clipped(input)
+                ),
+                unit => {
+                    format!("\"{unit}\" cannot be converted to the unit of the input \"{}\"", clipped(input))
+                }
+            };
             factor.map(|factor| factor * height).ok_or_else(|| Problem::option("height", words()))
         };
         Ok(CycleOptions {

@@ -100,6 +100,29 @@ fn a_record_that_begins_in_the_middle_is_told() {
     }
 }
 
+/// A model of one specimen, judged on another: the error is far above that of its validation, and `evaluate` says so.
+#[test]
+fn data_of_another_specimen_are_told() {
+    let bench = Workbench::with_data();
+    let table = |threshold: f64, shift: f64| {
+        let (mut text, mut state) = ("x,y\n".to_string(), 0.0f64);
+        for row in 0..400 {
+            let x = sin(0.05 * row as f64 + shift) * (0.3 + 0.7 * row as f64 / 400.0);
+            state = state.clamp(x - threshold, x + threshold);
+            text += &format!("{x},{}\n", 0.1 * x + state);
+        }
+        text
+    };
+    bench.put("own.csv", table(0.2, 0.0));
+    bench.put("like.csv", table(0.2, 0.1));
+    bench.put("other.csv", table(0.9, 0.1));
+    let models = "--model prandtl-ishlinskii --members 3";
+    bench.succeeds(&format!("fit own.csv {models} -o own.json --no-report"));
+    let told = |test: &str| bench.succeeds(&format!("evaluate own.json {test}")).stderr;
+    let words = "far above that of the validation";
+    assert!(told("other.csv").contains(words) && !told("like.csv").contains(words), "{}", told("other.csv"));
+}
+
 #[test]
 fn what_cannot_be_compared_is_refused() {
     let bench = Workbench::with_data();

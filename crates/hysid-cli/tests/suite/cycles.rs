@@ -147,6 +147,29 @@ fn a_magnet_has_losses_in_its_units_at_each_frequency() {
     must_contain(&ran.stdout, &["two amplitudes at least", "three frequencies at least"]);
 }
 
+/// Drift ratios of levels, in percent of a height that is given with its unit.
+#[test]
+fn levels_have_drift_ratios_of_a_height_with_a_unit() {
+    let bench = Workbench::new();
+    let turning = [0.0, 2.0, -2.0, 4.0, -4.0, 0.0];
+    bench.put("member.csv", table("disp_mm,force_kN", &turning, 0.05, &mut member()));
+    bench.succeeds("cycles member.csv --height 0.2m --no-report");
+    let drifts: Vec<f64> = rows(&bench.text("member.cycles.levels.csv"))
+        .iter()
+        .map(|row| number(row, "drift_percent [%]"))
+        .collect();
+    assert!(
+        drifts.len() == 2 && (drifts[0] - 1.0).abs() < 1e-9 && (drifts[1] - 2.0).abs() < 1e-9,
+        "{drifts:?}"
+    );
+    bench.refuses_in_part(
+        "
+        2 cycles member.csv --height 200 --force => give that of the height too, such as 2.4m
+        2 cycles member.csv --height 2kN --force => cannot be converted to the unit of the input
+    ",
+    );
+}
+
 /// Polarisation of an even density of relays over the Preisach triangle of -1 to 1.
 #[test]
 fn reversal_curves_in_data_give_the_density_of_the_plane_as_table_and_picture() {

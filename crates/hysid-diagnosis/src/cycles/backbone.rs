@@ -7,7 +7,7 @@
 use serde::Serialize;
 
 use super::CLOSED;
-use super::reading::output_at_end;
+use super::reading::output_before_rest;
 use crate::branch::BranchSet;
 
 /// The side to which the input went before it turned.
@@ -31,7 +31,7 @@ pub struct BackbonePoint {
     pub direction: Direction,
     /// Input at the turning point.
     pub input: f64,
-    /// Output at the turning point.
+    /// Output at the turning point, before it relaxes.
     pub output: f64,
 }
 
@@ -50,7 +50,8 @@ pub(super) fn backbone(survey: &BranchSet, record: usize, level: f64) -> Vec<Bac
             continue;
         }
         furthest[side] = away;
-        points.extend(output_at_end(branch, branch.to).map(|output| BackbonePoint {
+        let noise = survey.output_noise.deviation();
+        points.extend(output_before_rest(branch, level, noise).map(|output| BackbonePoint {
             record: survey.data.records()[record].name().into(),
             row: branch.rows.end - 1,
             direction,

@@ -105,6 +105,9 @@ fn of_side(whose: (&str, &str), points: &[(f64, f64)], (sign, level): (f64, f64)
     let beyond = square(ultimate) - 2.0 * area / stiffness;
     let strength =
         if beyond >= 0.0 { stiffness * (ultimate - beyond.sqrt()) } else { WITHOUT_EQUAL_ENERGY * peak };
+    if strength <= 0.0 {
+        return absent("the output changes its sign along the backbone");
+    }
     // Within rounding, a straight backbone has its yield point at its end.
     let yields = strength / stiffness < ultimate * (1.0 - 1e-9);
     let of_yield = |kind, value: f64| RecordFigure::new(whose, kind, yields.then_some(value));

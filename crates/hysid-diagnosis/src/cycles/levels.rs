@@ -103,9 +103,9 @@ pub(super) fn levels(
     groups.map(of_group).collect()
 }
 
-/// Half the distance of the outputs at peak and valley.
+/// Half the range of the outputs of a cycle, which a force that relaxes at the turning points does not lower.
 fn output(row: &CycleRow) -> Option<f64> {
-    Some(0.5 * (row.peak_output? - row.valley_output?))
+    Some(0.5 * (row.output_max? - row.output_min?))
 }
 
 fn percent(part: f64, whole: f64) -> Option<f64> {
@@ -127,8 +127,8 @@ mod tests {
         let row = |output: f64| CycleRow {
             complete: true,
             amplitude: Some(2.0),
-            peak_output: Some(output),
-            valley_output: Some(-output),
+            output_max: Some(output),
+            output_min: Some(-output),
             secant_stiffness: Some(0.5 * output),
             ..CycleRow::default()
         };

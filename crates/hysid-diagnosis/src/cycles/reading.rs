@@ -40,6 +40,26 @@ pub(super) fn output_at_end(branch: &Branch, x: f64) -> Option<f64> {
     if is_end { branch.curve.at(nearest).map(|reading| reading.y) } else { None }
 }
 
+/// Share of the way to a turning point in which an output that relaxes there is looked for.
+const LAST_PART: f64 = 0.1;
+
+/// Relaxation that is taken away, as a share of the output.
+const RELAXES: f64 = 0.02;
+
+/// The output with which a branch from the side of `level` turns. Where a machine stops, the force of a specimen relaxes: then
+/// it is the largest on the last tenth of the way, if it is a peak there, above the noise.
+pub(super) fn output_before_rest(branch: &Branch, level: f64, noise: f64) -> Option<f64> {
+    let end = output_at_end(branch, branch.to)?;
+    let sign = if branch.rises() { 1.0 } else { -1.0 };
+    let from = branch.to - LAST_PART * (branch.to - level);
+    let near = branch.curve.points().filter(|(x, _)| sign * (x - from) >= 0.0).map(|(_, y)| sign * y);
+    let largest = near.fold(sign * end, f64::max);
+    let sure = SURE * noise;
+    let is_peak = branch.curve.at(from).is_none_or(|before| largest - sign * before.y > sure);
+    let relaxes = largest - sign * end > sure.max(RELAXES * largest);
+    Some(if is_peak && relaxes { sign * largest } else { end })
+}
+
 /// Slope of the line through two points.
 pub(super) fn secant(a: (f64, f64), b: (f64, f64)) -> f64 {
     (b.1 - a.1) / (b.0 - a.0)

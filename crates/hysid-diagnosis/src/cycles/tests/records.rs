@@ -41,6 +41,40 @@ fn an_elastic_plastic_backbone_is_its_own_equivalent() {
     }
 }
 
+/// The force of each half cycle relaxes to 0.8 of its peak on the last twentieth of the way, as where a machine stops: the
+/// backbone has the peaks. A force that falls over half of the way has no peak near the turning point, and stays.
+#[test]
+fn a_force_that_relaxes_at_the_turning_points_has_its_peak_on_the_backbone() {
+    let members = |from: f64| {
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        for amplitude in [1.0, 2.0, 3.0, 4.0] {
+            for sign in [1.0, -1.0] {
+                let way: Vec<f64> = (0..=80).map(|k| f64::from(k) / 80.0).collect();
+                let out = way
+                    .iter()
+                    .map(|&w| (w, if w <= from { w / from } else { 1.0 - 0.2 * (w - from) / (1.0 - from) }));
+                let back = way.iter().rev().skip(1).map(|&w| (w, 0.8 * w));
+                for (w, force) in out.chain(back) {
+                    x.push(sign * amplitude * w);
+                    y.push(sign * 10.0 * force * f64::sqrt(amplitude));
+                }
+            }
+        }
+        let table = table_of(&data(x, y), Field::Structure);
+        (table.backbone.iter().map(|point| point.output.abs()).collect::<Vec<_>>(), table.levels)
+    };
+    for (from, share) in [(0.95, 1.0), (0.5, 0.8)] {
+        let (backbone, levels) = members(from);
+        let expected = [1.0, 2.0, 3.0, 4.0].map(|amplitude: f64| 10.0 * share * amplitude.sqrt());
+        assert_eq!(backbone.len(), 8);
+        for (found, expected) in backbone.chunks(2).zip(expected) {
+            assert_relative_eq!(found[0], expected, max_relative = 0.01);
+            assert_relative_eq!(found[1], expected, max_relative = 0.01);
+        }
+        assert_relative_eq!(levels[2].output_first.unwrap(), 10.0 * f64::sqrt(3.0), max_relative = 0.01);
+    }
+}
+
 /// Points (1, 2), (2, 2), (4, 1): `Δ_u = 2.8` where the output is 1.6, and the area up to there is 1 + 2 + 1.44.
 #[test]
 fn a_falling_backbone_fails_at_eight_tenths_and_both_sides_have_a_mean() {
