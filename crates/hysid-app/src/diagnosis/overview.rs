@@ -2,6 +2,7 @@
 
 use hysid::data::record::Dataset;
 use hysid::diagnosis::Diagnosis;
+use hysid_document::chart::records_in_colour;
 use hysid_document::chart::thin::{Point, thin, thin_path};
 use hysid_document::{Chart, Colour, Curve, Part, count, unit};
 
@@ -64,13 +65,19 @@ impl<'a> Overview<'a> {
         let every = records.len().div_ceil(MOST_RECORDS).max(1);
         let shown: Vec<usize> = (0..records.len()).step_by(every).collect();
         let most = (LOOP_POINTS / shown.len()).max(16);
+        let names: Vec<&str> = shown.iter().map(|&index| records[index].name()).collect();
+        let (colours, mut legend) = records_in_colour(&names);
+        if legend.is_empty() {
+            legend.push((Colour::Measured, "measured".into()));
+        }
         let (mut curves, mut backbones) = (Vec::new(), Vec::new());
-        for &index in &shown {
+        for (place, &index) in shown.iter().enumerate() {
             let (x, y) = (&records[index].inputs()[0], records[index].output());
             let path = thin_path(&[x, y], most);
             let point = |row: &Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]));
             let points = path.iter().map(point).collect();
-            curves.push(Curve::new(points, Colour::Measured, 1.3));
+            let colour = colours.get(place).copied().unwrap_or(Colour::Measured);
+            curves.push(Curve::new(points, colour, 1.3));
             let points = self.backbone(index);
             backbones.push(Curve::new(points, Colour::Simulated, 2.0));
         }
@@ -78,11 +85,9 @@ impl<'a> Overview<'a> {
         curves.push(dots(shown.iter().flat_map(|&index| self.tips(index)).collect()));
         let (x, y) = (unit::label(&self.quantities.input), unit::label(&self.quantities.output));
         let description = format!("Loops of {y} over {x}, with backbone and turning points");
-        Chart::new(description, &x, &y, curves).sized(560.0, 400.0).with_legend([
-            (Colour::Measured, "measured"),
-            (Colour::Simulated, "backbone"),
-            (Colour::Error, "turning points"),
-        ])
+        legend.push((Colour::Simulated, "backbone".into()));
+        legend.push((Colour::Error, "turning points".into()));
+        Chart::new(description, &x, &y, curves).sized(560.0, 400.0).with_legend(legend)
     }
 
     /// Input and output where the input turns.
