@@ -117,7 +117,7 @@ pub(crate) fn cycles(survey: &BranchSet) -> Vec<Cycle> {
 }
 
 /// A cycle loses what matters from this share on, see [`cycles_up_to_growth`].
-const LOSS: f64 = 0.05;
+pub(crate) const LOSS: f64 = 0.05;
 
 /// All cycles, and the second cycle of each level of a growing test, which goes on beyond its beginning to the next level: it
 /// ends where it comes back to its beginning. A law without wear may settle on the way that first goes to a new amplitude.
@@ -142,8 +142,7 @@ pub(crate) fn cycles_up_to_growth(survey: &BranchSet) -> Vec<Cycle> {
             return false;
         }
         let (low, high) = (out.from.min(out.to) - tolerance, out.from.max(out.to) + tolerance);
-        let first =
-            index - survey.branches[..index].iter().rev().take_while(|b| b.record == out.record).count();
+        let first = survey.branches.partition_point(|branch| branch.record < out.record);
         let is_furthest = survey.branches[first..index]
             .iter()
             .all(|branch| branch.from.min(branch.to) >= low && branch.from.max(branch.to) <= high);

@@ -3,14 +3,14 @@
 //! slope (Theil and Sen), theory.md (10.11).
 
 use super::branch::BranchSet;
-use super::cycles::repeated;
+use super::cycles::{self, repeated};
 use super::significance;
 use super::{Cycle, Evidence, Finding, Picture, PictureCurve, Property, Verdict};
 use hysid_core::elementary::hypot;
 use hysid_core::significant::Significant;
 
 /// A loss of energy that matters, as a share of the first cycle's.
-const EFFECT: f64 = 0.05;
+const EFFECT: f64 = cycles::LOSS;
 
 /// Fewest repeated cycles, all kinds together.
 const FEWEST: usize = 3;
@@ -191,8 +191,8 @@ mod tests {
     use crate::{Diagnosis, DiagnosisOptions, Finding, Property, Verdict};
 
     /// Findings on wear and on symmetry for a member of four elastic-plastic springs on two cycles of each of six amplitudes,
-    /// the last of which is left after half a cycle. All forces lose a share in each
-    /// cycle, evenly; noise is a share of the range.
+    /// the last of which is left after half a cycle. All forces lose a share in each cycle, evenly; noise is a share of the
+    /// range.
     fn findings(loss: f64, noise: f64, seed: u64) -> [Finding; 2] {
         const ROWS: usize = 60;
         let ends = [5.0, 8.0, 12.0, 18.0, 27.0].into_iter().flat_map(|a| [a, -a, a, -a]).chain([40.0, -40.0]);

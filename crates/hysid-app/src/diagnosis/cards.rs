@@ -84,17 +84,16 @@ fn drawing(finding: &Finding, quantities: &Quantities) -> Option<Chart> {
 }
 
 fn chart(finding: &Finding, picture: &Picture, quantities: &Quantities) -> Chart {
-    let label = |label: &str, column: &str| match (label, finding.property) {
-        ("", _) => unit::label(column),
-        (energy, Property::Deterioration) if energy == picture.y_label => {
-            unit::label(&quantities.as_energy(energy))
-        }
-        (label, _) => label.to_string(),
+    let label = |label: &str, column: &str| match label {
+        "" => unit::label(column),
+        label => label.to_string(),
     };
-    let (x, y) = (label(&picture.x_label, &quantities.input), label(&picture.y_label, &quantities.output));
-    let factor = match finding.property {
-        Property::Deterioration => quantities.energy_factor(),
-        _ => 1.0,
+    let x = label(&picture.x_label, &quantities.input);
+    let (y, factor) = match finding.property {
+        Property::Deterioration => {
+            (unit::label(&quantities.as_energy(&picture.y_label)), quantities.energy_factor())
+        }
+        _ => (label(&picture.y_label, &quantities.output), 1.0),
     };
     let (mut curves, mut legend) = (Vec::new(), Vec::new());
     for curve in &picture.curves {

@@ -17,9 +17,10 @@ use crate::messages::{Usage, note};
 /// Most records that are drawn over time.
 const MOST_RECORDS: usize = 4;
 
-/// Height of a page of A4 within its margins, in pixels. Charts that are higher together are drawn lower, but not below this
-/// share of their height: fewer records are drawn then.
+/// Height of a page of A4 within its margins, in pixels. Charts that are higher together are drawn lower.
 const PAGE: f64 = 230.0 * PIXELS_PER_MILLIMETRE;
+
+/// Least share of their height in which charts are drawn. Where that is too high, fewer records are drawn.
 const LOWEST: f64 = 0.5;
 
 const POINTS: usize = 4000;

@@ -37,7 +37,7 @@ pub struct BackbonePoint {
 
 /// The backbone of a record, in the order of time. Turning points without output are left out.
 pub(super) fn backbone(survey: &BranchSet, record: usize, level: f64) -> Vec<BackbonePoint> {
-    let branches = survey.of_record(record);
+    let (branches, noise) = (survey.of_record(record), survey.output_noise.deviation());
     let mut furthest = [0.0, 0.0];
     let mut points = Vec::new();
     // The end of the last branch is the end of the record.
@@ -50,7 +50,6 @@ pub(super) fn backbone(survey: &BranchSet, record: usize, level: f64) -> Vec<Bac
             continue;
         }
         furthest[side] = away;
-        let noise = survey.output_noise.deviation();
         points.extend(output_before_rest(branch, level, noise).map(|output| BackbonePoint {
             record: survey.data.records()[record].name().into(),
             row: branch.rows.end - 1,

@@ -2,6 +2,7 @@ use hysid_core::elementary::sin;
 
 use super::frame::legend_lines;
 use super::*;
+use crate::balance::assert_balanced;
 
 #[test]
 fn records_have_colours_of_their_own_and_a_legend() {
@@ -18,7 +19,6 @@ fn records_have_colours_of_their_own_and_a_legend() {
     assert_eq!(legend[0], (Colour::Ramp(0), "r (first of 30)".to_string()));
     assert_eq!(records_in_colour(&["r"]), (Vec::new(), Vec::new()));
 }
-use crate::balance::assert_balanced;
 
 fn chart(points: Vec<Point>) -> Chart {
     Chart {
