@@ -47,7 +47,7 @@ const LAST_PART: f64 = 0.1;
 const RELAXES: f64 = 0.02;
 
 /// The output with which a branch from the side of `level` turns. Where a machine stops, the force of a specimen relaxes: then
-/// it is the largest on the last tenth of the way, if it is a peak there, above the noise.
+/// it is the largest on the last tenth of the way, if it falls from there at the end, above the noise.
 pub(super) fn output_before_rest(branch: &Branch, level: f64, noise: f64) -> Option<f64> {
     let end = output_at_end(branch, branch.to)?;
     let sign = if branch.rises() { 1.0 } else { -1.0 };
@@ -55,7 +55,11 @@ pub(super) fn output_before_rest(branch: &Branch, level: f64, noise: f64) -> Opt
     let near = branch.curve.points().filter(|(x, _)| sign * (x - from) >= 0.0).map(|(_, y)| sign * y);
     let largest = near.fold(sign * end, f64::max);
     let sure = SURE * noise;
-    let is_peak = branch.curve.at(from).is_none_or(|before| largest - sign * before.y > sure);
+    let below = |x: f64| branch.curve.at(x).map(|reading| largest - sign * reading.y);
+    // The fall is near the end: behind a rise, or a plateau.
+    let middle = 0.5 * (from + branch.to);
+    let is_peak =
+        below(from).is_none_or(|fall| fall > sure) || below(middle).is_some_and(|fall| fall <= sure);
     let relaxes = largest - sign * end > sure.max(RELAXES * largest);
     Some(if is_peak && relaxes { sign * largest } else { end })
 }

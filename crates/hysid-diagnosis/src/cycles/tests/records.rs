@@ -42,17 +42,17 @@ fn an_elastic_plastic_backbone_is_its_own_equivalent() {
 }
 
 /// The force of each half cycle relaxes to 0.8 of its peak on the last twentieth of the way, as where a machine stops: the
-/// backbone has the peaks. A force that falls over half of the way has no peak near the turning point, and stays.
+/// backbone has the peaks, behind a rise or a plateau. A force that falls over half of the way has no peak near the turning point, and stays.
 #[test]
 fn a_force_that_relaxes_at_the_turning_points_has_its_peak_on_the_backbone() {
-    let members = |from: f64| {
+    let members = |rise: f64, from: f64| {
         let (mut x, mut y) = (Vec::new(), Vec::new());
         for amplitude in [1.0, 2.0, 3.0, 4.0] {
             for sign in [1.0, -1.0] {
                 let way: Vec<f64> = (0..=80).map(|k| f64::from(k) / 80.0).collect();
-                let out = way
-                    .iter()
-                    .map(|&w| (w, if w <= from { w / from } else { 1.0 - 0.2 * (w - from) / (1.0 - from) }));
+                let out = way.iter().map(|&w| {
+                    (w, if w <= from { (w / rise).min(1.0) } else { 1.0 - 0.2 * (w - from) / (1.0 - from) })
+                });
                 let back = way.iter().rev().skip(1).map(|&w| (w, 0.8 * w));
                 for (w, force) in out.chain(back) {
                     x.push(sign * amplitude * w);
@@ -63,8 +63,8 @@ fn a_force_that_relaxes_at_the_turning_points_has_its_peak_on_the_backbone() {
         let table = table_of(&data(x, y), Field::Structure);
         (table.backbone.iter().map(|point| point.output.abs()).collect::<Vec<_>>(), table.levels)
     };
-    for (from, share) in [(0.95, 1.0), (0.5, 0.8)] {
-        let (backbone, levels) = members(from);
+    for (rise, from, share) in [(0.95, 0.95, 1.0), (0.4, 0.96, 1.0), (0.5, 0.5, 0.8)] {
+        let (backbone, levels) = members(rise, from);
         let expected = [1.0, 2.0, 3.0, 4.0].map(|amplitude: f64| 10.0 * share * amplitude.sqrt());
         assert_eq!(backbone.len(), 8);
         for (found, expected) in backbone.chunks(2).zip(expected) {
