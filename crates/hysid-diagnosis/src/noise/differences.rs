@@ -66,6 +66,9 @@ struct DifferenceVariance {
     order: usize,
     distance: usize,
     variance: f64,
+    /// That of the half whose ends differ least: the course of the values is in few of these differences, where it
+    /// changes over a part of a run. Measured at the distances that tell whether noise is white.
+    calm: f64,
 }
 
 /// Fewest values that show anything about their noise.
@@ -77,7 +80,7 @@ pub(crate) fn roughness<'a>(columns: impl Iterator<Item = &'a [f64]>) -> f64 {
         columns.map(|values| DistinctRows::new(ChannelRun { values, beside: &[] })).collect();
     let rows: usize = columns.iter().map(|column| column.values.len()).sum();
     let runs = columns.iter().map(DistinctRows::run);
-    if rows < FEWEST { 0.0 } else { least(&differences(runs, rows, 0), 1).sqrt() }
+    if rows < FEWEST { 0.0 } else { least(&differences(runs, rows, 0), 1, |d| d.variance).sqrt() }
 }
 
 /// The rows of a run without those that repeat the one before: a logger that is faster than its sensor makes them, and they
@@ -109,9 +112,13 @@ impl<'a> DistinctRows<'a> {
 }
 
 /// The least variance of all orders at a distance: the course of the values adds to each. 0 where none was measured.
-fn least(differences: &[DifferenceVariance], distance: usize) -> f64 {
+fn least(
+    differences: &[DifferenceVariance],
+    distance: usize,
+    variance: impl Fn(&DifferenceVariance) -> f64,
+) -> f64 {
     let alike = differences.iter().filter(|difference| difference.distance == distance);
-    let least = alike.map(|difference| difference.variance).fold(f64::INFINITY, f64::min);
+    let least = alike.map(variance).fold(f64::INFINITY, f64::min);
     if least.is_finite() { least } else { 0.0 }
 }
 
@@ -125,14 +132,17 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = ChannelRun<'a>>) -> Noise {
     }
     let length = typical_length(runs.clone(), rows);
     let differences = differences(runs, rows, length);
-    let roughness = least(&differences, 1).sqrt();
+    let roughness = least(&differences, 1, |d| d.variance).sqrt();
     if roughness == 0.0 {
         return Noise::default();
     }
     // The least of each distance does not grow where noise is white; a course of the values adds to all of them.
     let sampling = SAMPLING / (rows as f64).sqrt();
     let is_told = |distance: usize| differences.iter().any(|d| d.distance == distance && d.order >= TELLING);
-    let grows = |&distance: &usize| least(&differences, distance) > (1.0 + sampling) * least(&differences, 1);
+    let exceeds = |distance: usize, variance: fn(&DifferenceVariance) -> f64| {
+        least(&differences, distance, variance) > (1.0 + sampling) * least(&differences, 1, variance)
+    };
+    let grows = |&distance: &usize| exceeds(distance, |d| d.variance) && exceeds(distance, |d| d.calm);
     let told: Vec<usize> = NEAR.into_iter().filter(|distance| is_told(*distance)).collect();
     if told.is_empty() {
         // At one distance alone, a course of the values cannot be told from noise.
@@ -211,24 +221,39 @@ fn differences<'a>(
         let of = |values: &[f64], row: usize| -> f64 {
             coefficients.iter().enumerate().map(|(k, c)| c * values[row + k * distance]).sum()
         };
+        let tells = distance <= NEAR[1];
         let (mut sizes, mut sizes_apart) = (Vec::with_capacity(rows / stride), Vec::new());
         for ChannelRun { values, beside } in runs.clone() {
             for row in (0..values.len().saturating_sub(span)).step_by(stride) {
                 let own = of(values, row);
-                sizes.push(own.abs());
+                let change = values[row + span] - values[row];
+                sizes.push((own.abs(), change.abs()));
                 if !beside.is_empty() {
-                    let slope = (values[row + span] - values[row]) / (beside[row + span] - beside[row]);
-                    let apart = own - slope * of(beside, row);
-                    sizes_apart.push(if apart.is_nan() { f64::INFINITY } else { apart.abs() });
+                    let slope = change / (beside[row + span] - beside[row]);
+                    let apart = (own - slope * of(beside, row)).abs();
+                    sizes_apart.push((if apart.is_nan() { f64::INFINITY } else { apart }, change.abs()));
                 }
             }
         }
-        let apart = if sizes_apart.is_empty() { f64::INFINITY } else { median(&mut sizes_apart) };
-        let deviation = median(&mut sizes).min(apart) / MEDIAN_OF_NORMAL;
-        deviation.is_finite().then_some(DifferenceVariance {
+        let deviation = |sizes: &[(f64, f64)]| {
+            let mut sizes: Vec<f64> = sizes.iter().map(|size| size.0).collect();
+            if sizes.is_empty() { f64::INFINITY } else { median(&mut sizes) / MEDIAN_OF_NORMAL }
+        };
+        let all = deviation(&sizes).min(deviation(&sizes_apart));
+        let calm = |sizes: &mut [(f64, f64)]| {
+            let half = sizes.len() / 2;
+            if half == 0 {
+                return f64::INFINITY;
+            }
+            sizes.select_nth_unstable_by(half, |a, b| a.1.total_cmp(&b.1));
+            deviation(&sizes[..half])
+        };
+        let calm = if tells { calm(&mut sizes).min(calm(&mut sizes_apart)) } else { all };
+        all.is_finite().then_some(DifferenceVariance {
             order,
             distance,
-            variance: deviation * deviation,
+            variance: all * all,
+            calm: calm * calm,
         })
     };
     measured.filter_map(variance).collect()
@@ -297,7 +322,7 @@ fn course(difference: &DifferenceVariance, power: i32, all: &[DifferenceVariance
 
 #[cfg(test)]
 mod tests {
-    use hysid_core::elementary::{cos, ln, powf, sin};
+    use hysid_core::elementary::{cos, ln, powf, sin, tanh};
 
     use super::*;
     use rand::{Rng, RngExt, SeedableRng};
@@ -342,6 +367,37 @@ mod tests {
             let branches: Vec<Vec<f64>> = (0..2000 / rows).map(branch).collect();
             let ratio = noise_of(&branches).deviation() / 0.01;
             assert!((0.75..1.25).contains(&ratio), "{rows} rows: {ratio}");
+        }
+    }
+
+    /// Loops of a `tanh` on a slow sine: a steep flank takes up a small or large part of each branch.
+    #[test]
+    fn white_noise_beside_steep_flanks_is_not_taken_for_a_walk() {
+        let weights = |rows: usize| -> Vec<f64> {
+            (0..rows).map(|k| sin(TAU * k as f64 / rows as f64) * TAU / rows as f64).collect()
+        };
+        for (seed, (width, rows)) in [0.03, 0.08, 0.2, 1.0]
+            .into_iter()
+            .flat_map(|width| [40, 60, 150].map(|rows| (width, rows)))
+            .enumerate()
+        {
+            let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed as u64);
+            for deviation in [0.002, 0.01] {
+                let mut branch = |number: usize| -> (Vec<f64>, Vec<f64>) {
+                    let sign = if number.is_multiple_of(2) { 1.0 } else { -1.0 };
+                    let input = |k: usize| -sign * cos(TAU * 0.5 * k as f64 / rows as f64);
+                    let output = |x: f64| 0.5 * tanh((x - 0.2 * sign) / width);
+                    let x: Vec<f64> = (0..rows).map(input).collect();
+                    let y = x.iter().map(|&x| output(x) + deviation * normal(&mut generator)).collect();
+                    (x, y)
+                };
+                let branches: Vec<(Vec<f64>, Vec<f64>)> = (0..BRANCHES).map(&mut branch).collect();
+                let run = |(beside, values)| ChannelRun { values, beside };
+                let noise = Noise::of(branches.iter().map(|(x, y)| run((x.as_slice(), y.as_slice()))));
+                let energy = deviation * Correlation::White.of_sum(&weights(2 * rows)).sqrt();
+                let ratio = noise.of_sum(&weights(2 * rows)) / energy;
+                assert!((0.7..1.6).contains(&ratio), "width {width}, {rows} rows, {deviation}: {ratio}");
+            }
         }
     }
 
