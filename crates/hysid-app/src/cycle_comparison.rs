@@ -3,10 +3,12 @@
 use std::collections::HashMap;
 
 use hysid::data::record::{Dataset, Record};
-use hysid::diagnosis::cycles::{CycleOptions, CycleRow, CycleTable, FIGURES, Field, Figure};
+use hysid::diagnosis::cycles::{CycleOptions, CycleRow, CycleTable};
 use hysid_document::{Cell, Part, Table, count, unit};
 
 use crate::ReportSet;
+use crate::cycles::over_amplitude::compared_figures;
+use crate::cycles::table::present;
 use crate::quantities::Quantities;
 
 /// Most cycles of a table: of more, the one of the largest amplitude and others at equal distances are shown.
@@ -14,19 +16,6 @@ const MOST_CYCLES: usize = 30;
 
 /// Significant digits of figures.
 const DIGITS: u8 = 3;
-
-/// Figures that are compared.
-fn names(field: Field) -> &'static [&'static str] {
-    match field {
-        Field::Structure => &["energy", "damping_percent", "secant_stiffness", "residual_after_peak"],
-        Field::Magnet => &["energy", "coercive_input", "remanent_output"],
-        Field::Actuator => &["width", "output_max"],
-        Field::Thermal => &["thermal_width", "width"],
-        Field::Battery => &["energy", "mean_gap"],
-        Field::Hydrology => &["hysteresis_index"],
-        Field::General => &["energy", "width", "secant_stiffness"],
-    }
-}
 
 /// The data with the outputs of a model in the place of the measured ones. Rows that were not measured stay blank, unless none
 /// was.
@@ -56,9 +45,8 @@ pub fn section(set: &ReportSet) -> Option<Part> {
     let others: HashMap<_, &CycleRow> = model.complete().map(|row| (rows_of(row), row)).collect();
     let pairs: Vec<(&CycleRow, &CycleRow)> =
         measured.complete().filter_map(|row| Some((row, *others.get(&rows_of(row))?))).collect();
-    let has = |figure: &&Figure| pairs.iter().any(|(row, _)| (figure.of)(row).is_some());
-    let of_name = |name: &&str| FIGURES.iter().find(|figure| figure.name == *name);
-    let figures: Vec<&Figure> = names(measured.field).iter().filter_map(of_name).filter(has).collect();
+    let rows: Vec<&CycleRow> = pairs.iter().map(|(row, _)| *row).collect();
+    let figures = present(&rows, compared_figures(measured.field));
     if pairs.is_empty() || figures.is_empty() {
         return None;
     }

@@ -4,7 +4,7 @@ mod curves;
 pub mod over_amplitude;
 mod page;
 pub mod pictures;
-mod table;
+pub mod table;
 #[cfg(feature = "tables")]
 mod tables;
 mod text;
@@ -32,7 +32,7 @@ pub use tables::{BEGINNING, SideTable, csv, side_tables};
 pub use text::text;
 
 pub struct Cycles<'a> {
-    /// The file that the title of the page names.
+    /// The files that the title of the page names.
     pub file: String,
     /// True for a model that was driven; false for measured data.
     pub of_model: bool,

@@ -34,6 +34,7 @@ use hysid::model::{BAND_OF_TEN, BAND_PROBABILITIES, BandLevel};
 use hysid::options::ModelName;
 use hysid::options::network::SEED;
 use hysid::specimens::Specimen;
+use hysid_core::options::effort::Effort;
 use hysid_export::Target;
 use hysid_records::ColumnChoice;
 pub use hysid_records::RateOption;
@@ -110,7 +111,7 @@ pub enum Command {
     Invert(Box<Invert>),
     /// Cross-validate a model; gives its errors on held-out data, fold by fold
     Validate(Box<Validate>),
-    /// Fit all models to the same data and compare their errors on unseen data
+    /// Fit all models to the same data and compare errors, on test data if given
     Compare(Compare),
     /// Show how tables are read: columns, units, ranges, missing values
     Look(Look),
@@ -368,6 +369,11 @@ fn model(name: &str) -> Result<ModelName, String> {
     name.parse().map_err(|error: hysid::Error| error.to_string())
 }
 
+fn effort(name: &str) -> Result<Effort, String> {
+    let found = Effort::ALL.into_iter().find(|effort| effort.name() == name);
+    found.ok_or_else(|| "choose quick, normal or thorough".into())
+}
+
 fn number_within(text: &str, range: &RangeInclusive<usize>) -> Result<usize, String> {
     let (low, high) = (range.start(), range.end());
     let number: usize = text.parse().map_err(|_| format!("a whole number from {low} to {high} is needed"))?;
@@ -542,6 +548,9 @@ pub struct Compare {
     /// initial states.
     #[arg(long, value_name = "ROWS|TIME", value_parser = KnownSpan::from_str)]
     pub known: Option<KnownSpan>,
+    /// Search of auto: quick, normal, thorough [default: normal]
+    #[arg(long, value_name = "EFFORT", value_parser = effort, help_heading = RUN)]
+    pub effort: Option<Effort>,
     /// Time for each model, after which its best fit so far is used [default: 20, none for auto]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = RUN)]
     pub time_limit: Option<f64>,

@@ -235,7 +235,7 @@ impl Residuals {
         };
         residuals.caution = words::caution(&residuals, options);
         let unit = unit::of_column(&names.output);
-        residuals.findings = words::findings(&residuals, &total, unit.as_deref(), options);
+        residuals.findings = words::findings(&residuals, &total, unit.as_deref(), options, data);
         Ok(residuals)
     }
 

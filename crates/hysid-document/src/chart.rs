@@ -59,24 +59,47 @@ const MOST_NAMED: usize = 8;
 /// Letters of a record's name in a legend.
 const LONGEST_NAME: usize = 40;
 
-/// The colour of each of several records, in their order, and the legend: the names of all of a few, those of the first and
-/// the last of many. A single record has no colour of its own.
+/// The colour of each of several records, and the legend: the names of all of a few, those of the first and the last of many.
+/// Colours and legend are in the order of the number that the names differ in, or else of the records. A single record has
+/// no colour of its own.
 pub fn records_in_colour(names: &[&str]) -> (Vec<Colour>, Vec<(Colour, String)>) {
     let last = names.len().saturating_sub(1);
     if last == 0 {
         return (Vec::new(), Vec::new());
     }
-    let colours: Vec<Colour> =
-        (0..=last).map(|place| Colour::Ramp((place * (RAMP - 1) + last / 2) / last)).collect();
-    let name = |place: usize| names[place].chars().take(LONGEST_NAME).collect::<String>();
+    let mut order: Vec<usize> = (0..=last).collect();
+    if let Some(varied) = varied(names) {
+        order.sort_by(|&a, &b| varied[a].total_cmp(&varied[b]));
+    }
+    let mut colours = vec![Colour::Faint; names.len()];
+    for (rank, &place) in order.iter().enumerate() {
+        colours[place] = Colour::Ramp((rank * (RAMP - 1) + last / 2) / last);
+    }
+    let entry = |place: usize, more: &str| {
+        (colours[place], names[place].chars().take(LONGEST_NAME).collect::<String>() + more)
+    };
     let legend = match names.len() > MOST_NAMED {
-        true => vec![
-            (colours[0], format!("{} (first of {})", name(0), names.len())),
-            (colours[last], format!("{} (last)", name(last))),
-        ],
-        false => (0..=last).map(|place| (colours[place], name(place))).collect(),
+        true => vec![entry(order[0], &format!(" (first of {})", names.len())), entry(order[last], " (last)")],
+        false => order.iter().map(|&place| entry(place, "")).collect(),
     };
     (colours, legend)
+}
+
+/// The number in each name, where the names differ in nothing else, such as a frequency.
+fn varied(names: &[&str]) -> Option<Vec<f64>> {
+    let is_digit = |letter: char| letter.is_ascii_digit() || letter == '.';
+    let begin = names[0].find(is_digit)?;
+    (begin..names[0].len()).filter(|&place| names[0].is_char_boundary(place)).find_map(|place| {
+        let prefix = names[0][..place].trim_end_matches(is_digit);
+        let numbers = names.iter().map(|name| {
+            let rest = name.strip_prefix(prefix)?;
+            let end = rest.find(|letter| !is_digit(letter)).unwrap_or(rest.len());
+            Some((rest[..end].parse::<f64>().ok()?, &rest[end..]))
+        });
+        let numbers: Vec<(f64, &str)> = numbers.collect::<Option<_>>()?;
+        let is_all = numbers.iter().all(|(_, suffix)| *suffix == numbers[0].1);
+        is_all.then(|| numbers.iter().map(|(number, _)| *number).collect())
+    })
 }
 
 /// A line, or dots where a point has no neighbours; or the outline of an area, see [`Colour::is_area`].

@@ -95,6 +95,19 @@ def test_labels_of_rows_must_agree(known):
 
 
 @pytest.mark.parametrize("library", [pandas.DataFrame, polars.DataFrame, dict])
+def test_a_column_record_has_the_labels_and_other_text_is_named(known, library):
+    x, y, time, _ = known
+    labels = np.repeat(["a", "b"], 300)
+    named = {"t [s]": time, "H [A/m]": x, "B [T]": y}
+    table = library({"record": labels, **named})
+    model = hysid.fit(table, "B [T]", time="t [s]", **SMALL)
+    assert model == hysid.fit(table, "B [T]", time="t [s]", records="record", **SMALL)
+    assert model.evaluate(table, "B [T]") == model.evaluate(table, "B [T]", records="record")
+    with pytest.raises(ValueError, match="input 'operator': .*labels of records are given as records"):
+        hysid.fit(library({"operator": labels, **named}), "B [T]", time="t [s]")
+
+
+@pytest.mark.parametrize("library", [pandas.DataFrame, polars.DataFrame, dict])
 def test_columns_are_given_by_their_names(known, library):
     x, y, time, model = known
     labels = np.repeat(["a", "b"], 300)

@@ -1,10 +1,11 @@
 //! Which column is what: found from the names, from options, or from a model.
 
 mod guess;
-mod kind;
+pub mod kind;
 mod other_table;
 pub mod values;
 
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -107,6 +108,8 @@ pub struct Roles {
     pub set_aside: Vec<(String, Words)>,
     /// A condition of the test with few values, which divide the rows of each table into records.
     pub condition: Option<String>,
+    /// Columns that have the role of a model's column by their units, in a sentence each.
+    pub taken: Vec<String>,
     /// Roles that contradict the names of the columns, in a sentence.
     pub note: Option<Words>,
 }
@@ -180,7 +183,8 @@ impl Roles {
         };
         match output {
             Some(output) if !inputs.is_empty() => {
-                Ok(Self { record, time, inputs, rate, output, guessed, set_aside, condition, note })
+                let named = Self { record, time, inputs, rate, output, ..Self::default() };
+                Ok(Self { guessed, set_aside, condition, note, ..named })
             }
             output => {
                 let output = output.unwrap_or_default();
@@ -226,6 +230,14 @@ impl Roles {
         scored: bool,
     ) -> Result<Self> {
         let names = model.names();
+        let taken = RefCell::new(Vec::new());
+        let trained = || names.inputs.iter().chain(&names.time).chain(&names.rate).chain([&names.output]);
+        // Where several columns of the model have this quantity, the unit does not tell which one is meant.
+        let by_unit = |name: &str| {
+            let is_free = |other: &&String| !options.names().any(|named| named == *other);
+            let is_only = trained().filter(|other| is_of_unit(other, name)).count() == 1;
+            only(table.header.iter().filter(is_free), |other| is_of_unit(other, name)).filter(|_| is_only)
+        };
         let find = |given: &Option<String>, trained: &str, what: &str, option: &'static str| {
             if let Some(name) = given {
                 return require(table, name, option).map(|()| full_name(table, name));
@@ -236,19 +248,16 @@ impl Roles {
             if let Some(name) = in_another_unit(table, trained) {
                 return Ok(name.clone());
             }
+            if let Some(name) = by_unit(trained) {
+                let words = "the only column with a unit of this quantity, for the model's";
+                taken.borrow_mut().push(format!("taken: {}, {words} {}", clipped(name), clipped(trained)));
+                return Ok(name.clone());
+            }
             table.require_columns()?;
             let words =
                 Words::from(format!("there is no column \"{}\", the model's {what}", clipped(trained)));
-            let columns = format!("columns: {}; ", listed(&table.header));
-            let taken = |name: &&String| !options.names().any(|taken| taken == *name);
-            let advice = match only(table.header.iter().filter(taken), |name| is_of_unit(name, trained)) {
-                Some(name) => {
-                    Words::from(columns + "only one has a unit of this quantity: ")
-                        + Hint::Value(option, name.clone())
-                }
-                None => Words::from(columns + "name another with ") + Hint::Option(option),
-            };
-            Err(Problem::in_file(&table.file, words.advised(advice)))
+            let columns = format!("columns: {}; name another with ", listed(&table.header));
+            Err(Problem::in_file(&table.file, words.advised(Words::from(columns) + Hint::Option(option))))
         };
         let given_rate = rate_of_model(model, options)?;
         let inputs: Vec<String> = if options.input.is_empty() {
@@ -309,7 +318,7 @@ impl Roles {
             Some(name) => require(table, name, "record").map(|()| Some(full_name(table, name)))?,
             None => table.header.iter().find(|name| is_record(name) && !used(name)).cloned(),
         };
-        Ok(Self { record, time, inputs, rate, output, ..Self::default() })
+        Ok(Self { record, time, inputs, rate, output, taken: taken.take(), ..Self::default() })
     }
 
     pub fn names(&self) -> ColumnNames {

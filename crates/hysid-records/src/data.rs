@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::data::usual_role::Domain;
 use hysid_core::error::{Channel, DataError, DataProblem};
 use hysid_core::model::Model;
 use hysid_core::significant::Significant;
@@ -16,6 +17,7 @@ use hysid_tables::{
     spread_equal, starts_again,
 };
 
+use crate::columns::kind::ColumnKind;
 use crate::columns::values::{changes, numbers, plateaus};
 use crate::columns::{ColumnChoice, Roles, time_or_no_rate};
 use crate::record_names::RecordNames;
@@ -23,6 +25,9 @@ use crate::units::UnitFactors;
 use hysid_document::shell::quoted;
 use hysid_document::unit;
 use hysid_document::visible::{clipped, listed};
+
+/// Correlation of a force with a displacement below which it is a reaction.
+const LEAST_FALL: f64 = -0.5;
 
 /// Measured data and the tables they come from.
 pub struct Data {
@@ -66,7 +71,33 @@ impl Data {
         for table in &tables[1..] {
             roles.check_against(table, &tables[0].file)?;
         }
-        Self::converted(tables, roles, names, &[], Vec::new(), zero)
+        let mut data = Self::converted(tables, roles, names, &[], Vec::new(), zero)?;
+        data.warnings.extend(data.reaction());
+        Ok(data)
+    }
+
+    /// A warning of a force that falls while the displacement rises, as reactions of finite elements do.
+    fn reaction(&self) -> Option<Words> {
+        let (input, output) = (&self.roles.inputs[0], &self.roles.output);
+        let is_force = ColumnKind::of(input) == ColumnKind::Drives(Domain::Mechanics)
+            && ColumnKind::of(output) == ColumnKind::Follows(Domain::Mechanics);
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        for record in self.set.records().iter().filter(|_| is_force) {
+            let rows = || record.inputs()[0].iter().zip(record.output()).filter(|(_, y)| y.is_finite());
+            let count = rows().count().max(1) as f64;
+            let (x_mean, y_mean) =
+                (rows().map(|row| row.0).sum::<f64>() / count, rows().map(|row| row.1).sum::<f64>() / count);
+            for (x, y) in rows().map(|(x, y)| (x - x_mean, y - y_mean)) {
+                (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
+            }
+        }
+        let words = format!(
+            "{} falls while {} rises: is it a reaction, whose sign is opposite to that of the force on the specimen?",
+            clipped(output),
+            clipped(input)
+        );
+        let advice = "multiply the column by -1 in the file: no option does it";
+        (xy < LEAST_FALL * (xx * yy).sqrt()).then(|| Words::from(words).advised(advice))
     }
 
     /// Takes records from tables that have columns of the roles `like`, each by its own roles, in the units of `like`.
@@ -106,12 +137,7 @@ impl Data {
             source.tables.push(table.into_origin());
         }
         let (mut records, mut warnings) = (Vec::new(), Vec::from_iter(roles.note.clone()));
-        for table in source.tables.iter().filter(|table| table.left_out.is_doubtful) {
-            let others = listed(&table.left_out.tables);
-            let words = format!("{}: other tables of the file are left out: {others}", clipped(&table.file));
-            warnings
-                .push(Words::from(words).advised(Words::from("choose one with ") + Hint::Option("sheet")));
-        }
+        warnings.extend(source.tables.iter().filter_map(|table| table.left_out.warning(&table.file)));
         for (mut columns, places) in of_tables {
             let places = &source.places[places];
             warnings.extend(columns.spread_equal_stamps(places, &source).map(Words::from));
@@ -197,13 +223,17 @@ impl DataSource {
         let table = &self.tables[place.table];
         let roles = self.own_roles.get(place.table).unwrap_or(roles);
         let line = error.row.map(|row| table.lines[place.rows.start + row]);
-        match self.tables.len() {
-            n if n > 1 && line.is_none() && concerns_all(&error) => {
-                let files = format!("{} and {} more", self.tables[0].file, n - 1);
-                explained(&files, None, error.into(), roles)
-            }
+        match line {
+            None if concerns_all(&error) => explained(&self.files(), None, error.into(), roles),
             _ => explained(&table.file, line, error.into(), roles),
         }
+    }
+
+    /// The only file, or the first and the number of the others.
+    pub fn files(&self) -> String {
+        let [first, others @ ..] = self.tables.as_slice() else { return String::new() };
+        let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+        format!("{}{more}", first.file)
     }
 }
 

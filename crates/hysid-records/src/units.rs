@@ -17,7 +17,7 @@ pub struct UnitFactors {
     pub inputs: Vec<Option<f64>>,
     pub rate: Option<f64>,
     pub output: Option<f64>,
-    /// Conversions in words, column by column.
+    /// Columns that were taken by their units, and conversions, in words.
     pub conversions: Vec<String>,
 }
 
@@ -28,7 +28,10 @@ impl UnitFactors {
     /// # Errors
     /// Units that differ without a factor between them, unless the user declares them the same.
     pub fn of(model: &Model, roles: &Roles, file: &str, is_scored: bool, are_the_same: bool) -> Result<Self> {
-        Self::between(roles, (model.names(), "the model's"), file, is_scored, are_the_same)
+        let mut factors =
+            Self::between(roles, (model.names(), "the model's"), file, is_scored, are_the_same)?;
+        factors.conversions.splice(..0, roles.taken.iter().cloned());
+        Ok(factors)
     }
 
     /// The same for the columns of other data, which the words `whose` name.

@@ -1,5 +1,6 @@
 //! Choices on the page: models, options, specimens, targets; all from the tables of the library.
 
+use hysid::diagnosis::cycles::Field;
 use hysid::options::ModelName;
 use hysid::options::network::Trainer;
 use hysid::options::table::{FitOption, OPTIONS, OptionValues};
@@ -32,6 +33,7 @@ pub fn all() -> Value {
         "specimens": Specimen::all().iter().map(specimen).collect::<Vec<_>>(),
         // Kinds of specimens for a first test.
         "kinds": Protocol::ALL.map(Protocol::name),
+        "fields": Field::ALL.map(Field::name),
         "targets": Target::ALL.map(target),
     })
 }

@@ -22,6 +22,7 @@ use crate::judgement::Runs;
 use crate::project::{Project, ProjectModel};
 use crate::shown::shown;
 use crate::view::{AtHand, View};
+pub use files::CyclesAsked;
 use fits::Found;
 use models::Models;
 pub use use_cases::{ForceAsked, InverseAsked, PlanAsked, limits};

@@ -20,7 +20,7 @@ use run::LineRun;
 pub use cells::{CellKind, LineCell, bare, split};
 pub use header::{ColumnGroups, distinct, is_name};
 pub use lines::{first_line, is_comment};
-pub use run::is_row;
+pub use run::{has_number, is_row};
 
 /// Lines that a layout is found from.
 const MOST_LINES: usize = 300;
@@ -243,7 +243,7 @@ pub fn width_problem(found: usize, expected: usize, row: &[&str], delimiter: Del
 const DECIMAL_COMMAS: &str = "decimal commas? separate the columns by semicolons";
 
 /// That a row has another number of cells than the header has names.
-fn cells_and_names(cells: usize, names: usize) -> Words {
+pub fn cells_and_names(cells: usize, names: usize) -> Words {
     format!("has {cells} cell{} where the header has {names}", if cells == 1 { "" } else { "s" }).into()
 }
 

@@ -8,12 +8,13 @@ use hysid_core::words::{Hint, Words};
 
 use crate::blanks::TabsForBlanks;
 use crate::container::{BINARY, DecodedText, LONGEST_TEXT, TextContent, TextSheet};
-use hysid_document::visible::listed;
+use hysid_document::visible::{clipped, listed};
 use hysid_files::unreadable;
 
 use crate::head::{Head, counted};
-use crate::layout::{Layout, is_comment, is_row, split, width_problem};
+use crate::layout::{Layout, cells_and_names, has_number, is_comment, is_row, split, width_problem};
 use crate::line_counter::LineCounter;
+use crate::number::is_missing;
 use crate::reading::{Delimiter, Reading};
 use crate::several::{Found, GatheredTables, gather};
 use hysid_document::{Problem, Result};
@@ -65,8 +66,13 @@ pub struct LeftOut {
     /// Remarks behind rows, where no column has a name for them, and the line of the first.
     pub remarks: u64,
     pub first_remark: Option<u64>,
-    /// Lines of text behind the table, and the first of them.
+    /// Lines of text among the rows, and the first of them.
+    pub text: u64,
+    pub first_text: Option<u64>,
+    /// First line behind the table, and how many there are.
     pub end: Option<(u64, u64)>,
+    /// That those lines are rows with another delimiter.
+    pub other_delimiter: Option<Words>,
     /// Other tables of the file.
     pub tables: Vec<String>,
     /// One of them may be meant.
@@ -80,12 +86,29 @@ impl LeftOut {
         let remarks = self
             .first_remark
             .map(|line| format!("{} (from line {line})", counted(self.remarks, "remark", "behind the rows")));
+        let text = self
+            .first_text
+            .map(|line| format!("{} (from line {line})", counted(self.text, "text line", "among the rows")));
         let end = self
             .end
             .map(|(line, lines)| format!("{} (from line {line})", counted(lines, "line", "after the table")));
         let tables = (!self.tables.is_empty()).then(|| listed(&self.tables));
-        let all: Vec<String> = comments.into_iter().chain(remarks).chain(end).chain(tables).collect();
+        let all: Vec<String> =
+            comments.into_iter().chain(remarks).chain(text).chain(end).chain(tables).collect();
         (!all.is_empty()).then(|| all.join(", "))
+    }
+
+    /// A warning if data that may be meant are left out.
+    pub fn warning(&self, file: &str) -> Option<Words> {
+        let file = clipped(file);
+        if let (Some(changed), Some((line, lines))) = (&self.other_delimiter, self.end) {
+            let words = format!("{file}: {lines} lines are left out (from line {line}): ");
+            return Some(Words::from(words) + changed.clone());
+        }
+        let others = listed(&self.tables);
+        let words = format!("{file}: other tables of the file are left out: {others}");
+        let advice = || Words::from("choose one with ") + Hint::Option("sheet");
+        self.is_doubtful.then(|| Words::from(words).advised(advice()))
     }
 }
 
@@ -273,7 +296,7 @@ impl Rows {
                 return Ok(false);
             }
             let width = self.head.header.len();
-            if self.cells == width && width > 1 {
+            if self.cells == width && width > 1 && !self.is_line_of_text()? {
                 return Ok(true);
             }
             if self.cells == width + 1 && self.row()?.cell(width).trim().is_empty() {
@@ -290,39 +313,75 @@ impl Rows {
                 (self.ends[self.cells], self.cells) = (end, width);
             }
             let row = self.row()?;
-            if self.cells == width && (width > 1 || !row.is_blank()) {
-                return Ok(true);
-            }
             if row.is_blank() {
                 continue;
             }
-            if is_comment(row.cell(0)) {
+            let is_text = self.is_line_of_text()?;
+            if self.cells == width && !is_text {
+                return Ok(true);
+            }
+            if is_text && is_comment(row.cell(0)) {
                 self.left_out.comments += 1;
                 continue;
             }
             let (line, cells) = (row.line, row.cells().collect::<Vec<_>>());
-            let problem = width_problem(self.cells, width, &cells, self.head.delimiter());
-            let has_numbers = is_row(&cells);
-            if !has_numbers && let Some(lines) = self.lines_without_rows()? {
-                self.left_out.end = Some((line, lines));
-                return Ok(false);
-            }
-            let problem = match (has_numbers, self.read) {
-                (true, _) | (_, 0) => problem,
-                (false, rows) => {
-                    let rows = Hint::Value("rows", format!("1:{rows}"));
-                    problem.advised(Words::from("use the rows before it with ") + rows)
+            let (other, has_numbers) = (self.other_delimiter(), is_row(&cells));
+            let problem = match &other {
+                Some(changed) => changed.clone(),
+                None if has_numbers => width_problem(self.cells, width, &cells, self.head.delimiter()),
+                None => {
+                    cells_and_names(self.cells, width).advised("if the line is a remark, begin it with #")
                 }
             };
+            if (other.is_some() || !has_numbers)
+                && let Some(lines) = self.lines_without_rows()?
+            {
+                (self.left_out.end, self.left_out.other_delimiter) = (Some((line, lines)), other);
+                return Ok(false);
+            }
+            if is_text && self.read > 0 {
+                self.left_out.text += 1;
+                self.left_out.first_text.get_or_insert(line);
+                continue;
+            }
             return Err(Problem::at(&self.head.file, line, problem));
         }
+    }
+
+    /// True for a comment or words in the place of a row. Of a line without a mark, no cell is a number, and one with as
+    /// many cells as a row has begins with several words: `OVLD,OVLD` is a row.
+    fn is_line_of_text(&self) -> Result<bool> {
+        let first = self.text.iter().find(|byte| !byte.is_ascii_whitespace());
+        if first.is_none_or(|byte| byte.is_ascii_digit() || b"+-.".contains(byte)) {
+            return Ok(false);
+        }
+        let row = self.row()?;
+        let first = row.cell(0).trim();
+        let cells = || row.cells().collect::<Vec<_>>();
+        let is_words = || {
+            first.starts_with(char::is_alphabetic)
+                && (row.width() != self.head.header.len() || first.contains(' '))
+                && !is_missing(first)
+        };
+        Ok(if is_comment(first) { !is_row(&cells()) } else { is_words() && !has_number(&cells()) })
+    }
+
+    /// That the present line is a row with another delimiter than that of the table.
+    fn other_delimiter(&self) -> Option<Words> {
+        let line = std::str::from_utf8(&self.buffer[self.start..self.start + self.parsed]).ok()?;
+        let is_row = |&other: &Delimiter| is_row_of(line.trim(), other, self.head.header.len());
+        let other = Delimiter::ALL.into_iter().find(is_row)?.plural();
+        let own = self.head.delimiter().plural();
+        let words = format!("the columns are separated by {other} from here on, and by {own} before");
+        Some(Words::from(words).advised("save the whole file with one delimiter"))
     }
 
     /// True for a row of the table with words behind it, in a column that has no name and no cell in the rows before.
     fn ends_with_remark(&self, width: usize) -> Result<bool> {
         let cells: Vec<&str> = self.row()?.cells().collect();
-        let begins_with_letter = cells[width].trim_start().starts_with(char::is_alphabetic);
-        Ok(begins_with_letter && !is_row(&cells[width..=width]) && is_row(&cells[..width]))
+        let remark = cells[width].trim_start();
+        let is_words = remark.starts_with(char::is_alphabetic) || is_comment(remark);
+        Ok(is_words && !is_row(&cells[width..=width]) && is_row(&cells[..width]))
     }
 
     /// How many lines stand from the present row to the end of the file, if none of them is a row.
@@ -344,12 +403,7 @@ impl Rows {
         };
         let width = self.head.header.len();
         let filled = || rest.lines().filter(|line| !line.trim().is_empty());
-        let is_row = |line: &str| {
-            let cells = split(line, delimiter);
-            let cells: Vec<&str> = cells.iter().map(|cell| &*cell.text).collect();
-            cells.len() == width && is_row(&cells)
-        };
-        Ok((!filled().any(is_row)).then(|| filled().count() as u64))
+        Ok((!filled().any(|line| is_row_of(line, delimiter, width))).then(|| filled().count() as u64))
     }
 
     /// Parses the row behind the present one; false at the end.
@@ -453,6 +507,12 @@ fn beginning(file: &str, reader: &mut dyn Read) -> Result<(Vec<u8>, bool)> {
         }
         wanted *= 2;
     }
+}
+
+/// True for a line of numbers in so many columns.
+fn is_row_of(line: &str, delimiter: Delimiter, width: usize) -> bool {
+    let cells = split(line, delimiter);
+    cells.len() == width && is_row(&cells.iter().map(|cell| &*cell.text).collect::<Vec<_>>())
 }
 
 fn check_width(file: &str, layout: &Layout) -> Result<()> {
@@ -565,7 +625,9 @@ mod tests {
     /// A remark in a column without a name, first behind the lines that the layout is found from.
     #[test]
     fn a_late_remark_without_a_column_is_left_out_and_numbers_are_not() {
-        for (end, late) in [("", ",crack, 2 mm north"), (",", "crack"), (",", "crack, north")] {
+        for (end, late) in
+            [("", ",crack, 2 mm north"), ("", ",# crack"), (",", "crack"), (",", "crack, north")]
+        {
             let mut lines = vec![format!("t_s,x_mm,F_kN{end}")];
             lines.extend(
                 (1..=600).map(|row| format!("{row},0.1,2.3{end}{}", if row == 500 { late } else { "" })),
@@ -617,8 +679,37 @@ mod tests {
         }
         assert_eq!(lines, [2, 4]);
         assert_eq!(rows.left_out, LeftOut { comments: 1, end: Some((6, 2)), ..LeftOut::default() });
-        // Not if rows follow.
-        let error = read(b"t,x\n0,1\n1,2\nPart two\n2,3\n", 1000).unwrap_err().to_string();
-        assert!(error.starts_with("f, line 4: has 1 cell") && error.ends_with("--rows 1:2)"), "{error}");
+        for text in
+            ["Pump off", "pump off, low", "\"pump off, on\"", "# a, b, c", "// pump, 5 V, low, on", "%"]
+        {
+            let text = format!("t,x,y\n0,1,2\n1,2,3\n{text}\n2,3,4\n{text}\n3,4,5\n");
+            let mut rows = self::rows(text.as_bytes(), 1000, &Reading::default()).unwrap();
+            while rows.next_row().unwrap().is_some() {}
+            let left_out = rows.left_out.described().unwrap();
+            let kinds = ["2 text lines among the rows (from line 4)", "2 comment lines among the rows"];
+            assert!(rows.read == 4 && kinds.contains(&left_out.as_str()), "{text}: {left_out}");
+        }
+        // Cells of a row that are no numbers stay, and so does a row with too few cells.
+        let overload = read(b"t,x\n0,1\n1,2\nOVLD,OVLD\n2,3\n", 1000).unwrap();
+        assert_eq!(overload[3].1, ["OVLD", "OVLD"]);
+        let error = read(b"t,x,y\n0,1,2\n1,2,3\nn/a\n2,3,4\n", 1000).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "f, line 4: has 1 cell where the header has 3 (if the line is a remark, begin it with #)"
+        );
+    }
+
+    #[test]
+    fn rows_with_another_delimiter_are_a_warning_at_the_end_and_else_an_error() {
+        let text = "t,x,y\n-2,1,2\n-1,2,3\n0,1.5,2\n1,2.5,3\n2;3.5;4\n3;4.5;5\n";
+        let mut rows = rows(text.as_bytes(), 1000, &Reading::default()).unwrap();
+        while rows.next_row().unwrap().is_some() {}
+        let warning = Problem::in_file("f", rows.left_out.warning("f").unwrap()).to_string();
+        let words = "the columns are separated by semicolons from here on, and by commas before \
+            (save the whole file with one delimiter)";
+        assert_eq!(rows.left_out.end, Some((6, 2)));
+        assert_eq!(warning, format!("f: f: 2 lines are left out (from line 6): {words}"));
+        let error = read(format!("{text}4,5.5,6\n").as_bytes(), 1000).unwrap_err().to_string();
+        assert_eq!(error, format!("f, line 6: {words}"));
     }
 }

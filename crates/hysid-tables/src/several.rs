@@ -268,7 +268,8 @@ fn rows<'t>(text: &'t str, layout: &Layout) -> Option<ScannedRows<'t>> {
             if is_header {
                 break;
             }
-            if !fits && is_comment(line) {
+            if is_comment(line) && (!fits || !is_after_blank && !has_cell_with_number(line, layout.delimiter))
+            {
                 (at, number) = (at + next, number + 1);
                 continue;
             }

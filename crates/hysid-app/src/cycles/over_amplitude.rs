@@ -1,5 +1,7 @@
 //! Figures of cycles as charts, over amplitude or frequency: of one set of cycles, or of several to compare.
 
+use std::collections::HashMap;
+
 use hysid::diagnosis::cycles::{CycleRow, Direction, Field, Figure, FigureQuantity, LossAtFrequency};
 use hysid_document::chart::thin::Point;
 use hysid_document::{Axis, Chart, Colour, Curve, number, unit};
@@ -19,26 +21,32 @@ const MOST_AMPLITUDES: usize = hysid_document::chart::SERIES;
 pub struct Shown<'a> {
     pub cycles: &'a Cycles<'a>,
     pub colour: Colour,
+    /// Colours of their dots by record, in the place of that one.
+    pub of_records: HashMap<&'a str, Colour>,
     /// Radius of their dots, in pixels.
     pub radius: f64,
     /// Source of the cycles, for the legend.
     pub name: &'a str,
 }
 
+/// Figures of loops that are compared: of one amplitude with another, and of a model with the data.
+pub fn compared_figures(field: Field) -> &'static [&'static str] {
+    match field {
+        Field::Structure => &["energy", "damping_percent", "secant_stiffness", "residual_after_peak"],
+        Field::Magnet => &["energy", "coercive_input", "remanent_output"],
+        Field::Actuator => &["width_percent", "width", "peak_to_peak", "creep"],
+        Field::Thermal => &["thermal_width", "heating_start", "cooling_start"],
+        Field::Battery => &["energy", "mean_gap", "energy_efficiency_percent"],
+        Field::Hydrology => &["hysteresis_index"],
+        Field::General => &["energy", "width", "coercive_input", "secant_stiffness"],
+    }
+}
+
 /// The figures of the field over amplitude. All sets have the columns of the first.
 pub fn figures(sets: &[Shown]) -> Vec<Chart> {
     let Some(first) = sets.first() else { return Vec::new() };
-    let names: &[&str] = match first.cycles.table.field {
-        Field::Structure => &["energy", "damping_percent", "secant_stiffness", "residual_after_peak"],
-        Field::Magnet => &["energy", "coercive_input", "remanent_output"],
-        Field::Actuator => &["width_percent", "width", "creep"],
-        Field::Thermal => &["thermal_width", "heating_start", "cooling_start"],
-        Field::Battery => &["mean_gap", "energy_efficiency_percent"],
-        Field::Hydrology => &["hysteresis_index"],
-        Field::General => &["energy", "width", "coercive_input", "secant_stiffness"],
-    };
     let amplitude = ("amplitude", first.cycles.quantities.as_input("amplitude"));
-    let figures = present(&first.cycles.rows(), names);
+    let figures = present(&first.cycles.rows(), compared_figures(first.cycles.table.field));
     figures.into_iter().filter_map(|figure| over(sets, &amplitude, |row| row.amplitude, figure)).collect()
 }
 
@@ -59,18 +67,20 @@ fn over(
     abscissa: fn(&CycleRow) -> Option<f64>,
     figure: &Figure,
 ) -> Option<Chart> {
-    let point = |row: &CycleRow| Some((abscissa(row)?, (figure.of)(row)?));
-    let of_set = |set: &Shown| set.cycles.table.complete().filter_map(point).collect::<Vec<Point>>();
-    let points: Vec<Vec<Point>> = sets.iter().map(of_set).collect();
-    let all = || points.iter().flatten();
+    let point = |row: &&CycleRow| Some((abscissa(row)?, (figure.of)(row)?));
+    let mut curves = Vec::new();
+    for set in sets {
+        let rows: Vec<&CycleRow> = set.cycles.table.complete().collect();
+        let every = rows.len().div_ceil(MOST_DOTS).max(1);
+        for own in rows.chunk_by(|a, b| a.record == b.record) {
+            let colour = *set.of_records.get(own[0].record.as_str()).unwrap_or(&set.colour);
+            curves.push(Curve::dots(own.iter().filter_map(point).step_by(every), colour, set.radius));
+        }
+    }
+    let all = || curves.iter().flat_map(|curve| &curve.points).filter(|point| point.0.is_finite());
     all().next()?;
     let label = unit::label(&sets[0].cycles.quantities.as_figure(figure.label, figure.quantity));
     let axis = |label: &str, of: fn(&Point) -> f64| Axis::linear(label, all().map(of).chain([0.0]));
-    let curve = |(set, points): (&Shown, &Vec<Point>)| {
-        let every = points.len().div_ceil(MOST_DOTS).max(1);
-        Curve::dots(points.iter().copied().step_by(every), set.colour, set.radius)
-    };
-    let curves = sets.iter().zip(&points).map(curve).collect();
     let axes = (axis(&unit::label(name), |point| point.0), axis(&label, |point| point.1));
     let chart =
         Chart::on_axes(format!("{label} of each cycle over its {what}"), axes.0, axes.1, curves).small("");

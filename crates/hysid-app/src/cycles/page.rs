@@ -4,7 +4,7 @@ use hysid::diagnosis::cycles::{CycleRow, Figure, LEVEL_FIGURES, RecordFigure};
 use hysid_document::{Colour, Page, Part, Text, number, unit};
 
 use super::table::{has_backbone, levels, losses, notes, present, record_figures, shown};
-use super::text::begin;
+use super::text::{begin, main_figures};
 use super::{Cycles, curves, over_amplitude, pictures};
 
 /// Rows of a long table at each end.
@@ -24,7 +24,9 @@ pub fn page(cycles: &Cycles) -> Page {
         false => format!("{}. Cycles begin {}.", cycles.headline(), begin(cycles)),
     };
     let mut parts = vec![Part::Lead(Text::from(lead))];
-    let alone = [over_amplitude::Shown { cycles, colour: Colour::Simulated, radius: 3.0, name: "cycles" }];
+    let of_records = pictures::colours(cycles).0;
+    let colour = Colour::Simulated;
+    let alone = [over_amplitude::Shown { cycles, colour, of_records, radius: 3.0, name: "cycles" }];
     let mut figures = over_amplitude::figures(&alone);
     figures.extend(over_amplitude::losses(&alone));
     let mut columns = vec![vec![Part::chart(pictures::loops(cycles))]];
@@ -44,8 +46,10 @@ pub fn page(cycles: &Cycles) -> Page {
 }
 
 fn table_section(cycles: &Cycles) -> Part {
-    let names: Vec<&str> =
-        cycles.figures().map(|figure| figure.name).filter(|name| !PLACES.contains(name)).collect();
+    let first = main_figures(cycles.table.field);
+    let others = cycles.figures().map(|figure| figure.name);
+    let others = others.filter(|name| !PLACES.contains(name) && !first.contains(name));
+    let names: Vec<&str> = first.iter().copied().chain(others).collect();
     // Parts of cycles have other figures than whole ones: together, half of the cells would be empty.
     let table = |is_complete: bool| {
         let is_it = |row: &&CycleRow| row.complete == is_complete;
@@ -121,13 +125,13 @@ fn backbone_section(cycles: &Cycles) -> Option<Part> {
             hysid_document::Cell::number(point.output, 4),
         ]);
     }
-    let words = "The turning points of the first cycle of each amplitude: those beyond all earlier ones in their \
+    let words = "The turning points of the first cycle of each level: those 5 % beyond the points before them in their \
                  direction.";
     Some(Part::section("Backbone", [Part::Table(table), Part::note(words)]))
 }
 
 fn losses_section(cycles: &Cycles) -> Option<Part> {
-    let (table, _) = losses(cycles, usize::MAX, unit::label)?;
+    let table = losses(cycles, unit::label)?;
     let words = "Means of cycles whose amplitudes and frequencies differ by less than 5 %. The parts of the loss per cycle \
                  are those of the separation in \"Figures of the record\".";
     Some(Part::section("Losses by frequency", [Part::Table(table), Part::note(words)]))

@@ -1,5 +1,7 @@
 //! The pictures of the page.
 
+use std::collections::HashMap;
+
 use hysid::diagnosis::reversal_curves::{ReversalCurves, ReversalNode};
 use hysid_document::chart::thin::{Point, thin, thin_path};
 use hysid_document::chart::{HeatCell, heat_map, records_in_colour};
@@ -10,6 +12,13 @@ use super::over_amplitude::{MOST_CURVES, backbone};
 
 const LOOP_POINTS: usize = 6000;
 
+/// The colour of each of several records, and their legend.
+pub fn colours<'c>(cycles: &'c Cycles) -> (HashMap<&'c str, Colour>, Vec<(Colour, String)>) {
+    let names: Vec<&str> = cycles.data.records().iter().map(|record| record.name()).collect();
+    let (colours, legend) = records_in_colour(&names);
+    (names.into_iter().zip(colours).collect(), legend)
+}
+
 /// All loops and the backbone; the largest cycle of a single record, and a colour for each of several.
 pub fn loops(cycles: &Cycles) -> Chart {
     let records = cycles.data.records();
@@ -17,18 +26,17 @@ pub fn loops(cycles: &Cycles) -> Chart {
     let most = (LOOP_POINTS * every / records.len().max(1)).max(100);
     let mut curves = Vec::new();
     let what = if cycles.of_model { "all loops of the model" } else { "all loops" };
-    let names: Vec<&str> = records.iter().step_by(every).map(|record| record.name()).collect();
-    let (colours, mut legend) = records_in_colour(&names);
-    for (place, record) in records.iter().step_by(every).enumerate() {
+    let (colours, mut legend) = colours(cycles);
+    for record in records.iter().step_by(every) {
         let (x, y) = (&*record.inputs()[0], record.output());
-        let colour = colours.get(place).copied().unwrap_or(Colour::Faint);
+        let colour = colours.get(record.name()).copied().unwrap_or(Colour::Faint);
         curves.push(Curve::new(path(x, y, most), colour, 1.2));
     }
     let largest = cycles
         .table
         .complete()
         .max_by(|a, b| a.amplitude.unwrap_or(0.0).total_cmp(&b.amplitude.unwrap_or(0.0)));
-    if names.len() == 1
+    if records.len() == 1
         && let Some(row) = largest
         && let Some(record) = records.iter().find(|record| record.name() == row.record)
     {

@@ -166,9 +166,8 @@ fn alike(a: f64, b: f64) -> bool {
 /// Label, quantity and value of a column of losses.
 type LossColumn = (&'static str, FigureQuantity, fn(&LossAtFrequency) -> Option<f64>);
 
-/// The first `most` losses of amplitudes with several frequencies, with their parts if they are separated, and the number
-/// of the others; `None` if there are none.
-pub fn losses(cycles: &Cycles, most: usize, label: impl Fn(&str) -> String) -> Option<(Table, usize)> {
+/// Losses of amplitudes with several frequencies, with their parts if they are separated; `None` if there are none.
+pub fn losses(cycles: &Cycles, label: impl Fn(&str) -> String) -> Option<Table> {
     use FigureQuantity::{Energy, Frequency, Input, Power, PowerPerMass};
     let losses: Vec<&LossAtFrequency> = at_several_frequencies(cycles).into_iter().flatten().collect();
     let columns: [LossColumn; 8] = [
@@ -180,7 +179,7 @@ pub fn losses(cycles: &Cycles, most: usize, label: impl Fn(&str) -> String) -> O
         ("excess", Energy, |loss| loss.excess),
         // Per mass in place of per volume.
         ("loss per time", Power, |loss| Some(loss.power).filter(|_| loss.power_per_mass.is_none())),
-        ("loss per time", PowerPerMass, |loss| loss.power_per_mass),
+        ("specific loss", PowerPerMass, |loss| loss.power_per_mass),
     ];
     let used: Vec<_> =
         columns.iter().filter(|(.., of)| losses.iter().any(|loss| of(loss).is_some())).collect();
@@ -188,11 +187,11 @@ pub fn losses(cycles: &Cycles, most: usize, label: impl Fn(&str) -> String) -> O
         label(&cycles.quantities.as_figure(name, *quantity))
     };
     let mut table = Table::new(used.iter().map(heading).chain(["cycles".to_string()]));
-    for loss in losses.iter().take(most) {
+    for loss in &losses {
         let values = used.iter().map(|(.., of)| Cell::number(of(loss), 4));
         table.push(values.chain([loss.cycles.into()]));
     }
-    (!losses.is_empty()).then(|| (table, losses.len().saturating_sub(most)))
+    (!losses.is_empty()).then_some(table)
 }
 
 /// The figures of records that have a value: a row for each figure, a column for each part of a record. `label` makes a

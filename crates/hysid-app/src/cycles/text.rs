@@ -15,10 +15,8 @@ const AT_EACH_END: usize = 8;
 /// Most figures of a cycle in the text.
 const MOST_FIGURES: usize = 6;
 
-/// Largest number of cycles in the text on the losses.
-const MOST_LOSSES: usize = 12;
-
-fn main_figures(field: Field) -> &'static [&'static str] {
+/// Figures that text and page show first.
+pub fn main_figures(field: Field) -> &'static [&'static str] {
     match field {
         Field::Structure => &[
             "amplitude",
@@ -150,9 +148,8 @@ fn shortened(mut table: Table) -> Table {
 
 /// Losses at several frequencies.
 fn losses(cycles: &Cycles) -> Option<String> {
-    let (table, more) = super::table::losses(cycles, MOST_LOSSES, text_label)?;
-    let more = if more > 0 { format!("and {more} more\n") } else { String::new() };
-    Some(format!("losses by amplitude and frequency\n{}{more}", rendered(&[Part::Table(shortened(table))])))
+    let table = super::table::losses(cycles, text_label)?;
+    Some(format!("losses by amplitude and frequency\n{}", rendered(&[Part::Table(shortened(table))])))
 }
 
 fn backbone(cycles: &Cycles) -> Option<String> {

@@ -69,6 +69,6 @@ impl<'a> DataDiagnosis<'a> {
         let understood =
             [Part::Definitions(understood.to_vec()), Part::paragraph(noise(&data.set, diagnosis))];
         parts.push(Part::section("How the data were read", understood));
-        Page { title: format!("Diagnosis: {}", data.source.tables[0].file), parts }
+        Page { title: format!("Diagnosis: {}", data.source.files()), parts }
     }
 }

@@ -45,10 +45,14 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     };
     let file = tables[0].file.clone();
     let train = data_with(tables, roles, arguments.columns.reading.zero)?;
+    if arguments.effort.is_some() && !models.iter().any(|model| matches!(model, ModelName::Auto(_))) {
+        warning("compare ignores --effort: only auto searches with an effort");
+    }
     let mut requests = Vec::new();
     for &model in &models {
         let (seed, known) = (Some(arguments.seed), arguments.known.clone());
-        let chosen = NamedOptions { model: Some(model), seed, known, ..NamedOptions::default() };
+        let effort = arguments.effort.filter(|_| matches!(model, ModelName::Auto(_)));
+        let chosen = NamedOptions { model: Some(model), seed, known, effort, ..NamedOptions::default() };
         let request = arguments.columns.rate.request(&chosen, &train.set).with_context(|| file.clone())?;
         requests.extend(request.variants());
     }

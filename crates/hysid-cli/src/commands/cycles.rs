@@ -46,7 +46,8 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
                 warning("cycles ignores --rate: it needs no rate");
             }
             let options = arguments.options(&data.set.names().inputs[0])?;
-            let told = (data.source.tables[0].file.as_str(), understood);
+            let files = data.source.files();
+            let told = (files.as_str(), understood);
             let smoothing = (factor, arguments.smoothing_growth);
             let cycles = Cycles::of_data(&data.set, &options, &arguments.corrections(), smoothing, told)
                 .map_err(|error| data.explain(error))?;

@@ -1,6 +1,7 @@
 //! Figures of cycles: measured data beside a model.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 
 use anyhow::{Result, anyhow, bail};
 use hysid::data::record::Dataset;
@@ -164,7 +165,13 @@ impl<'a> Sets<'a> {
     fn shown(&self, subject: &PlotData) -> Vec<Shown<'_>> {
         let names = ["measured", "model"];
         let looks = self.looks(subject).into_iter().zip(names);
-        let shown = |(cycles, ((colour, _, radius), name))| Shown { cycles, colour, radius, name };
+        let shown = |(cycles, ((colour, _, radius), name))| Shown {
+            cycles,
+            colour,
+            of_records: HashMap::new(),
+            radius,
+            name,
+        };
         self.all().into_iter().zip(looks).map(shown).collect()
     }
 }

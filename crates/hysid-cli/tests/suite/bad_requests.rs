@@ -1,7 +1,7 @@
 //! Damaged model files, columns that are not there, wrong command lines, outputs that cannot be
 //! written: one line that says where and what helps, and the right exit status.
 
-use crate::workbench::{Workbench, csv, rows, table, with_column};
+use crate::workbench::{Workbench, csv, must_contain, rows, table, with_column};
 use hysid::model::FORMAT_VERSION;
 use hysid_core::elementary::cos;
 
@@ -62,11 +62,15 @@ fn columns() {
     bench.succeeds("fit lab.csv -o lab.json --no-report --model pnn --starts 1 --epochs 1");
     let volts: Vec<_> = rows().into_iter().map(|row| [row, vec!["20".into()]].concat()).collect();
     bench.put("volts.csv", csv("t,x,y_um,Temp_C", ",", "\n", &volts));
+    let ran = bench.succeeds("evaluate lab.json volts.csv");
+    let taken = "taken: y_um, the only column with a unit of this quantity, for the model's Dev1/ai1 (nm)";
+    must_contain(&ran.stderr, &[taken, "converted: y_um from um to nm"]);
+    bench.put("two.csv", csv("t,x,y_um,z_mm", ",", "\n", &volts));
     bench.put("simulated.csv", csv("t,x,y_model", ",", "\n", &rows()));
     bench.refuses(r#"
             1 evaluate model.json other.csv => other.csv: there is no column "x", the model's input (columns: t, a, b; name another with --input)
             1 evaluate model.json other.csv --input a => other.csv: there is no column "y", the model's output (columns: t, a, b; name another with --output)
-            1 evaluate lab.json volts.csv => volts.csv: there is no column "Dev1/ai1 (nm)", the model's output (columns: t, x, y_um, Temp_C; only one has a unit of this quantity: --output y_um)
+            1 evaluate lab.json two.csv => two.csv: there is no column "Dev1/ai1 (nm)", the model's output (columns: t, x, y_um, z_mm; name another with --output)
             1 simulate model.json no-time.csv => no-time.csv: there is no column "t", the model's time (columns: k, x, y; name another with --time)
             2 simulate model.json inputs.csv --input x1 --input x2 => --input names 2 columns, but the model's inputs are 1: x
             1 simulate model.json simulated.csv => simulated.csv: there is already a column "y_model" (rename or remove it)

@@ -97,6 +97,35 @@ fn what_no_input_is_is_set_aside_and_told() {
     told(data, "--input x --input sample --output y", &["input    sample: ", "output   y: "]);
 }
 
+/// A constant axial load with the error of its control beside the lateral force: the question names the force that varies.
+#[test]
+fn of_two_forces_the_one_that_varies_is_advised() {
+    let instance =
+        "could both be the output: name input and output, for instance --input disp_mm --output lateral_kN";
+    for (header, is_last) in
+        [("t_s,disp_mm,axial_kN,lateral_kN", true), ("t_s,disp_mm,lateral_kN,axial_kN", false)]
+    {
+        let data = table(header, |k, [t, x, y]| {
+            let axial = 500.0 + 20.0 * cos(2.3 * k as f64);
+            if is_last { texts(&[&t, &x, &axial, &y]) } else { texts(&[&t, &x, &y, &axial]) }
+        });
+        let [.., one, other] = header.split(',').collect::<Vec<_>>()[..] else { unreachable!() };
+        refused(data, "", &format!("error: data.csv: \"{one}\" and \"{other}\" {instance}"));
+    }
+}
+
+#[test]
+fn a_reaction_is_told_by_its_sign() {
+    let words = "warning: reaction_kN falls while disp_mm rises: is it a reaction";
+    let data = |sign: f64| {
+        table("t_s,disp_mm,reaction_kN", |_, [t, x, y]| texts(&[&t, &x, &(sign * (x + 0.1 * y))]))
+    };
+    told(data(-1.0), "", &[words]);
+    let bench = Workbench::new();
+    bench.put("data.csv", data(1.0));
+    assert!(!bench.run("look data.csv").stderr.contains("reaction, whose"));
+}
+
 #[test]
 fn columns_that_only_grow_are_refused_where_others_are_left() {
     let growing = |header: &str| table(header, |_, [t, x, y]| texts(&[&(0.3 * t + 1.0), &x, &y]));

@@ -99,6 +99,8 @@ fn a_member_has_the_figures_of_its_law_in_csv_text_and_json() {
     assert_eq!(told["reversal_curves"], Value::Null);
 
     let page = bench.text("member.cycles.html");
+    let heading = |name: &str| page.find(&format!("{name} (")).unwrap();
+    assert!(heading("energy") < heading("input at peak"), "what matters stands first");
     for part in [
         "<svg",
         "Backbone",
@@ -145,6 +147,34 @@ fn a_magnet_has_losses_in_its_units_at_each_frequency() {
     let fast = rows.iter().find(|row| row["record"] == "fast" && row["complete"] == "yes").unwrap();
     assert!((number(fast, "power_per_mass [W/kg]") / (loss * 50.0 / 7650.0) - 1.0).abs() < 2e-3);
     must_contain(&ran.stdout, &["two amplitudes at least", "three frequencies at least"]);
+}
+
+/// Twenty files: the table of losses ends with the largest, and the page names the number of files.
+#[test]
+fn many_files_are_named_by_their_number_and_a_long_table_shows_its_end() {
+    let bench = Workbench::new();
+    let mut files = String::new();
+    for amplitude in [100, 200, 400, 700, 1000] {
+        for frequency in [1, 10, 50, 200] {
+            let mut text = String::from("t_s,H_A_per_m,B_T\n");
+            for row in 0..=400 {
+                let phase = std::f64::consts::TAU * f64::from(row) / 200.0;
+                let time = f64::from(row) / 200.0 / f64::from(frequency);
+                let field = f64::from(amplitude) * sin(phase);
+                text += &format!("{time},{field},{}\n", 1e-3 * f64::from(amplitude) * sin(phase - 0.3));
+            }
+            let name = format!("a{amplitude}_{frequency}Hz.csv");
+            bench.put(&name, text);
+            files += &format!(" {name}");
+        }
+    }
+    let ran = bench.succeeds(&format!("cycles{files} --density 7650"));
+    let losses = ran.stdout.split("losses by amplitude and frequency").nth(1).unwrap();
+    let losses = losses.split("figures of the record").next().unwrap();
+    let last = losses.lines().rfind(|line| !line.trim().is_empty()).unwrap();
+    assert!(last.starts_with("1000 ") && last.split_whitespace().nth(1) == Some("200"), "{losses}");
+    must_contain(losses, &["specific", "W/kg", "4 more"]);
+    assert!(bench.text("a100_1Hz.cycles.html").contains("<title>Cycles: a100_1Hz.csv and 19 more"));
 }
 
 /// Drift ratios of levels, in percent of a height that is given with its unit.

@@ -1,12 +1,12 @@
 //! The backbone: the turning points of the first cycle of each amplitude, in both directions.
 //!
-//! A turning point belongs to it if it lies further from where the record began than all before it in its direction, by
-//! 2 % and twice the noise of the input: so of cycles that are repeated only the first counts (ASCE/SEI 41, section 7.6,
-//! FEMA 461).
+//! A turning point belongs to it if it lies further from where the record began than those of the backbone before it in its
+//! direction, by the 5 % that separate levels and twice the noise of the input: so of the cycles of a level only the first
+//! counts (ASTM E2126, envelope curve of the first cycles; ASCE/SEI 41, section 7.6; FEMA 461).
 
 use serde::Serialize;
 
-use super::CLOSED;
+use super::levels::ALIKE;
 use super::reading::output_before_rest;
 use crate::branch::BranchSet;
 
@@ -46,7 +46,7 @@ pub(super) fn backbone(survey: &BranchSet, record: usize, level: f64) -> Vec<Bac
             true => (0, Direction::Up, branch.to - level),
             false => (1, Direction::Down, level - branch.to),
         };
-        if away <= furthest[side] * (1.0 + CLOSED) + 2.0 * survey.input_noise.deviation() {
+        if away <= furthest[side] * (1.0 + ALIKE) + 2.0 * survey.input_noise.deviation() {
             continue;
         }
         furthest[side] = away;

@@ -49,7 +49,19 @@ pub(super) fn figures(record: &str, backbone: &[BackbonePoint], level: f64) -> V
         ("negative side", down, (-1.0, level)),
         (MEAN_SIDE, mean, (1.0, 0.0)),
     ];
-    sides.iter().flat_map(|(of, points, place)| of_side((record, of), points, *place)).collect()
+    let of =
+        |(of, points, place): &(&str, Vec<(f64, f64)>, (f64, f64))| of_side((record, of), points, *place);
+    let mut all: Vec<RecordFigure> = sides.iter().flat_map(of).collect();
+    let ductilities = all.iter().filter(|figure| figure.kind == DUCTILITY).map(|figure| figure.value);
+    if let [Some(up), Some(down), Some(mean)] = ductilities.collect::<Vec<_>>()[..]
+        && !(0.99 * up.min(down)..=1.01 * up.max(down)).contains(&mean)
+        && let Some(figure) = all.pop()
+    {
+        // The mean ends at the end of the shorter side, and falls otherwise than both.
+        let words = "left out: that of the mean backbone, which ends with the shorter side, is outside those of both sides";
+        all.push(RecordFigure { value: None, ..figure }.with_note(words));
+    }
+    all
 }
 
 /// The yield input of the mean backbone among the figures of a record.

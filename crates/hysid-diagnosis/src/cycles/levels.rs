@@ -7,7 +7,7 @@ use super::row::CycleRow;
 use hysid_core::elementary::hypot;
 
 /// Successive cycles whose amplitudes differ by less than this share are of one level.
-const ALIKE: f64 = 0.05;
+pub(super) const ALIKE: f64 = 0.05;
 
 /// Successive complete cycles of one amplitude. The output of a cycle is half the distance of the outputs at its peak and its valley.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -93,6 +93,16 @@ fn a_growing_protocol_gives_one_backbone_point_for_each_amplitude_and_direction(
     assert_relative_eq!(table.cycles[5].energy.unwrap(), 12.0, epsilon = 1e-9);
 }
 
+/// A machine that goes further in the third cycle of a level does not put this cycle on the backbone.
+#[test]
+fn of_a_level_only_the_first_cycle_is_on_the_backbone() {
+    let turning = [0.0, 2.0, -2.0, 2.02, -2.02, 2.05, -2.05, 4.0, -4.0, 4.0, -4.0, 4.09, -4.09, 0.0];
+    let table = table_of(&stop(&turning), Field::Structure);
+    let inputs: Vec<f64> = table.backbone.iter().map(|point| point.input).collect();
+    assert_eq!(inputs, [2.0, -2.0, 4.0, -4.0]);
+    assert_eq!(table.levels.iter().map(|level| level.cycles).collect::<Vec<_>>(), [3, 3]);
+}
+
 /// `dz/dx = 1 - z` while a force grows and 1 while it falls: Bouc-Wen with `A = n = 1`, `β = γ = 1/2`. The loop of amplitude
 /// `a` has the tip `z_a = 1 - exp(-(2a - z_a))` and the area `2 (2a - 2 z_a - z_a²/2)`.
 #[test]

@@ -145,15 +145,33 @@ fn structure_without_noise_is_found_too() {
 /// The advice is about what the data can show: of one speed a rate is not advised, and a sign of the direction is no rate.
 #[test]
 fn advice_is_of_what_was_planted() {
-    let advice = |x: &[f64], uses_rate: bool, part: &dyn Fn(usize) -> f64| {
+    let advice_with = |time: Option<Vec<f64>>, x: &[f64], uses_rate: bool, part: &dyn Fn(usize) -> f64| {
         let residual: Vec<f64> =
             noise(7, x.len()).iter().enumerate().map(|(row, e)| part(row) + 0.1 * e).collect();
-        let data = Dataset::from_slices(x, &residual).unwrap();
+        let record = Record::new("r", vec![x.to_vec()], residual).unwrap();
+        let record = time.into_iter().fold(record, |record, time| record.with_time(time).unwrap());
+        let names = ColumnNames {
+            time: record.time().map(|_| "t".into()),
+            inputs: vec!["x".into()],
+            rate: None,
+            output: "y".into(),
+        };
+        let data = Dataset::new(names, vec![record]).unwrap();
         let options = ResidualOptions { uses_rate, ..ResidualOptions::default() };
         let found = Residuals::of(&data, &[vec![0.0; x.len()]], &options).unwrap();
         found.findings.into_iter().find(|finding| finding.test == ResidualTest::Rate).unwrap().advice.unwrap()
     };
+    let advice = |x: &[f64], uses_rate, part: &dyn Fn(usize) -> f64| advice_with(None, x, uses_rate, part);
     let several = input(ROWS);
+    // With a rest in each step, every value is passed at the speed 1.
+    let mut now = 0.0;
+    let steps = several.windows(2).map(|pair| {
+        now += (pair[1] - pair[0]).abs();
+        now
+    });
+    let time: Vec<f64> = std::iter::once(0.0).chain(steps).collect();
+    let told = advice_with(Some(time), &several, false, &|row| 20.0 * rate(row, &several));
+    assert!(told.contains("measure at a second speed"), "{told}");
     let one: Vec<f64> = (0..1200).map(|row| sin(std::f64::consts::TAU * row as f64 / 300.0)).collect();
     assert!(advice(&several, false, &|row| 20.0 * rate(row, &several)).contains("give the model the rate"));
     assert!(advice(&several, true, &|row| 20.0 * rate(row, &several)).contains("too strong, too weak"));

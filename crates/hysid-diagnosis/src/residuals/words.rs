@@ -1,5 +1,6 @@
 //! Results of the tests, in sentences.
 
+use hysid_core::data::record::{Dataset, SpeedEvidence};
 use hysid_core::data::unit::suffix;
 use hysid_core::elementary::square;
 use hysid_core::significant::Significant;
@@ -47,12 +48,14 @@ pub(super) fn findings(
     total: &SerialSum,
     unit: Option<&str>,
     options: &ResidualOptions,
+    data: &Dataset,
 ) -> Vec<ResidualFinding> {
     let mut p_values = vec![Some(bias_p_value(residuals, total)), Some(residuals.whiteness.p_value)];
     p_values.extend(residuals.inputs.iter().map(|input| Some(input.p_value)));
     p_values.extend(residuals.places.iter().map(of_place));
     let adjusted = holm(&p_values);
-    let teller = FindingWriter { residuals, unit, options };
+    let is_of_one_speed = data.has_time() && data.speeds() == SpeedEvidence::One;
+    let teller = FindingWriter { residuals, unit, options, is_of_one_speed };
     let mut told = vec![teller.bias(adjusted[0]), teller.whiteness(adjusted[1])];
     let (of_inputs, of_places) = adjusted[2..].split_at(residuals.inputs.len());
     told.extend((0..of_inputs.len()).map(|at| teller.input(at, of_inputs[at])));
@@ -114,6 +117,8 @@ struct FindingWriter<'a> {
     residuals: &'a Residuals,
     unit: Option<&'a str>,
     options: &'a ResidualOptions,
+    /// A fit uses no rate, because each input value was passed at one speed.
+    is_of_one_speed: bool,
 }
 
 impl FindingWriter<'_> {
@@ -198,7 +203,7 @@ impl FindingWriter<'_> {
     /// Remedy for a correlation `r` with the rate in the same row.
     fn advice_of_rate(&self, r: f64) -> &'static str {
         if self.is_of_one_speed() {
-            return "All half cycles have about the same speed, so that a dependence on the rate, loops of a wrong width and a \
+            return "Each input value was passed at about one speed, so that a dependence on the rate, loops of a wrong width and a \
                     delay between the channels look the same: check for a delay (diagnose the data), and measure at a second \
                     speed before you give the model the rate.";
         }
@@ -219,8 +224,8 @@ impl FindingWriter<'_> {
 
     /// True if speed and place in the half cycle cannot be distinguished.
     fn is_of_one_speed(&self) -> bool {
-        self.place_of(ResidualTest::Speed)
-            .is_none_or(|place| place.caution.is_some() || place.not_testable.is_some())
+        let is_doubtful = |place: &GroupedResiduals| place.caution.is_some() || place.not_testable.is_some();
+        self.is_of_one_speed || self.place_of(ResidualTest::Speed).is_none_or(is_doubtful)
     }
 
     /// Share of the variance that the means of rising and falling rows explain.

@@ -18,6 +18,16 @@ fn records_have_colours_of_their_own_and_a_legend() {
     assert_eq!((colours.len(), legend.len()), (30, 2));
     assert_eq!(legend[0], (Colour::Ramp(0), "r (first of 30)".to_string()));
     assert_eq!(records_in_colour(&["r"]), (Vec::new(), Vec::new()));
+    // Of files in the order of their names, the number orders the colours.
+    let (colours, legend) = records_in_colour(&["b2_100Hz", "b2_10Hz", "b2_20.5Hz"]);
+    assert_eq!(colours, [Colour::Ramp(11), Colour::Ramp(0), Colour::Ramp(6)]);
+    assert_eq!(
+        legend.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>(),
+        ["b2_10Hz", "b2_20.5Hz", "b2_100Hz"]
+    );
+    for names in [["a1_1Hz", "a2_2Hz"], ["1", "b"], ["é1", "e2"]] {
+        assert_eq!(records_in_colour(&names).0, [Colour::Ramp(0), Colour::Ramp(11)]);
+    }
 }
 
 fn chart(points: Vec<Point>) -> Chart {

@@ -33,7 +33,7 @@ def inputs_of(x: Any, wanted: Sequence[str] = ()) -> list[Column]:
         by_name = dict(named)
         if len(named) > len(wanted) and wanted and all(name in by_name for name in wanted):
             named = [(name, by_name[name]) for name in wanted]
-        return [Column(_numbers(values, "input"), name) for name, values in named]
+        return [Column(_numbers(values, "input", name=name), name) for name, values in named]
     values = _numbers(x, "input", dimensions=(1, 2))
     if values.ndim == 1:
         return [Column(values, _name_of(x, "input"))]
@@ -79,7 +79,7 @@ def _name_of(values: Any, what: str) -> str | None:
     return table_name(values, None if name is None else str(name), _UNNAMED.get(what))
 
 
-def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,)) -> np.ndarray:
+def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,), name: str | None = None) -> np.ndarray:
     """Contiguous float64; the very same array if it is that already."""
     values = without_mask(values, what)
     if are_stamps(values):
@@ -95,6 +95,8 @@ def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,)) -> np.n
         numbers = np.ascontiguousarray(values, dtype=np.float64)
     except (TypeError, ValueError) as error:
         other = "; other dates than ISO 8601 are read by pandas.to_datetime" if what == "time" else ""
+        if name is not None:
+            what, other = f"{what} {name!r}", " (labels of records are given as records; leave other text out of the table)"
         raise ValueError(f"{what}: {error}{other}") from None
     if numbers.ndim == 2 and 2 not in dimensions and numbers.shape[1] == 1:
         numbers = np.ascontiguousarray(numbers[:, 0])

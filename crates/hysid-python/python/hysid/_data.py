@@ -287,6 +287,8 @@ def _of_table(
 ) -> Columns:
     """The columns of one array or table, with a label for each row or without any."""
     table = x
+    if records is None:
+        records = _record_column(x, inputs)
     x, (y, time, records) = _taken_by_name(x, {"y": y, "time": time, "records": records})
     given = {"x": x, "y": y, "time": time, "rate": rate, "records": records}
     check_indexes(given)
@@ -306,6 +308,13 @@ def _of_table(
             )
     warn_of_order(table, [rows for _, rows in arranged.records])
     return arranged
+
+
+def _record_column(x: Any, inputs: Sequence[str]) -> str | None:
+    """The column `record` of a table, as in files, unless it is an input."""
+    names = [name for name, _ in named_columns(x) or []]
+    found = [name for name in names if name.lower() == "record" and name not in inputs]
+    return found[0] if len(names) > 1 and len(found) == 1 else None
 
 
 def _taken_by_name(x: Any, others: dict[str, Any]) -> tuple[Any, list[Any]]:

@@ -109,7 +109,7 @@ def fit(
         ``"savitzky-golay"``, or the measured rate itself.
     records : array of shape (n,), name of a column, or list of names, optional
         A label for each row; where the label changes, a new record starts in the initial state. Of a list of records, a
-        name for each, by default ``"1"``, ``"2"`` and so on.
+        name for each, by default ``"1"``, ``"2"`` and so on. A column `record` of a table has the labels if nothing else is given.
 
     Model
     -----

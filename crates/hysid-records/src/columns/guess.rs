@@ -600,7 +600,12 @@ impl<'t> Guess<'t> {
     fn columns(&self, avoided: Option<&str>) -> Words {
         let mut free = self.free.clone();
         let is_meant = |name: &&String| avoided != Some(name.as_str());
-        let of_follows = self.follows().into_iter().rfind(is_meant);
+        let follows = self.follows();
+        let varies = |name: &&&String| {
+            is_meant(name) && numbers(self.table, name).is_none_or(|values| !values::is_steady(&values))
+        };
+        let mut meant = follows.iter();
+        let of_follows = meant.clone().rfind(varies).or_else(|| meant.rfind(|name| is_meant(name))).copied();
         let output = self.output.as_ref().or(of_follows).or(free.iter().copied().rfind(is_meant));
         let Some((input, output)) = output.and_then(|output| Some((self.input_of(output, avoided)?, output)))
         else {

@@ -20,6 +20,9 @@ const LEAST_SHARE: f64 = 0.9;
 /// Largest range of what is held constant, as a share of its value.
 const HELD: f64 = 0.03;
 
+/// Range of the middle half of the values of what is held, as a share of the largest.
+const STEADY: f64 = 0.1;
+
 /// Share of a record's duration within which time starts again where the record began.
 const SAME_BEGINNING: f64 = 0.02;
 
@@ -205,6 +208,15 @@ fn is_held(values: &[f64]) -> bool {
     // Noise turns at two of three values; what moves turns seldom.
     let turns = values.windows(3).filter(|row| (row[1] - row[0]) * (row[2] - row[1]) < 0.0).count();
     10 * turns > 4 * values.len()
+}
+
+/// True for a load that is held with some error, or held after it was applied: half of its values lie close together.
+pub fn is_steady(values: &[f64]) -> bool {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(low), Some(high)) = (sorted.first(), sorted.last()) else { return true };
+    let (quarter, largest) = (sorted.len() / 4, low.abs().max(high.abs()));
+    sorted[3 * quarter] - sorted[quarter] < STEADY * largest
 }
 
 #[cfg(test)]

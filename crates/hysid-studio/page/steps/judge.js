@@ -128,8 +128,8 @@ export class JudgeStep {
     return [element("h2", { text: "What this model may be used for" }), element("ul", { class: "use" }, ...model.use.map((text) => element("li", { text }))),
       element("h2", { text: "Errors" }),
       table("Errors", ["Data", "Samples", inUnit("RMSE"), inUnit("Largest error"), "NRMSE, % of std", "Fit"], rows),
-      element("p", { class: "note", text: "Errors of a free run: the model gets only the input. NRMSE: the root mean square error in % of the standard deviation of the output. Fit: 100 % minus that error. Cross-validation: all rows held out, together; the sentence above the figures has the geometric mean over the folds." }),
-      judged.inside_band_percent === null ? null : element("p", { text: `${percent(judged.inside_band_percent)} of the measured outputs of ${file.name} lie in the ${percent(100 * project.choices.band)} prediction band. On average over data sets it holds ${percent(100 * project.choices.band)}; a single file may deviate.` }),
+      element("p", { class: "note", text: "Errors of a free run: the model gets only the input. NRMSE: the root mean square error in % of the standard deviation of the output. Fit: 100 % minus that error. Cross-validation: all held-out rows together." }),
+      judged.inside_band_percent === null ? null : element("p", { text: `${percent(judged.inside_band_percent)} of the measured outputs of ${file.name} lie in the ${percent(100 * project.choices.band)} prediction band. The band holds for new data of the specimen that the model was trained on; outputs of another specimen may lie outside.` }),
       judged.warnings.length > 0 ? element("ul", { class: "warnings" }, ...judged.warnings.map((words) => element("li", {}, linked(words)))) : null, records,
       element("p", { class: "note", text: [`${counted(model.parameters)} parameters, ${duration(model.seconds)}, ${model.termination}.`, ...model.notes].join(" ") })];
   }

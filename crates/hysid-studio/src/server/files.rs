@@ -23,7 +23,7 @@ use super::Shared;
 use super::answer::{Answer, Arrays, Refusal, at_once, computed, diagnosed, done, encoded, value};
 use crate::choices::MOST_FILE_BYTES;
 use crate::project::{ChosenColumns, Use};
-use crate::studio::{ForceAsked, PlanAsked};
+use crate::studio::{CyclesAsked, ForceAsked, PlanAsked};
 
 /// Longest pause of an upload.
 const LONGEST_PAUSE: Duration = Duration::from_secs(60);
@@ -264,6 +264,6 @@ pub async fn restoring_force(
 }
 
 /// The cycles of the training data.
-pub async fn cycles(State(shared): State<Shared>) -> Answer<Response> {
-    Ok(value(json!({"html": diagnosed(shared, |studio| studio.cycles()).await?})))
+pub async fn cycles(State(shared): State<Shared>, Query(asked): Query<CyclesAsked>) -> Answer<Response> {
+    Ok(value(json!({"html": diagnosed(shared, move |studio| studio.cycles(&asked)).await?})))
 }

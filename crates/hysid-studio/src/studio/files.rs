@@ -16,6 +16,7 @@ use hysid_document::{Face, Problem, html, object};
 use hysid_document::{Result, problem};
 use hysid_records::{Data, ReadingChoice, Roles, csv_text, summarised, understanding};
 use hysid_tables::{Table, other_kind};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::Studio;
@@ -24,6 +25,16 @@ use crate::folder::{ProjectFolder, UPLOAD, cannot_read};
 use crate::project::{ChosenColumns, Project, ProjectFile, ProjectModel, Use};
 use crate::view::{View, read};
 use crate::words::{Said, said};
+
+/// What the columns do not tell of cycles: the field, if its guess is wrong, the mass density of a magnet, in kg/m³, and the
+/// height of a structure, in the unit of the input.
+#[derive(Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CyclesAsked {
+    field: Option<String>,
+    density: Option<f64>,
+    height: Option<f64>,
+}
 
 impl Studio {
     /// Where a file with this name that comes in is put, before it is [taken](Self::take_file).
@@ -273,8 +284,21 @@ impl Studio {
     }
 
     /// The cycles of the training data, as the diagnosis.
-    pub fn cycles(&self) -> Result<String> {
-        self.made_once(|view| &view.cycles, cycles_of)
+    pub fn cycles(&self, asked: &CyclesAsked) -> Result<String> {
+        let CyclesAsked { field, density, height } = asked;
+        for (option, value) in [("density", density), ("height", height)] {
+            if value.is_some_and(|value| !(value > 0.0 && value.is_finite())) {
+                return Err(Problem::option(option, "a number above 0 is needed"));
+            }
+        }
+        if *asked == CyclesAsked::default() {
+            return self.made_once(|view| &view.cycles, |data| cycles_of(data, &CycleOptions::default()));
+        }
+        let named =
+            |name: &String| name.parse().map_err(|error: hysid::Error| Problem::request(error.to_string()));
+        let field = field.as_ref().map(named).transpose()?;
+        let options = CycleOptions { field, density: *density, height: *height, ..CycleOptions::default() };
+        cycles_of(self.training_data()?.as_ref(), &options)
     }
 
     fn made_once(
@@ -296,8 +320,8 @@ fn diagnosis_of(data: &Data) -> Result<String> {
     Ok(html::parts(&diagnosed.page().parts))
 }
 
-fn cycles_of(data: &Data) -> Result<String> {
+fn cycles_of(data: &Data, options: &CycleOptions) -> Result<String> {
     let understood = understanding::of_data(data, &Summary::of(&data.set), Face::Studio);
-    let cycles = Cycles::of_data(&data.set, &CycleOptions::default(), &[], (None, 0.0), ("", understood));
+    let cycles = Cycles::of_data(&data.set, options, &[], (None, 0.0), ("", understood));
     Ok(html::parts(&cycles::page(&cycles.map_err(|error| data.explain(error))?).parts))
 }

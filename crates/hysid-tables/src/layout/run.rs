@@ -173,8 +173,19 @@ impl LineRun {
 
 /// True for cells of which enough are numbers.
 pub fn is_row(cells: &[&str]) -> bool {
-    let kind = |cell: &&str| LineCell { text: (*cell).into(), is_quoted: false }.kind();
-    is_data(&cells.iter().map(kind).collect::<Vec<_>>())
+    is_data(&kinds(cells))
+}
+
+pub fn has_number(cells: &[&str]) -> bool {
+    kinds(cells).iter().any(is_number)
+}
+
+fn kinds(cells: &[&str]) -> Vec<CellKind> {
+    cells.iter().map(|&cell| LineCell { text: cell.into(), is_quoted: false }.kind()).collect()
+}
+
+fn is_number(kind: &CellKind) -> bool {
+    matches!(kind, CellKind::Number(_) | CellKind::Stamp)
 }
 
 /// True for a line of names such as `5 K`, `50 K` over a row of numbers without units: one of them is a text.
@@ -186,7 +197,7 @@ fn are_labels(line: &[CellKind], row: &[CellKind]) -> bool {
 }
 
 fn is_data(kinds: &[CellKind]) -> bool {
-    let numbers = kinds.iter().filter(|kind| matches!(kind, CellKind::Number(_) | CellKind::Stamp)).count();
+    let numbers = kinds.iter().filter(|kind| is_number(kind)).count();
     let text = kinds.iter().filter(|kind| **kind == CellKind::Text).count();
     numbers > 0 && 100 * numbers >= LEAST_NUMBERS * (numbers + text)
 }

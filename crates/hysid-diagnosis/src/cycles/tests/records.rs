@@ -24,6 +24,26 @@ fn lines(tips: &[(f64, f64)], negative: f64) -> Dataset {
     data(x, y)
 }
 
+/// Both sides have the ductility 3. Their mean ends with the shorter one, at 3, after the other has begun to yield.
+#[test]
+fn a_ductility_of_the_mean_outside_both_sides_is_left_out() {
+    let point = |direction, input: f64, output: f64| BackbonePoint {
+        record: "r".into(),
+        row: 0,
+        direction,
+        input,
+        output,
+    };
+    let (up, down) = (Direction::Up, Direction::Down);
+    let backbone =
+        [point(up, 1.0, 1.0), point(up, 3.0, 1.0), point(down, -3.0, -1.0), point(down, -9.0, -1.0)];
+    let figures = elastic_plastic::figures("r", &backbone, 0.0);
+    let ductilities: Vec<_> = figures.iter().filter(|figure| figure.kind.name == "ductility").collect();
+    assert_relative_eq!(ductilities[0].value.unwrap(), 3.0, epsilon = 1e-9);
+    assert_relative_eq!(ductilities[1].value.unwrap(), 3.0, epsilon = 1e-9);
+    assert!(ductilities[2].value.is_none() && ductilities[2].note.as_ref().unwrap().contains("shorter side"));
+}
+
 #[test]
 fn an_elastic_plastic_backbone_is_its_own_equivalent() {
     let x = path(&[0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 0.0], 0.05);

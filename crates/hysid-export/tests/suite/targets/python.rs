@@ -23,7 +23,9 @@ fn outputs_are_those_of_the_library() {
     let Some(python) = python("exports to Python", &["numpy"]) else { return };
     for (name, model) in MODELS.iter() {
         let folder = written(model, Target::Python, &Options::named(NAME));
-        succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));
+        let ran = succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));
+        let text = String::from_utf8(ran.stdout).unwrap();
+        assert!(text.starts_with("passed: ") && text.contains("1e-09 is allowed"), "{name}: {text}");
         let case = StepCase::of(model, ROWS);
         let arguments = ["-c", DRIVER, &case.arguments.len().to_string()];
         // Python rounds products and sums one by one, and has its own `exp` and its like.
