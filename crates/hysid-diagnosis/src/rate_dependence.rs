@@ -218,7 +218,7 @@ pub(crate) fn verdict(survey: &BranchSet) -> (Finding, Option<Delay>) {
             delay.time
         ),
         (Verdict::No, None) => {
-            format!("at {ratio:.1} times the speed the output differs by {percent:.1} % of its range")
+            format!("at {ratio:.1} times the speed the output differs by {percent:.1} % of its range (rms)")
         }
         (Verdict::Yes, _) if ratio < FAR_APART => {
             format!("outputs agree, but the speeds differ only by a factor of {ratio:.1}")
