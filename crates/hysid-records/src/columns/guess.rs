@@ -308,7 +308,7 @@ impl<'t> Guess<'t> {
         let words = Words::from(format!("column \"{}\" grows from row to row: ", clipped(name)));
         let words = words
             + match self.time {
-                None if may_be_unnamed_time(name) => {
+                None if unit::of_column(name).is_none() && !is_pure_number(name) => {
                     let time = Words::from("if it is time, ") + Hint::Value("time", (*name).clone()) + " ";
                     time + pair + "; otherwise name input and output"
                 }
@@ -661,11 +661,6 @@ impl<'t> Guess<'t> {
         free.truncate(MOST_CANDIDATES);
         pair.advised(format!("columns: {}{more}", listed(&free)))
     }
-}
-
-/// True for a name that may be that of time: it has no unit, and is no pure number.
-fn may_be_unnamed_time(name: &str) -> bool {
-    unit::of_column(name).is_none() && !is_pure_number(name)
 }
 
 /// True for the name of a pure number, such as a water activity.
