@@ -22,6 +22,7 @@ mod loss_separation;
 mod losses;
 mod notes;
 mod path;
+mod period;
 mod quantities;
 mod reading;
 mod record_figure;
@@ -31,6 +32,7 @@ mod strand;
 mod table;
 #[cfg(test)]
 mod tests;
+mod tips;
 
 use std::collections::HashMap;
 

@@ -22,12 +22,14 @@ use super::loss_separation::LossLaws;
 use super::losses::{LossAtFrequency, losses};
 use super::notes::notes;
 use super::path::{Closure, CyclePath, area, at, range, weights, width};
+use super::period::{leave_out_mixed_frequencies, resting_time, rests_within};
 use super::quantities::Quantities;
 use super::reading::{SURE, Widest, damping, end_without_noise, output_at_end, secant, widest};
 use super::record_figure::RecordFigure;
 use super::row::{CycleRow, OPEN_LOOP};
 use super::saturation;
 use super::strand::{Strand, cross};
+use super::tips::{CycleTip, Tips};
 use crate::branch::{Branch, BranchSet, JITTERS, ReversalRule};
 use crate::{DiagnosisOptions, FEWEST_ROWS};
 
@@ -64,8 +66,10 @@ const ADDS: f64 = 0.01;
 /// An opening of a loop that is said, as a share of its height.
 const OPEN: f64 = 0.02;
 
-/// A cycle whose ways there and back last unequally by this factor, between others that do not, has no frequency.
-const UNEVEN: f64 = 1.5;
+/// A change of the output between rows next to a turning point that is said, as a share of the loop's height; and how close
+/// such rows are, as a share of the swing.
+const STEEP: f64 = 0.02;
+const AT_THE_TIP: f64 = 0.01;
 
 /// Share of the way through a loop, before its middle, to which the input goes back on smaller loops.
 const BACK: f64 = 0.1;
@@ -258,20 +262,6 @@ fn rows_of(
     rows
 }
 
-/// A cycle whose halves are of two frequencies has none. `unevenness` is how many times as long the second half of each
-/// cycle lasts as its first, 1 where that is not known.
-fn leave_out_mixed_frequencies(rows: &mut [CycleRow], unevenness: &[f64]) {
-    let is_uneven = |ratio: f64| !(UNEVEN.recip()..=UNEVEN).contains(&ratio);
-    for (place, row) in rows.iter_mut().enumerate() {
-        let beside = [place.checked_sub(1), Some(place + 1)];
-        let mut beside = beside.into_iter().flatten().filter_map(|place| unevenness.get(place));
-        if is_uneven(unevenness[place]) && beside.all(|ratio| !is_uneven(*ratio)) && unevenness.len() > 1 {
-            (row.frequency, row.power) = (None, None);
-            row.notes.push("no frequency: its two halves last unequally".into());
-        }
-    }
-}
-
 /// A turning point where a cycle ends belongs to the next one.
 fn mark_backbone(row: &mut CycleRow, backbone: &[BackbonePoint]) {
     let rows = row.rows.0..row.rows.1;
@@ -311,13 +301,17 @@ impl CycleReader<'_> {
         let measured = (!outputs.is_empty()).then(|| range(&outputs));
         let complete = part == SpanPart::Cycle;
         let time = self.record.time().map(|time| (at(time, from), at(time, to)));
+        let rest = match complete {
+            true => resting_time(self.survey, self.record, self.branches, self.span, self.division),
+            false => 0.0,
+        };
         let mut row = CycleRow {
             record: self.record.name().into(),
             cycle,
             rows: (from.ceil() as usize, to.floor() as usize),
             complete,
             start_time: time.map(|(start, _)| start),
-            period: time.filter(|_| complete).map(|(start, end)| end - start + self.missing_time()),
+            period: time.filter(|_| complete).map(|(start, end)| end - start + self.missing_time() - rest),
             input_min: Some(low),
             input_max: Some(high),
             output_min: measured.map(|range| range.0),
@@ -325,6 +319,13 @@ impl CycleReader<'_> {
             ..CycleRow::default()
         };
         row.frequency = row.period.map(f64::recip).filter(|frequency| frequency.is_finite());
+        if row.period.is_some_and(|period| rests_within(self.record, self.span, period)) {
+            row.frequency = None;
+            row.notes.push("no frequency: the input rests for more than half of the cycle".into());
+        }
+        if rest > 0.0 {
+            row.notes.push(format!("its period is without a rest of {:.3} at its ends", Significant(rest)));
+        }
         let tips = self.tips();
         row.peak_input = tips.peak.map(|tip| tip.input);
         row.valley_input = tips.valley.map(|tip| tip.input);
@@ -430,6 +431,9 @@ impl CycleReader<'_> {
                 row.secant_stiffness = Some(secant(valley, peak)).filter(|slope| slope.is_finite());
             }
         }
+        if row.secant_stiffness.is_some() {
+            self.note_steep_tips(row, tips, high - low);
+        }
         if self.field.has_structures() && path.blanks() == 0 {
             self.read_modulus(row);
         }
@@ -450,6 +454,27 @@ impl CycleReader<'_> {
             row.notes.push("no width: the rows are too far apart".into());
         } else if self.field.has_widths() {
             self.read_width(row, &path, high - low);
+        }
+    }
+
+    /// Rows next to a turning point, of nearly the same input and with clearly other outputs.
+    fn note_steep_tips(&self, row: &mut CycleRow, tips: &Tips, swing: f64) {
+        let (x, y) = (&self.record.inputs()[0], self.record.output());
+        let change = |tip: CycleTip| {
+            let turn = self.branches.get(tip.leaves).map_or(x.len() - 1, |branch| branch.rows.start);
+            let beside = [turn.checked_sub(1), Some(turn + 1).filter(|row| *row < x.len())];
+            let near =
+                beside.into_iter().flatten().filter(|row| (x[*row] - x[turn]).abs() < AT_THE_TIP * swing);
+            near.map(|row| (y[row] - y[turn]).abs()).fold(0.0, f64::max)
+        };
+        let largest = [tips.peak, tips.valley].into_iter().flatten().map(change).fold(0.0, f64::max);
+        let height = row.output_max.zip(row.output_min).map_or(f64::INFINITY, |(high, low)| high - low);
+        if largest > STEEP * height + 2.0 * SURE * self.survey.output_noise.deviation() {
+            row.notes.push(format!(
+                "the output changes by {:.0} % of its range from row to row at a turning point: so uncertain are the \
+                 secant stiffness and the damping",
+                100.0 * largest / height
+            ));
         }
     }
 
@@ -495,6 +520,8 @@ impl CycleReader<'_> {
         // Of a loop that was cut, the ends are no turning points.
         let near = FAR_IN_NOISE * self.survey.input_noise.deviation();
         let is_whole = (peak.input - high).abs() <= near && (valley.input - low).abs() <= near;
+        // A parabola does not describe a branch with a dwell.
+        let end = |tip: CycleTip| end(tip).filter(|end| (end - tip.input).abs() <= near);
         if is_whole { Some((end(valley)?, end(peak)?)) } else { None }
     }
 
@@ -756,32 +783,5 @@ fn missed(after_peak: bool, after_valley: bool) -> Option<&'static str> {
         (false, true) => Some("the branch after the peak does not pass"),
         (true, false) => Some("the branch after the valley does not pass"),
         (true, true) => None,
-    }
-}
-
-/// A turning point of a cycle.
-#[derive(Debug, Clone, Copy)]
-struct CycleTip {
-    input: f64,
-    output: Option<f64>,
-    /// Number of the branch that begins there.
-    leaves: usize,
-}
-
-/// The highest peak and the deepest valley of a cycle.
-#[derive(Debug, Clone, Copy, Default)]
-struct Tips {
-    peak: Option<CycleTip>,
-    valley: Option<CycleTip>,
-}
-
-impl Tips {
-    fn take(&mut self, tip: CycleTip, is_peak: bool) {
-        let side = if is_peak { &mut self.peak } else { &mut self.valley };
-        let further =
-            |known: &CycleTip| if is_peak { tip.input > known.input } else { tip.input < known.input };
-        if side.as_ref().is_none_or(further) {
-            *side = Some(tip);
-        }
     }
 }

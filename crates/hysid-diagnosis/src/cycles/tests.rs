@@ -335,6 +335,68 @@ fn a_drifting_mean_gives_loops_where_the_input_comes_back() {
     assert!(means.windows(2).all(|pair| (pair[1] - pair[0] - 0.4).abs() < 1e-6), "{means:?}");
 }
 
+/// A static load first: the cycles about it would be few, from zero to zero.
+#[test]
+fn cycles_about_a_static_load_are_found() {
+    let table =
+        table_of(&stop(&[0.0, 3.0, 1.0, 4.0, 0.0, 5.0, -1.0, 6.0, -2.0, 7.0, -3.0, 2.0]), Field::Structure);
+    assert_eq!(table.division, Division::Mean);
+    let rows: Vec<&CycleRow> = table.complete().collect();
+    assert_eq!(rows.len(), 5);
+    for (row, amplitude) in rows.iter().zip(1..) {
+        let amplitude = f64::from(amplitude);
+        assert_relative_eq!(row.amplitude.unwrap(), amplitude, epsilon = 1e-9);
+        // From the third on, the cycle before ends on the yielding branch.
+        if amplitude > 2.5 {
+            assert_relative_eq!(row.energy.unwrap(), 4.0 * (amplitude - 1.0), epsilon = 1e-9);
+        }
+    }
+    // One-sided tests that begin at their end keep their cycles.
+    let one_sided = table_of(&stop(&[0.0, 4.0, 0.0, 4.0, 0.0, 4.0, 0.0]), Field::Structure);
+    assert_eq!((one_sided.division, one_sided.complete().count()), (Division::Reversals, 3));
+}
+
+/// Cycles that dwell at their turning points, and a rest behind the last one.
+#[test]
+fn a_dwell_and_a_rest_do_not_change_the_amplitude() {
+    let (mut time, mut x) = (Vec::new(), Vec::new());
+    for (from, to, dwell) in
+        [(0.0, 2.0, 15), (2.0, -2.0, 15), (-2.0, 2.0, 15), (2.0, -2.0, 15), (-2.0, 0.0, 120)]
+    {
+        for row in 0..40 + dwell {
+            let value: f64 = from + (to - from) * f64::min(row as f64 / 40.0, 1.0);
+            x.push(value + 0.004 * (uniform(mix(x.len() as u64)) - 0.5));
+            time.push(0.5 * time.len() as f64);
+        }
+    }
+    let y = Stop::new(1.0).unwrap().run(&x);
+    for row in table_of(&timed(time, x, y), Field::Structure).complete() {
+        assert_relative_eq!(row.amplitude.unwrap(), 2.0, epsilon = 0.01);
+    }
+}
+
+/// A viscous damper beside a spring, with the turning point between two equal rows.
+#[test]
+fn a_force_that_is_steep_at_the_tip_is_said() {
+    for (rows, is_steep) in [(40, true), (2000, false)] {
+        let phase = |row: usize| TAU * (row as f64 + 0.5) / rows as f64;
+        let x: Vec<f64> = (0..=3 * rows).map(|row| (1e5 * sin(phase(row))).round() / 1e5).collect();
+        let y = (0..=3 * rows).map(|row| 10.0 * sin(phase(row)) + 7.85 * cos(phase(row))).collect();
+        let table = table_of(&data(x, y), Field::Structure);
+        assert!(table.complete().count() >= 2);
+        for row in table.complete() {
+            assert_eq!(
+                row.notes.iter().any(|note| note.contains("from row to row")),
+                is_steep,
+                "{:?}",
+                row.notes
+            );
+            let error = (row.secant_stiffness.unwrap() - 10.0).abs();
+            assert_eq!(error > 0.2, is_steep, "{error}");
+        }
+    }
+}
+
 /// A loop of amplitude 2 on the way to amplitude 4: `4 (2 - 1)`, and not that of the tips 2 and 4.
 #[test]
 fn a_growing_cycle_from_tip_to_tip_is_the_loop_that_closes() {
