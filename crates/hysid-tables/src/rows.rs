@@ -253,16 +253,7 @@ impl Rows {
     fn complete_stamp(&mut self) -> Result<()> {
         let Some((clock, date)) = self.head.layout.clock else { return Ok(()) };
         let mut cells: Vec<String> = self.row()?.cells().map(|cell| cell.trim().to_string()).collect();
-        match (stamp::clock(&cells[clock]), date) {
-            (Some(_), Some(date)) => cells[date] = format!("{} {}", cells[date], cells[clock]),
-            (Some(_), None) if cells[clock].matches(':').count() == 1 => {
-                let end = cells[clock]
-                    .find(|c: char| !c.is_ascii_digit() && c != ':')
-                    .unwrap_or(cells[clock].len());
-                cells[clock].insert_str(end, ":00");
-            }
-            _ => return Ok(()),
-        }
+        stamp::complete(&mut cells, clock, date);
         self.text.clear();
         for (end, cell) in self.ends.iter_mut().zip(&cells) {
             self.text.extend_from_slice(cell.as_bytes());

@@ -68,6 +68,19 @@ pub fn clock(cell: &str) -> Option<f64> {
     (cell.contains(':') && cell.starts_with(|c: char| c.is_ascii_digit())).then(|| clock_of(cell, false))?
 }
 
+/// Writes a clock behind its date, or the seconds that a clock alone lacks.
+pub fn complete(cells: &mut [String], place: usize, date: Option<usize>) {
+    match (clock(&cells[place]), date) {
+        (Some(_), Some(date)) => cells[date] = format!("{} {}", cells[date], cells[place]),
+        (Some(_), None) if cells[place].matches(':').count() == 1 => {
+            let end = cells[place].find(|c: char| !c.is_ascii_digit() && c != ':');
+            let end = end.unwrap_or(cells[place].len());
+            cells[place].insert_str(end, ":00");
+        }
+        _ => {}
+    }
+}
+
 /// True for a date without a clock.
 pub fn is_date(cell: &str) -> bool {
     !cell.contains(':') && Stamp::of(cell).is_some()

@@ -47,7 +47,7 @@ fn fitting(text: &str) -> String {
     let keywords = keywords.trim_start().replace("\n\n", "\n");
     let text = replaced(text, "    *,\n", "    time_limit: ", &format!("    {keywords}    # Run\n"));
     let parameters = groups_of_parameters();
-    let last_before = "name for each, by default ``\"1\"``, ``\"2\"`` and so on.\n";
+    let last_before = " A column `record` of a table has the labels if nothing else is given.\n";
     replaced(&text, last_before, "    time_limit : ", &parameters)
 }
 
