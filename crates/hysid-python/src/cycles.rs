@@ -18,6 +18,8 @@ use crate::interruption::interruptible;
 struct CyclesContent<'a> {
     table: &'a CycleTable,
     reversal_curves: Option<&'a ReversalCurves>,
+    /// How the data were changed before.
+    changes: &'a [String],
 }
 
 /// Names of the figures of a cycle, in the order of the columns.
@@ -57,11 +59,12 @@ pub fn cycles(
         let joined = counted_through(set, options.field);
         let set = joined.as_ref().map_or(set, |(set, _)| set);
         let mut table = CycleTable::of(set, &options)?;
-        table.notes.splice(..0, cleaned.iter().chain(&joined).map(|(_, note)| note.clone()));
-        Ok((table, ReversalCurves::of(set, &of_curves)?))
+        let changes: Vec<String> = cleaned.iter().chain(&joined).map(|(_, note)| note.clone()).collect();
+        table.notes.splice(..0, changes.clone());
+        Ok((table, ReversalCurves::of(set, &of_curves)?, changes))
     };
-    let (table, curves) = interruptible(py, find)?;
-    told(&table, curves.as_ref())
+    let (table, curves, changes) = interruptible(py, find)?;
+    told(&table, curves.as_ref(), &changes)
 }
 
 /// The cycles and first-order reversal curves that a model is driven through, as JSON.
@@ -75,7 +78,7 @@ pub fn of_model(
 ) -> PyResult<String> {
     let (model, options) = (Arc::clone(model), CycleOptions { density, height, ..options(division, field)? });
     let driven = interruptible(py, move || ModelCycles::of(&model, &options, smoothing_factor))?;
-    told(&driven.table, driven.reversal_curves.as_ref())
+    told(&driven.table, driven.reversal_curves.as_ref(), &[])
 }
 
 fn options(division: Option<&str>, field: Option<&str>) -> PyResult<CycleOptions> {
@@ -86,6 +89,10 @@ fn options(division: Option<&str>, field: Option<&str>) -> PyResult<CycleOptions
     })
 }
 
-fn told(table: &CycleTable, reversal_curves: Option<&ReversalCurves>) -> PyResult<String> {
-    serde_json::to_string(&CyclesContent { table, reversal_curves }).map_err(refused)
+fn told(
+    table: &CycleTable,
+    reversal_curves: Option<&ReversalCurves>,
+    changes: &[String],
+) -> PyResult<String> {
+    serde_json::to_string(&CyclesContent { table, reversal_curves, changes }).map_err(refused)
 }

@@ -126,3 +126,13 @@ def test_columns_are_given_by_their_names(known, library):
         hysid.fit(table, "force")
     with pytest.raises(ValueError, match="time 't': a name is that of a column of x, and x is no table"):
         hysid.fit(x, y, time="t")
+
+
+def test_cycles_warn_of_a_charge_that_begins_anew():
+    charge = np.tile(np.linspace(0, 2500, 40), 6)
+    rising = 3.2 + 0.8 * np.linspace(0, 1, 40)
+    voltage = np.tile(np.concatenate([rising + 0.03, rising[::-1] - 0.03]), 3)
+    with pytest.warns(hysid.HysidWarning, match="the charge begins anew in each half cycle"):
+        table = hysid.cycles({"Capacity (mAh)": charge}, {"Voltage (V)": voltage})
+    assert table.notes[0].startswith("the charge begins anew") and len(table) == 3
+    assert np.allclose(table["width"], 0.06)

@@ -17,7 +17,7 @@ use hysid_core::options::chosen::{NamedOptions, RateChoice};
 use hysid_core::words::{Hint, Words};
 
 use self::guess::Guess;
-use self::values::{TimeCheck, ValueStatistics, numbers, plateaus};
+use self::values::{TimeCheck, ValueStatistics, numbers, plateaus, running_through};
 use hysid_core::data::unit::{self, Conversion};
 use hysid_document::shell::option;
 use hysid_document::visible::{clipped, listed};
@@ -361,7 +361,8 @@ fn time_by_name(table: &Table, free: &[&String], records: &[Range<usize>]) -> Re
             let words = Words::from(words) + Hint::Option("time") + ", or use " + none;
             return Err(Problem::in_file(&table.file, words));
         }
-        return Ok(Some((*name).clone()));
+        let through = running_through(table, name, free.iter().copied().filter(|other| other != name));
+        return Ok(Some(through.unwrap_or(name).clone()));
     }
     Ok(None)
 }

@@ -74,8 +74,8 @@ impl TableOverview {
             header_lines: layout.header_lines.clone(),
             units_line: layout.units_line,
             rows: table.rows(),
-            first_line: table.lines.first().copied().unwrap_or_default(),
-            last_line: table.lines.last().copied().unwrap_or_default(),
+            first_line: table.lines.iter().min().copied().unwrap_or_default(),
+            last_line: table.lines.iter().max().copied().unwrap_or_default(),
             left_out: table.left_out.described(),
             read_as: table.described(),
             columns: (0..table.header.len())

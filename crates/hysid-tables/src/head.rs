@@ -106,13 +106,14 @@ impl Head {
         Ok(())
     }
 
-    /// Place of a column: that of this name, or the only one of this name and a unit that the file gives elsewhere.
+    /// Place of a column: that of this name, or the only one of this name and a unit in brackets.
     pub fn column(&self, name: &str) -> Option<usize> {
         let exact = self.places.get(name).copied();
         exact.or_else(|| {
             let is_it = |full: &&String| {
-                full.strip_prefix(name).is_some_and(|rest| rest.starts_with(" ["))
-                    && unit::split(full).0 == name
+                full.starts_with(name)
+                    && full.ends_with([']', ')'])
+                    && matches!(unit::split(full), (quantity, Some(_)) if quantity == name)
             };
             let mut found = self.header.iter().filter(is_it);
             let only = found.next().filter(|_| found.next().is_none())?;

@@ -12,6 +12,7 @@ use hysid_core::words::Words;
 
 use crate::number::NumberFormat;
 use crate::reading::{Delimiter, Reading};
+use crate::stamp;
 use header::Header;
 use hysid_document::{Problem, Result};
 use lines::TextLine;
@@ -29,6 +30,9 @@ const MOST_LINES: usize = 300;
 pub fn is_record(name: &str) -> bool {
     name.eq_ignore_ascii_case("record")
 }
+
+/// Words of a time of day.
+const CLOCKS: [&str; 6] = ["clock", "time of day", "uhrzeit", "heure", "hora", "时刻"];
 
 /// Rows with names that are a table, and no part of a preamble.
 const FEWEST_ROWS: usize = 3;
@@ -49,6 +53,8 @@ pub struct Layout {
     pub cell_units: Vec<Option<String>>,
     /// Columns of dates or clocks.
     pub stamps: Vec<bool>,
+    /// A column of clocks, and that of the dates that they belong to. Alone, they are hours and minutes.
+    pub clock: Option<(usize, Option<usize>)>,
     /// Where the first row begins, in bytes.
     pub start: usize,
     /// The line of the first row.
@@ -91,6 +97,7 @@ impl Layout {
             preamble: (header.lines.first().copied().unwrap_or(first.number) - 1) as usize,
             cell_units: run.units(),
             stamps: run.stamps(),
+            clock: None,
             names: header.names,
             header_lines: header.lines,
             units_line: header.units_line,
@@ -103,6 +110,7 @@ impl Layout {
             layout.cell_units.push(None);
             layout.stamps.push(false);
         }
+        layout.find_clock(&lines[run.lines.clone()]);
         layout.name_units();
         layout.name_micromag(&lines);
         if let Some(name) = layout.names.iter().find(|name| name.len() > LONGEST_NAME) {
@@ -139,10 +147,41 @@ impl Layout {
             preamble: 0,
             cell_units: vec![None; width],
             stamps: vec![false; width],
+            clock: None,
             start: line.end,
             line: line.number + 1,
             groups: None,
         })
+    }
+
+    /// Finds a column of clocks beside one of dates, or of hours and minutes alone: those are named so, or pass midnight.
+    fn find_clock(&mut self, lines: &[TextLine<'_>]) {
+        let filled = lines.iter().filter(|line| !line.is_blank() && !line.is_comment);
+        let rows: Vec<Vec<LineCell<'_>>> =
+            filled.map(|line| cells::split(line.text, self.delimiter)).collect();
+        let cells =
+            |place: usize| rows.iter().filter_map(move |row| row.get(place)).map(|cell| cell.text.trim());
+        let are = |place: usize, kind: &dyn Fn(&str) -> bool| {
+            cells(place).next().is_some_and(|first| kind(first))
+                && cells(place).all(|cell| cell.is_empty() || kind(cell))
+        };
+        let only = |kind: &dyn Fn(&str) -> bool| {
+            let mut found = (0..self.names.len()).filter(|&place| are(place, kind));
+            found.next().filter(|_| found.next().is_none())
+        };
+        let Some(clock) = only(&|cell| stamp::clock(cell).is_some()) else { return };
+        let date = only(&stamp::is_date);
+        let name = self.names[clock].to_lowercase();
+        let is_named = CLOCKS.iter().any(|word| name.contains(word));
+        let seconds: Vec<f64> = cells(clock).filter_map(stamp::clock).collect();
+        let passes_midnight = || {
+            seconds.iter().all(|&seconds| seconds < stamp::DAY)
+                && seconds.windows(2).any(|pair| pair[1] < pair[0] - 0.5 * stamp::DAY)
+        };
+        if date.is_some() || !self.stamps[clock] && (is_named || passes_midnight()) {
+            self.clock = Some((clock, date));
+            self.stamps[date.unwrap_or(clock)] = true;
+        }
     }
 
     /// True if the last column has remarks: rows without one may lack its cell.

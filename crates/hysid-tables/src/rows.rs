@@ -8,15 +8,16 @@ use hysid_core::words::{Hint, Words};
 
 use crate::blanks::TabsForBlanks;
 use crate::container::{BINARY, DecodedText, LONGEST_TEXT, TextContent, TextSheet};
-use hysid_document::visible::{clipped, listed};
 use hysid_files::unreadable;
 
-use crate::head::{Head, counted};
+use crate::head::Head;
 use crate::layout::{Layout, cells_and_names, has_number, is_comment, is_row, split, width_problem};
+use crate::left_out::LeftOut;
 use crate::line_counter::LineCounter;
-use crate::number::is_missing;
+use crate::number::{is_missing, parsed};
 use crate::reading::{Delimiter, Reading};
 use crate::several::{Found, GatheredTables, gather};
+use crate::stamp;
 use hysid_document::{Problem, Result};
 
 /// Bytes that are read at a time.
@@ -32,6 +33,12 @@ const MOST_COLUMNS: usize = 20_000;
 
 /// Bytes at the end of a file that are looked through for rows, if they begin like none.
 const LONGEST_END: usize = 1 << 16;
+
+/// Rows before blank lines, for each line behind them that may be no row.
+const LEAST_ROWS_A_LINE: u64 = 10;
+
+/// Steps of the first column over blank lines between rows.
+const MOST_STEPS: f64 = 10.0;
 
 pub struct Rows {
     /// File, layout and names of the columns.
@@ -54,62 +61,12 @@ pub struct Rows {
     cells: usize,
     /// Rows behind the header so far, those that are not used among them.
     read: u64,
+    /// Blank lines stood between rows.
+    has_gaps: bool,
+    /// First cells of the last two rows.
+    before: [Vec<u8>; 2],
     /// Lines that are no rows: comments, and text behind the table.
     pub left_out: LeftOut,
-}
-
-/// Lines that are no rows.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct LeftOut {
-    /// Comments among the rows.
-    pub comments: u64,
-    /// Remarks behind rows, where no column has a name for them, and the line of the first.
-    pub remarks: u64,
-    pub first_remark: Option<u64>,
-    /// Lines of text among the rows, and the first of them.
-    pub text: u64,
-    pub first_text: Option<u64>,
-    /// First line behind the table, and how many there are.
-    pub end: Option<(u64, u64)>,
-    /// That those lines are rows with another delimiter.
-    pub other_delimiter: Option<Words>,
-    /// Other tables of the file.
-    pub tables: Vec<String>,
-    /// One of them may be meant.
-    pub is_doubtful: bool,
-}
-
-impl LeftOut {
-    /// Number and kind of the lines left out, in words; `None` if there were none.
-    pub fn described(&self) -> Option<String> {
-        let comments = (self.comments > 0).then(|| counted(self.comments, "comment line", "among the rows"));
-        let remarks = self
-            .first_remark
-            .map(|line| format!("{} (from line {line})", counted(self.remarks, "remark", "behind the rows")));
-        let text = self
-            .first_text
-            .map(|line| format!("{} (from line {line})", counted(self.text, "text line", "among the rows")));
-        let end = self
-            .end
-            .map(|(line, lines)| format!("{} (from line {line})", counted(lines, "line", "after the table")));
-        let tables = (!self.tables.is_empty()).then(|| listed(&self.tables));
-        let all: Vec<String> =
-            comments.into_iter().chain(remarks).chain(text).chain(end).chain(tables).collect();
-        (!all.is_empty()).then(|| all.join(", "))
-    }
-
-    /// A warning if data that may be meant are left out.
-    pub fn warning(&self, file: &str) -> Option<Words> {
-        let file = clipped(file);
-        if let (Some(changed), Some((line, lines))) = (&self.other_delimiter, self.end) {
-            let words = format!("{file}: {lines} lines are left out (from line {line}): ");
-            return Some(Words::from(words) + changed.clone());
-        }
-        let others = listed(&self.tables);
-        let words = format!("{file}: other tables of the file are left out: {others}");
-        let advice = || Words::from("choose one with ") + Hint::Option("sheet");
-        self.is_doubtful.then(|| Words::from(words).advised(advice()))
-    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -257,6 +214,8 @@ impl Rows {
             ends: Vec::new(),
             cells: 0,
             read: 0,
+            has_gaps: false,
+            before: Default::default(),
             left_out: LeftOut::default(),
         }
     }
@@ -284,9 +243,33 @@ impl Rows {
             }
             self.read += 1;
             if rows.has(self.read) {
+                self.complete_stamp()?;
                 return Ok(Some((&self.head, self.row()?)));
             }
         }
+    }
+
+    /// Writes the clock of the present row behind its date, and the seconds that a clock alone lacks.
+    fn complete_stamp(&mut self) -> Result<()> {
+        let Some((clock, date)) = self.head.layout.clock else { return Ok(()) };
+        let mut cells: Vec<String> = self.row()?.cells().map(|cell| cell.trim().to_string()).collect();
+        match (stamp::clock(&cells[clock]), date) {
+            (Some(_), Some(date)) => cells[date] = format!("{} {}", cells[date], cells[clock]),
+            (Some(_), None) if cells[clock].matches(':').count() == 1 => {
+                let end = cells[clock]
+                    .find(|c: char| !c.is_ascii_digit() && c != ':')
+                    .unwrap_or(cells[clock].len());
+                cells[clock].insert_str(end, ":00");
+            }
+            _ => return Ok(()),
+        }
+        self.text.clear();
+        for (end, cell) in self.ends.iter_mut().zip(&cells) {
+            self.text.extend_from_slice(cell.as_bytes());
+            *end = self.text.len();
+        }
+        self.text.resize(self.text.len().max(256), 0);
+        Ok(())
     }
 
     /// Parses the next row that has as many cells as the table has columns; false at the end of the table.
@@ -295,9 +278,14 @@ impl Rows {
             if !self.parse()? {
                 return Ok(false);
             }
+            if self.is_empty_row() {
+                self.left_out.empty += 1;
+                self.left_out.first_empty.get_or_insert(self.row()?.line);
+                continue;
+            }
             let width = self.head.header.len();
             if self.cells == width && width > 1 && !self.is_line_of_text()? {
-                return Ok(true);
+                return Ok(!self.is_summary()?);
             }
             if self.cells == width + 1 && self.row()?.cell(width).trim().is_empty() {
                 self.cells = width;
@@ -336,7 +324,7 @@ impl Rows {
             if (other.is_some() || !has_numbers)
                 && let Some(lines) = self.lines_without_rows()?
             {
-                (self.left_out.end, self.left_out.other_delimiter) = (Some((line, lines)), other);
+                (self.left_out.end, self.left_out.end_doubt) = (Some((line, lines)), other);
                 return Ok(false);
             }
             if is_text && self.read > 0 {
@@ -345,6 +333,49 @@ impl Rows {
                 continue;
             }
             return Err(Problem::at(&self.head.file, line, problem));
+        }
+    }
+
+    /// True for a row of several cells that are all empty.
+    fn is_empty_row(&self) -> bool {
+        let end = self.ends[..self.cells].last().copied().unwrap_or(0);
+        self.cells > 1 && self.text[..end].iter().all(u8::is_ascii_whitespace)
+    }
+
+    /// True if the present row and what follows it are no rows: the few last ones, behind the first blank lines, whose first
+    /// cells do not go on as those before.
+    fn is_summary(&mut self) -> Result<bool> {
+        let raw = &self.buffer[self.start..self.start + self.parsed];
+        let is_apart = self.read > 0 && self.lines.line_of(raw) > self.lines.line();
+        let is_first = is_apart && !self.has_gaps;
+        self.has_gaps |= is_apart;
+        if is_first && !self.goes_on() {
+            let line = self.row()?.line;
+            if let Some(lines) = self.rest()?.map(|rest| filled(rest).count() as u64)
+                && lines * LEAST_ROWS_A_LINE <= self.read
+            {
+                let words =
+                    Words::from("they stand behind blank lines").advised("rows? remove the blank lines");
+                (self.left_out.end, self.left_out.end_doubt) = (Some((line, lines)), Some(words));
+                return Ok(true);
+            }
+        }
+        self.before.swap(0, 1);
+        self.before[1].clear();
+        self.before[1].extend_from_slice(&self.text[..self.ends[0]]);
+        Ok(false)
+    }
+
+    /// True if the first cell grows as those of the last two rows.
+    fn goes_on(&self) -> bool {
+        let number = |cell: &[u8]| {
+            let text = std::str::from_utf8(cell).ok()?;
+            let number = parsed(text, self.head.numbers().decimal).ok();
+            number.map(|(number, _)| number)
+        };
+        match [&self.before[0], &self.before[1], &self.text[..self.ends[0]]].map(number) {
+            [Some(a), Some(b), Some(c)] => b > a && c > b && c - b <= MOST_STEPS * (b - a),
+            _ => false,
         }
     }
 
@@ -386,6 +417,18 @@ impl Rows {
 
     /// How many lines stand from the present row to the end of the file, if none of them is a row.
     fn lines_without_rows(&mut self) -> Result<Option<u64>> {
+        let delimiter = match self.head.delimiter() {
+            // Blanks are tabs by now.
+            Delimiter::Blanks => Delimiter::Character(b'\t'),
+            delimiter => delimiter,
+        };
+        let width = self.head.header.len();
+        let Some(rest) = self.rest()? else { return Ok(None) };
+        Ok((!filled(rest).any(|line| is_row_of(line, delimiter, width))).then(|| filled(rest).count() as u64))
+    }
+
+    /// The text from the present row to the end of the file, if it is short.
+    fn rest(&mut self) -> Result<Option<&str>> {
         while !self.is_all_read {
             if self.end - self.start > LONGEST_END {
                 return Ok(None);
@@ -395,15 +438,7 @@ impl Rows {
             // What is parsed stays: only the buffer moved.
             debug_assert!(self.parsed == parsed && self.end - self.start >= present);
         }
-        let Ok(rest) = std::str::from_utf8(&self.buffer[self.start..self.end]) else { return Ok(None) };
-        let delimiter = match self.head.delimiter() {
-            // Blanks are tabs by now.
-            Delimiter::Blanks => Delimiter::Character(b'\t'),
-            delimiter => delimiter,
-        };
-        let width = self.head.header.len();
-        let filled = || rest.lines().filter(|line| !line.trim().is_empty());
-        Ok((!filled().any(|line| is_row_of(line, delimiter, width))).then(|| filled().count() as u64))
+        Ok(std::str::from_utf8(&self.buffer[self.start..self.end]).ok())
     }
 
     /// Parses the row behind the present one; false at the end.
@@ -507,6 +542,11 @@ fn beginning(file: &str, reader: &mut dyn Read) -> Result<(Vec<u8>, bool)> {
         }
         wanted *= 2;
     }
+}
+
+/// The lines with letters.
+fn filled(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter(|line| !line.trim().is_empty())
 }
 
 /// True for a line of numbers in so many columns.
@@ -697,6 +737,54 @@ mod tests {
             error,
             "f, line 4: has 1 cell where the header has 3 (if the line is a remark, begin it with #)"
         );
+    }
+
+    #[test]
+    fn a_clock_beside_a_date_is_its_time_and_one_of_hours_and_minutes_passes_midnight() {
+        let cells = |text: &str, place: usize| -> Vec<String> {
+            read(text.as_bytes(), 1000)
+                .unwrap()
+                .iter()
+                .skip(1)
+                .map(|(_, cells)| cells[place].clone())
+                .collect()
+        };
+        let text = "Datum;Uhrzeit;rF\n26.02.2024;06:00;1\n26.02.2024;18:30;2\n27.02.2024;00:00;3\n";
+        assert_eq!(cells(text, 0), ["26.02.2024 06:00", "26.02.2024 18:30", "27.02.2024 00:00"]);
+        assert_eq!(cells("Clock,x\n06:00,1\n07:00 PM,2\n", 0), ["06:00:00", "07:00:00 PM"]);
+        assert_eq!(cells("t,x\n12:00,1\n23:00,2\n00:30,3\n", 0), ["12:00:00", "23:00:00", "00:30:00"]);
+        // Minutes and seconds, perhaps.
+        assert_eq!(cells("t,x\n12:00,1\n12:30,2\n13:00,3\n", 0), ["12:00", "12:30", "13:00"]);
+    }
+
+    #[test]
+    fn empty_rows_and_a_summary_behind_blank_lines_are_left_out() {
+        let rows_of =
+            |first: u32| (first..first + 40).map(|row| format!("{row},{}\n", row % 7)).collect::<String>();
+        let data = format!("t,x\n{}", rows_of(0));
+        for (end, read, left_out) in [
+            (
+                ",\n , \nEnd of data,\n",
+                40,
+                "2 empty rows among the rows (from line 42), 1 line after the table (from line 44)",
+            ),
+            (",,,\n", 40, "1 empty row among the rows (from line 42)"),
+            ("\n\n99.9,12.3\n98,4.5\n", 40, "2 lines after the table (from line 44)"),
+            ("\r\n\r\n99.9,12.3", 40, "1 line after the table (from line 44)"),
+            ("\n40,5\n41,6\n", 42, ""),
+            (&format!("\n{}", rows_of(0)), 80, ""),
+            (&format!("\n{}\n0,1\n", rows_of(0)), 81, ""),
+        ] {
+            let mut rows = rows(format!("{data}{end}").as_bytes(), 1000, &Reading::default()).unwrap();
+            while rows.next_row().unwrap().is_some() {}
+            assert_eq!(
+                (rows.read, rows.left_out.described().unwrap_or_default().as_str()),
+                (read, left_out),
+                "{end}"
+            );
+            let warns = end.contains("99.9");
+            assert_eq!(rows.left_out.warning("f").is_some(), warns, "{end}");
+        }
     }
 
     #[test]

@@ -12,6 +12,7 @@ use crate::layout::{CellKind, Layout, LineCell, first_line, is_comment, is_name,
 use crate::number::{DecimalSign, is_missing, parsed};
 use crate::reading::{Delimiter, Reading};
 use branches::LoopBranches;
+pub use branches::are_branches;
 
 const MOST_TABLES: usize = 500;
 
@@ -112,7 +113,8 @@ pub fn gather(file: &str, sheets: &[TextSheet], reading: &Reading) -> Result<Fou
     let is_doubtful = reading.sheet.is_none() && rows(false).iter().any(|&rows| rows as f64 >= least);
     let mut kept = chosen.iter();
     parts.retain(|_| kept.next() == Some(&true));
-    Ok(Found::Gathered(Box::new(GatheredTables { left_out, is_doubtful, ..joined(&parts) })))
+    let tables = loops_of_branches(&parts).unwrap_or_else(|| joined(&parts));
+    Ok(Found::Gathered(Box::new(GatheredTables { left_out, is_doubtful, ..tables })))
 }
 
 /// The part of this name or number.
@@ -151,6 +153,7 @@ fn joined(parts: &[TablePart<'_>]) -> GatheredTables {
         layout.names.insert(0, RECORD.into());
         layout.cell_units.insert(0, None);
         layout.stamps.insert(0, false);
+        layout.clock = layout.clock.map(|(clock, date)| (clock + 1, date.map(|date| date + 1)));
     }
     let (mut text, mut lines) = (String::new(), Vec::new());
     for part in parts {
@@ -183,6 +186,25 @@ fn joined(parts: &[TablePart<'_>]) -> GatheredTables {
         left_out: Vec::new(),
         is_doubtful: false,
     }
+}
+
+/// Parts of two branches each, as loops one below the other.
+fn loops_of_branches(parts: &[TablePart<'_>]) -> Option<GatheredTables> {
+    let loops: Vec<GatheredTables> = parts.iter().map(TablePart::loop_of_branches).collect::<Option<_>>()?;
+    let mut layout = loops[0].layout.clone();
+    layout.names.insert(0, RECORD.into());
+    layout.cell_units.insert(0, None);
+    layout.stamps.insert(0, false);
+    let mut text = String::new();
+    for (part, rows) in parts.iter().zip(&loops) {
+        for row in rows.text.lines() {
+            push_words(&mut text, &part.name);
+            text.push_str(&format!("\t{row}\n"));
+        }
+    }
+    let lines = loops.into_iter().flat_map(|rows| rows.lines).collect();
+    let described = format!("{}, two branches as one loop", described(parts));
+    Some(GatheredTables { layout, text, lines, described, left_out: Vec::new(), is_doubtful: false })
 }
 
 /// Which tables are read.
@@ -356,6 +378,7 @@ impl<'t> TablePart<'t> {
             layout.names.clone_from(&groups.names);
             layout.cell_units = columns.iter().map(|&place| self.layout.cell_units[place].clone()).collect();
             layout.stamps = columns.iter().map(|&place| self.layout.stamps[place]).collect();
+            layout.clock = None;
             layout.name_units();
             let name = if name.is_empty() { label.clone() } else { format!("{name}/{label}") };
             let (sheet, delimiter, rows) = (self.sheet, self.delimiter, self.rows.clone());
@@ -371,7 +394,9 @@ impl<'t> TablePart<'t> {
         let branch = |[input, output]: [usize; 2]| -> Vec<(u64, [String; 2])> {
             let row = |&(line, row): &(u64, &str)| {
                 let cells = split(row, self.delimiter);
-                let cell = |place: usize| cells.get(place).map_or("", |cell| cell.text.trim()).to_string();
+                let cell = |place: usize| {
+                    cells.get(self.columns[place]).map_or("", |cell| cell.text.trim()).to_string()
+                };
                 (line, [cell(input), cell(output)])
             };
             self.rows.iter().map(row).filter(|(_, [_, output])| !is_missing(output)).collect()
@@ -399,7 +424,7 @@ impl<'t> TablePart<'t> {
         rows.append(&mut returning);
         let mut layout = self.layout.clone();
         layout.cell_units = branches.out.map(|place| self.layout.cell_units[place].clone()).to_vec();
-        layout.stamps = vec![false; 2];
+        (layout.stamps, layout.clock) = (vec![false; 2], None);
         layout.names = branches.names.to_vec();
         let mut text = String::new();
         for (_, [input, output]) in &rows {
@@ -428,7 +453,7 @@ impl<'t> TablePart<'t> {
         layout.names = if is_named { rows.iter().map(first).collect() } else { numbered.collect() };
         layout.header_lines = if is_named { vec![self.rows[0].0] } else { Vec::new() };
         layout.cell_units = vec![None; rows.len()];
-        layout.stamps = vec![false; rows.len()];
+        (layout.stamps, layout.clock) = (vec![false; rows.len()], None);
         let mut text = String::new();
         let columns = usize::from(is_named)..self.width();
         for place in columns.clone() {

@@ -2,7 +2,7 @@
 
 use jiff::civil;
 
-const DAY: f64 = 86_400.0;
+pub const DAY: f64 = 86_400.0;
 
 /// Fewest characters of a time stamp.
 const SHORTEST: usize = 7;
@@ -60,6 +60,17 @@ impl Stamp {
             None => None,
         }
     }
+}
+
+/// Seconds since midnight of a clock with or without seconds; `None` for a date or anything else.
+pub fn clock(cell: &str) -> Option<f64> {
+    let cell = cell.trim();
+    (cell.contains(':') && cell.starts_with(|c: char| c.is_ascii_digit())).then(|| clock_of(cell, false))?
+}
+
+/// True for a date without a clock.
+pub fn is_date(cell: &str) -> bool {
+    !cell.contains(':') && Stamp::of(cell).is_some()
 }
 
 /// The seconds of a clock, with an offset from universal time subtracted. Behind a date, the seconds may be missing.

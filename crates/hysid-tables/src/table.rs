@@ -5,8 +5,9 @@ use std::path::Path;
 
 use crate::head::Head;
 use crate::layout::Layout;
+use crate::left_out::LeftOut;
 use crate::reading::Reading;
-use crate::rows::{LeftOut, Rows};
+use crate::rows::Rows;
 use hysid_document::Result;
 
 /// A table as it stands in its file.

@@ -310,3 +310,70 @@ fn a_hint_names_a_pair_that_belongs_together() {
          instance --input 'Disp B (mm)' --output 'Force B (kN)'",
     );
 }
+
+/// A damper with a magnetic liquid: its force is measured, and not calculated from displacement and velocity.
+#[test]
+fn a_damping_force_is_an_output_and_each_current_is_a_record() {
+    let header = "Time [ms],Displacement [mm],Velocity [mm/s],Current [A],Damping Force [N]";
+    let data = table(header, |k, [t, x, y]| texts(&[&(1e3 * t), &x, &cos(t), &usize::from(k >= 40), &y]));
+    let current =
+        "ignored  Current [A]: a condition of the test, with few values, which divide the rows into records";
+    let lines = ["input    Displacement [mm]: ", "output   Damping Force [N]: ", current];
+    for options in ["", "--input Displacement"] {
+        told(data.clone(), options, &lines);
+        told(data.clone(), options, &["in 2 records: data (1: 0 A), data (2: 1 A)"]);
+    }
+}
+
+#[test]
+fn a_time_that_runs_through_is_preferred_to_one_that_starts_again_in_steps() {
+    for name in ["Step Time (s)", "Time (s)"] {
+        let header = format!("{name},Total Time (s),x_mm,F_kN");
+        let steps = |gap: f64| {
+            table(&header, |k, [t, x, y]| {
+                let step = (k / 20) as f64;
+                texts(&[&(t - 2.0 * step), &(t + gap * step), &x, &y])
+            })
+        };
+        let again = format!("ignored  {name}: a second time");
+        told(steps(0.0), "", &["time     Total Time (s): ", &again, "in 1 record"]);
+        // Tests with a pause between them.
+        told(steps(50.0), "", &[&format!("time     {name}: "), "ignored  Total Time (s): a second time"]);
+    }
+}
+
+#[test]
+fn a_branch_of_a_quantity_is_no_input_of_the_other() {
+    let header = "Target RH [%],Sorption [%],Desorption [%],Remark 1";
+    refused(
+        table(header, |k, [_, x, y]| texts(&[&(50.0 + 10.0 * x), &y, &(y * y + x), &(k % 2)]))
+            .replace("Remark 1", "Status"),
+        "",
+        "error: data.csv: \"Sorption [%]\" and \"Desorption [%]\" are two branches of one quantity: name input and output, \
+         for instance --input 'Target RH [%]' --output 'Desorption [%]' (columns: Sorption [%])",
+    );
+    // Water activity is no time.
+    refused(
+        table("aw [-],EMC a [%],EMC b [%]", |_, [t, x, y]| texts(&[&t, &x, &y])),
+        "",
+        "error: data.csv: column \"aw [-]\" grows from row to row: name input and output, for instance --input 'aw [-]' \
+         --output 'EMC b [%]' (columns: aw [-], EMC a [%], EMC b [%])",
+    );
+}
+
+#[test]
+fn a_unit_in_brackets_may_be_left_out() {
+    let data = table("t_s,Drift (mm),Axial Strain (%),Deviator (kPa)", |_, [t, x, y]| {
+        texts(&[&t, &x, &(x * x), &y])
+    });
+    told(data, "--input Drift --output Deviator", &["input    Drift (mm): ", "output   Deviator (kPa): "]);
+}
+
+/// Date and clock in two columns, with four rows a day.
+#[test]
+fn a_clock_belongs_to_the_date_beside_it() {
+    let data = table("Datum,Uhrzeit,rF [%],Holzfeuchte [%]", |k, [_, x, y]| {
+        texts(&[&format!("{}.03.2024", 1 + k / 4), &format!("{:02}:00", 6 * (k % 4)), &x, &y])
+    });
+    told(data, "", &["time     Datum [s]: steps of 21600", "ignored  Uhrzeit: text"]);
+}

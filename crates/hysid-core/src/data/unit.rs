@@ -1,12 +1,14 @@
 //! Units in the names of columns: `force [kN]`, `Time (s)`, `x / mm`, `H_A_per_m`.
 
 mod derived;
+mod in_name;
 mod quantity;
 mod written;
 
-use crate::data::usual_role::UsualRole;
+use crate::data::usual_role::{Domain, UsualRole};
 use crate::elementary::{log10, powi};
 pub use derived::{energy, power, pure_quotient, quotient};
+pub use in_name::split;
 use quantity::UnitQuantity;
 pub use written::written;
 
@@ -21,7 +23,7 @@ const TIME_NAMES: &str = "t time";
 
 /// Further names of time, lower case, without blanks and underscores. The values must confirm them.
 const FURTHER_TIME_NAMES: &str = "timestamp elapsed elapsedtime timeelapsed testtime runtime clock date \
-                                  datetime sec secs second seconds zeit zeitstempel messzeit temps tiempo \
+                                  datetime sec secs second seconds minutes hours days zeit zeitstempel messzeit temps tiempo \
                                   tempo xvalue relativetime tijd czas tid время 时间 时刻 時間 時刻";
 
 /// Words of longer names of time, such as `Running Time`.
@@ -31,6 +33,10 @@ const TIME_WORDS: [&str; 6] = ["time", "zeit", "temps", "tiempo", "tempo", "вр
 pub(crate) fn part(unit: &str) -> Option<UsualRole> {
     if OTHER.contains(&unit) || OTHER_ALONE.contains(&unit) && unit != "n.u." {
         return Some(UsualRole::Accompanies);
+    }
+    // That of a volume has the dimension of a field.
+    if unit.contains("emu") {
+        return Some(UsualRole::Follows(Domain::Magnetism));
     }
     UnitQuantity::of(unit)?.part()
 }
@@ -116,71 +122,6 @@ fn is_in_unit_of_time(unit: Option<&str>) -> bool {
 /// A unit as it is printed after a number.
 pub fn suffix(unit: Option<&str>) -> String {
     unit.map_or_else(String::new, |unit| format!(" {}", written(unit)))
-}
-
-/// A name, divided into quantity and unit.
-pub fn split(name: &str) -> (&str, Option<String>) {
-    let name = name.trim();
-    for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some(inner) = name.strip_suffix(close)
-            && let Some((quantity, unit)) = inner.rsplit_once(open)
-        {
-            // The number of an equal name, such as `H (Oe) (2)`.
-            if !unit.is_empty() && unit.bytes().all(|byte| byte.is_ascii_digit()) {
-                return split(quantity);
-            }
-            let unit = Some(unit.trim().to_string()).filter(|unit| !unit.is_empty() && unit != "-");
-            return (quantity.trim_end_matches([' ', '_']), unit);
-        }
-    }
-    if let Some((quantity, unit)) = name.rsplit_once(", ")
-        && is_unit(unit.trim())
-    {
-        return (quantity.trim(), Some(unit.trim().to_string()));
-    }
-    if let Some((quantity, unit)) = name.rsplit_once('/')
-        && is_known(unit.trim())
-    {
-        return (quantity.trim(), Some(unit.trim().to_string()));
-    }
-    // The longest known ending; something must be left to name the quantity.
-    for (place, _) in name.char_indices().filter(|&(_, c)| c == '_') {
-        if place > 0
-            && let Some(unit) = from_words(&name[place + 1..])
-        {
-            return (&name[..place], Some(unit));
-        }
-    }
-    (name, None)
-}
-
-/// `A_per_m` is A/m, `V_us` is V us, `mm_s` is mm/s, `m_s2` is m/s2.
-fn from_words(text: &str) -> Option<String> {
-    if let Some((above, below)) = text.split_once("_per_") {
-        return (is_known(above) && is_known(below)).then(|| format!("{above}/{below}"));
-    }
-    match text.split_once('_') {
-        None => is_known(text).then(|| text.to_string()),
-        Some((length, time)) if is_length(length) && is_in_unit_of_time(Some(time)) => {
-            Some(format!("{length}/{time}"))
-        }
-        Some((length, "s2")) if is_length(length) => Some(format!("{length}/s2")),
-        Some((force, arm)) if ["N", "kN"].contains(&force) && is_length(arm) => {
-            Some(format!("{force} {arm}"))
-        }
-        Some((unit, time)) if is_known(unit) && is_in_unit_of_time(Some(time)) => {
-            Some(format!("{unit} {time}"))
-        }
-        Some(_) => None,
-    }
-}
-
-fn is_known(unit: &str) -> bool {
-    OTHER.contains(&unit) || quantity::may_end_a_name(unit)
-}
-
-fn is_length(unit: &str) -> bool {
-    is_known(unit) && UnitQuantity::of(unit).is_some_and(|quantity| quantity.dimension == quantity::LENGTH)
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ import numpy as np
 from hysid import _hysid
 from hysid._arguments import fraction, name_of, real, truth, whole
 from hysid._data import columns
+from hysid._warning import warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -92,6 +93,7 @@ class Cycles(Mapping[str, np.ndarray]):
     def _of(cls, text: str) -> Cycles:
         told = json.loads(text)
         table, curves = told["table"], told["reversal_curves"]
+        warn(told["changes"])
         cycles = [
             {**row, "first_row": row["rows"][0], "last_row": row["rows"][1], "notes": "; ".join(row["notes"])}
             for row in table["cycles"]

@@ -9,7 +9,7 @@ use hysid_core::data::unit;
 use hysid_core::data::usual_role::Domain;
 use hysid_core::words::{Hint, Words};
 use hysid_document::visible::{clipped, listed};
-use hysid_tables::{Problem, Result, Table};
+use hysid_tables::{Problem, Result, Table, are_branches};
 
 use super::NO_TIME;
 use super::kind::{self, ColumnKind};
@@ -103,6 +103,7 @@ impl<'t> Guess<'t> {
             self.refuse_many()?;
             self.refuse_alike()?;
             self.refuse_unclear_inputs()?;
+            self.refuse_branches()?;
             self.put_the_main_input_first();
             self.refuse_what_accompanies(weakest)?;
             self.refuse_other_drives()?;
@@ -128,7 +129,16 @@ impl<'t> Guess<'t> {
     }
 
     fn find_time(&mut self, seen: &[(&'t String, Option<ValueStatistics>)]) {
-        for (name, seen) in seen {
+        let stepped =
+            seen.iter().filter(|(_, seen)| seen.is_some_and(|seen| !seen.never_falls)).map(|(name, _)| *name);
+        let through = stepped.filter(|name| unit::may_be_time(name)).find_map(|name| {
+            let others = seen.iter().map(|(other, _)| *other).filter(|other| *other != name);
+            values::running_through(self.table, name, others)
+        });
+        let is_last = |(name, _): &&(&'t String, Option<ValueStatistics>)| {
+            through.is_some_and(|through| through != *name)
+        };
+        for (name, seen) in seen.iter().filter(|entry| !is_last(entry)).chain(seen.iter().filter(is_last)) {
             let Some(seen) = seen else { continue };
             let is_named = unit::may_be_time(name);
             let is_time = match seen.running {
@@ -222,12 +232,7 @@ impl<'t> Guess<'t> {
                 doubtful(Rank::Derived, Words::from("a rate, not an input").advised(advice))
             }
             ColumnKind::Derived => by_name(Rank::Derived),
-            ColumnKind::Condition if seen.is_kept => {
-                let divides = self.record.is_none() && self.records.len() == 1;
-                let more = if divides { ", which divide the rows into records" } else { "" };
-                let reason = format!("a condition of the test, with few values{more}");
-                Some(DoubtfulColumn { name, rank: Rank::Kept, reason: reason.into(), divides })
-            }
+            ColumnKind::Condition if seen.is_kept => self.condition_of_few_values(name),
             ColumnKind::Condition => by_name(Rank::Condition),
             ColumnKind::Unknown
                 if seen.is_kept && self.free.iter().any(|other| ColumnKind::of(other).drives()) =>
@@ -237,7 +242,7 @@ impl<'t> Guess<'t> {
             ColumnKind::Drives(Domain::Electricity)
                 if seen.is_kept && self.has(ColumnKind::Drives(Domain::Mechanics)) =>
             {
-                doubt(Rank::Kept, "few values, each kept for many rows: a condition")
+                self.condition_of_few_values(name)
             }
             ColumnKind::Drives(Domain::Mechanics) | ColumnKind::Follows(Domain::Mechanics)
                 if self.has(ColumnKind::Drives(Domain::Magnetism))
@@ -273,13 +278,20 @@ impl<'t> Guess<'t> {
         }
     }
 
+    fn condition_of_few_values(&self, name: &'t String) -> Option<DoubtfulColumn<'t>> {
+        let divides = self.record.is_none() && self.records.len() == 1;
+        let more = if divides { ", which divide the rows into records" } else { "" };
+        let reason = format!("a condition of the test, with few values{more}");
+        Some(DoubtfulColumn { name, rank: Rank::Kept, reason: reason.into(), divides })
+    }
+
     fn is_empty(&self, name: &str) -> bool {
         let place = self.table.column(name).unwrap_or_default();
         (0..self.table.rows()).all(|row| self.table.cell(row, place).trim().is_empty())
     }
 
     fn has(&self, kind: ColumnKind) -> bool {
-        self.free.iter().any(|name| ColumnKind::of(name) == kind)
+        self.free.iter().copied().chain(&self.inputs).any(|name| ColumnKind::of(name) == kind)
     }
 
     /// Refuses a column that only grows, which has no hysteresis, beside others; alone, it may be what is wanted.
@@ -291,11 +303,12 @@ impl<'t> Guess<'t> {
         let unclear =
             seen.iter().find(|(name, seen)| self.free.contains(name) && seen.as_ref().is_some_and(grows));
         let Some((name, _)) = unclear else { return Ok(()) };
-        let pair = self.columns(Some(name));
+        // A pure number, such as a water activity, may be the input.
+        let pair = self.columns(Some(name.as_str()).filter(|name| !is_pure_number(name)));
         let words = Words::from(format!("column \"{}\" grows from row to row: ", clipped(name)));
         let words = words
             + match self.time {
-                None if unit::of_column(name).is_none() => {
+                None if unit::of_column(name).is_none() && !is_pure_number(name) => {
                     let time = Words::from("if it is time, ") + Hint::Value("time", (*name).clone()) + " ";
                     time + pair + "; otherwise name input and output"
                 }
@@ -399,8 +412,14 @@ impl<'t> Guess<'t> {
 
     /// The likeliest input of an output: what drives its branch of physics, or anything, or another column.
     fn input_of(&self, output: &str, avoided: Option<&str>) -> Option<&String> {
-        let others =
-            || self.free.iter().copied().filter(|name| *name != output && avoided != Some(name.as_str()));
+        let is_avoided = |name: &String| avoided == Some(name.as_str());
+        let is_other = |name: &&String| *name != output && !are_of_one_quantity(name, output);
+        let others = || self.free.iter().copied().filter(is_other).filter(|name| !is_avoided(name));
+        let is_condition = |name: &String| {
+            ColumnKind::of(name) == ColumnKind::Condition
+                && self.set_aside.iter().any(|(other, _)| other == name)
+        };
+        let rest = || self.table.header.iter().filter(is_other);
         let of_domain = |name: &&String| match ColumnKind::of(output) {
             ColumnKind::Follows(domain) => ColumnKind::of(name) == ColumnKind::Drives(domain),
             _ => false,
@@ -411,6 +430,8 @@ impl<'t> Guess<'t> {
             .or_else(|| alike(output, others().filter(|name| ColumnKind::of(name).drives())))
             .or_else(|| others().find(|name| !ColumnKind::of(name).follows()))
             .or_else(|| others().next())
+            .or_else(|| rest().find(|name| is_avoided(name)))
+            .or_else(|| rest().find(|name| is_condition(name)))
     }
 
     fn order_believed(&self, one: &str, last: &str) -> Words {
@@ -527,6 +548,22 @@ impl<'t> Guess<'t> {
         Err(self.question(&names))
     }
 
+    /// Refuses one branch of a quantity as the input of the other, as of sorption and desorption.
+    fn refuse_branches(&self) -> Result<()> {
+        if let ([input], Some(output)) = (self.free.as_slice(), &self.output)
+            && are_branches(input, output)
+            && self.input_of(output, None).is_some()
+        {
+            let words = "are two branches of one quantity";
+            return Err(self.question(&format!(
+                "\"{}\" and \"{}\" {words}",
+                clipped(input),
+                clipped(output)
+            )));
+        }
+        Ok(())
+    }
+
     /// The input of the output's own branch of physics is the hysteretic one.
     fn put_the_main_input_first(&mut self) {
         let Some(ColumnKind::Follows(domain)) = self.output.as_deref().map(ColumnKind::of) else { return };
@@ -624,6 +661,24 @@ impl<'t> Guess<'t> {
         free.truncate(MOST_CANDIDATES);
         pair.advised(format!("columns: {}{more}", listed(&free)))
     }
+}
+
+/// True for the name of a pure number, such as a water activity.
+fn is_pure_number(name: &str) -> bool {
+    name.ends_with("[-]")
+        || name.ends_with("(-)")
+        || kind::words(name).iter().any(|word| ["aw", "activity"].contains(&word.as_str()))
+}
+
+/// True for two branches of one quantity, or the same column of two tables side by side.
+fn are_of_one_quantity(one: &str, other: &str) -> bool {
+    let plain = |name: &'_ str| -> usize {
+        let number =
+            name.rsplit_once(" (").filter(|(_, number)| number.starts_with(|c: char| c.is_ascii_digit()));
+        number.map_or(name.len(), |(name, _)| name.len())
+    };
+    let (one, other) = (&one[..plain(one)], &other[..plain(other)]);
+    one == other || are_branches(one, other)
 }
 
 /// The name that has the most words in common with another, such as `Disp B` with `Force B`; the first of equals.

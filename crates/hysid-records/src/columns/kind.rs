@@ -55,6 +55,10 @@ const DERIVED: &str = "power stiffness damping modulus permeability efficiency c
     velocity vel speed acceleration acc rate tan phase derivative slope ratio steifigkeit leistung geschwindigkeit \
     beschleunigung vitesse accélération puissance скорость ускорение 速度 加速度 功率";
 
+/// Words of forces, which those of figures tell apart, such as a damping force, and of what is calculated from forces.
+const FORCES: &str = "force load stress torque moment flux polarization polarisation kraft effort fuerza";
+const OF_FORCES: &str = "rate derivative slope ratio modulus stiffness phase tan permeability efficiency";
+
 /// Words about a measurement.
 const STATISTICS: &str = "std stdev stddev stderr err error sigma uncertainty deviation dev quality fit chi status state flag \
     range gain harmonic overload valid averages averaging offset limit mode min max minimum maximum lag quad coil";
@@ -115,7 +119,8 @@ impl ColumnKind {
         }
         // A change of one quantity with another: `dV/dt`, `dQ/dV`.
         let is_speed = unit.is_some_and(|unit| UNITS_OF_SPEED.contains(&unit));
-        if quantity.contains("/d") && quantity.starts_with(['d', 'D']) || is_speed || has(DERIVED) {
+        let is_change = quantity.contains("/d") && quantity.starts_with(['d', 'D']) || is_speed;
+        if is_change || has(DERIVED) && !(has(FORCES) && !has(OF_FORCES)) {
             return Self::Derived;
         }
         if quantity == "T" && matches!(unit, None | Some("C" | "F")) || has("amplitude frequency freq") {
@@ -332,7 +337,10 @@ mod tests {
                 ColumnKind::Drives(Electricity),
                 "Electric Field (kV/cm); Drive Voltage (V); current; I [A]; Vg; E (V/m)",
             ),
-            (ColumnKind::Follows(Mechanics), "Axial Force (kN); Load1; Stress (MPa); BaseShear; F_N; F"),
+            (
+                ColumnKind::Follows(Mechanics),
+                "Damping Force [N]; Axial Force (kN); Load1; Stress (MPa); BaseShear; F_N; F",
+            ),
             (
                 ColumnKind::Follows(Magnetism),
                 "Moment (emu); Magnetization (A/m); M (emu/g); DC Moment Free Ctr (emu); B_T; Kerr",
@@ -347,7 +355,10 @@ mod tests {
                 ColumnKind::Integral,
                 "chgAh; Charge_Capacity(Ah); Discharge Capacity [mAh]; Energy (J); Q (mAh/g); Dissipated Energy",
             ),
-            (ColumnKind::Derived, "dV/dt(V/s); Velocity (mm/s); Power [W]; Storage Modulus (MPa); dQ/dV"),
+            (
+                ColumnKind::Derived,
+                "dV/dt(V/s); Stress rate; Force ratio; Velocity (mm/s); Power [W]; Storage Modulus (MPa); dQ/dV",
+            ),
             (ColumnKind::Statistic, "M. Std. Err. (emu); Range; Status; Moment Quality; Field error"),
             (ColumnKind::Unknown, "x; y; u; foo; Bridge A"),
         ] {

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use hysid_core::data::column::Course;
+use hysid_core::data::unit;
 use hysid_tables::{CellReader, ColumnReader, Table, starts_again};
 
 /// Share of the range within which a value counts as kept.
@@ -22,6 +23,9 @@ const HELD: f64 = 0.03;
 
 /// Range of the middle half of the values of what is held, as a share of the largest.
 const STEADY: f64 = 0.1;
+
+/// Longest step of a time that runs through where another starts again, in the longest of its other steps.
+const MOST_STEP: f64 = 1.5;
 
 /// Share of a record's duration within which time starts again where the record began.
 const SAME_BEGINNING: f64 = 0.02;
@@ -118,6 +122,28 @@ impl TimeCheck {
             _ => Self::WithEqualStamps,
         }
     }
+}
+
+/// The column that runs through where a time starts again, with steps no longer than those before: the total time of a test
+/// in steps. The clock of several tests has gaps.
+pub fn running_through<'n>(
+    table: &Table,
+    stepped: &str,
+    mut others: impl Iterator<Item = &'n String>,
+) -> Option<&'n String> {
+    let stepped = numbers(table, stepped)?;
+    let restarts: Vec<usize> = (1..stepped.len()).filter(|&row| stepped[row] < stepped[row - 1]).collect();
+    others.find(|name| {
+        let values = unit::may_be_time(name).then(|| numbers(table, name)).flatten().unwrap_or_default();
+        let step = |row: usize| values[row] - values[row - 1];
+        let rows = 1..values.len();
+        let longest =
+            rows.clone().filter(|row| restarts.binary_search(row).is_err()).map(step).fold(0.0, f64::max);
+        !restarts.is_empty()
+            && values.len() == stepped.len()
+            && rows.clone().all(|row| step(row) >= 0.0)
+            && restarts.iter().all(|&row| step(row) <= MOST_STEP * longest)
+    })
 }
 
 /// Time starts again where it began, and a field of reversal curves elsewhere.

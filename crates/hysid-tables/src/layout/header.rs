@@ -317,8 +317,7 @@ fn is_quoted_header(lines: &[TextLine<'_>], run: &LineRun) -> bool {
 }
 
 /// Units that stand in lines of units and that no factor converts.
-const UNITS_IN_ROWS: [&str; 10] =
-    ["emu", "emu/g", "emu/cc", "emu/cm3", "µemu", "memu", "segments", "counts", "cycles", "a.u."];
+const UNITS_IN_ROWS: [&str; 4] = ["segments", "counts", "cycles", "a.u."];
 
 /// True for a line of units: in brackets, known, or none.
 fn are_units(cells: &[String]) -> bool {

@@ -41,10 +41,11 @@ const MOST_COMMENTS: usize = 10_000;
 /// Beginnings of comments.
 const COMMENTS: [&str; 4] = ["#", "%", "//", "!"];
 
-/// True for a line that begins like a comment.
+/// True for a line that begins like a comment. `%,%,mm` are units.
 pub fn is_comment(line: &str) -> bool {
     let text = line.trim_start();
-    COMMENTS.iter().any(|mark| text.starts_with(mark))
+    !["%,", "%;"].iter().any(|units| text.starts_with(units))
+        && COMMENTS.iter().any(|mark| text.starts_with(mark))
 }
 
 /// The first line of a text without its end, and where the next one begins.

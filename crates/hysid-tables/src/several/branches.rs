@@ -3,7 +3,7 @@
 use hysid_core::data::unit;
 
 /// Words of a branch that goes out, and of the one that returns.
-const BRANCHES: [(&str, &str); 12] = [
+const BRANCHES: [(&str, &str); 16] = [
     ("up", "down"),
     ("forward", "backward"),
     ("forward", "reverse"),
@@ -12,6 +12,10 @@ const BRANCHES: [(&str, &str); 12] = [
     ("load", "unload"),
     ("charge", "discharge"),
     ("adsorption", "desorption"),
+    ("absorption", "desorption"),
+    ("sorption", "desorption"),
+    ("ads", "des"),
+    ("wetting", "drying"),
     ("ascending", "descending"),
     ("increasing", "decreasing"),
     ("heating", "cooling"),
@@ -78,6 +82,11 @@ const CLEAR: f64 = 0.2;
 /// Largest gap between the branches, as a share of the range of the input.
 const NEAR: f64 = 0.1;
 
+/// True for the names of two branches of one quantity.
+pub fn are_branches(out: &str, back: &str) -> bool {
+    common(out, back).or_else(|| common(back, out)).is_some()
+}
+
 /// The name that two names have in common besides the words of their branches; the first where nothing is left.
 fn common(out: &str, back: &str) -> Option<String> {
     let parts = |name: &str| -> Vec<String> {
@@ -132,6 +141,11 @@ mod tests {
             names(&["SOC", "Charge voltage (V)", "Discharge voltage (V)"]).unwrap(),
             "SOC | voltage (V)"
         );
+        assert_eq!(
+            names(&["Target RH [%]", "Sorption [%]", "Desorption [%]"]).unwrap(),
+            "Target RH [%] | Sorption [%]"
+        );
+        assert_eq!(names(&["aw [-]", "EMC ads [%]", "EMC des [%]"]).unwrap(), "aw [-] | EMC [%]");
         assert_eq!(names(&["H", "M_up", "M_left"]), None);
         assert_eq!(names(&["H", "M_up (T)", "M_down (V)"]), None);
         assert_eq!(names(&["t", "x", "y"]), None);

@@ -6,22 +6,23 @@ use crate::elementary::powi;
 /// Exponents of length, mass, time, electric current, temperature difference and angle.
 pub(super) type Dimension = [i8; 6];
 
-const NONE: Dimension = [0; 6];
+pub(super) const NONE: Dimension = [0; 6];
 pub(super) const LENGTH: Dimension = [1, 0, 0, 0, 0, 0];
-const MASS: Dimension = [0, 1, 0, 0, 0, 0];
+const VOLUME: Dimension = [3, 0, 0, 0, 0, 0];
+pub(super) const MASS: Dimension = [0, 1, 0, 0, 0, 0];
 pub(super) const TIME: Dimension = [0, 0, 1, 0, 0, 0];
-const CURRENT: Dimension = [0, 0, 0, 1, 0, 0];
+pub(super) const CURRENT: Dimension = [0, 0, 0, 1, 0, 0];
 const TEMPERATURE: Dimension = [0, 0, 0, 0, 1, 0];
 const ANGLE: Dimension = [0, 0, 0, 0, 0, 1];
 const FREQUENCY: Dimension = [0, 0, -1, 0, 0, 0];
-const FORCE: Dimension = [1, 1, -2, 0, 0, 0];
+pub(super) const FORCE: Dimension = [1, 1, -2, 0, 0, 0];
 pub(super) const ENERGY: Dimension = [2, 1, -2, 0, 0, 0];
 const MOMENT: Dimension = ENERGY;
 pub(super) const ENERGY_DENSITY: Dimension = [-1, 1, -2, 0, 0, 0];
-const PRESSURE: Dimension = ENERGY_DENSITY;
+pub(super) const PRESSURE: Dimension = ENERGY_DENSITY;
 pub(super) const POWER: Dimension = [2, 1, -3, 0, 0, 0];
 pub(super) const POWER_DENSITY: Dimension = [-1, 1, -3, 0, 0, 0];
-const VOLTAGE: Dimension = [2, 1, -3, -1, 0, 0];
+pub(super) const VOLTAGE: Dimension = [2, 1, -3, -1, 0, 0];
 const CHARGE: Dimension = [0, 0, 1, 1, 0, 0];
 /// Charge of an area.
 const POLARIZATION: Dimension = [-2, 0, 1, 1, 0, 0];
@@ -29,6 +30,9 @@ const RESISTANCE: Dimension = [2, 1, -3, -2, 0, 0];
 const FLUX: Dimension = [2, 1, -2, -1, 0, 0];
 pub(super) const FLUX_DENSITY: Dimension = [0, 1, -2, -1, 0, 0];
 pub(super) const FIELD: Dimension = [-1, 0, 0, 1, 0, 0];
+const MAGNETIC_MOMENT: Dimension = [2, 0, 0, 1, 0, 0];
+
+const ONE: UnitQuantity = UnitQuantity { factor: 1.0, dimension: NONE };
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct UnitQuantity {
@@ -42,7 +46,8 @@ impl UnitQuantity {
     /// The unit of this name, such as `kN`, `A/m`, `V us`, `N/mm2` or `m/s²`; `None` for one that is not known.
     pub fn of(unit: &str) -> Option<Self> {
         let mut parts = unit.split('/').map(product);
-        let above = parts.next()??;
+        let above = parts.next()?;
+        let above = above.or_else(|| unit.starts_with("1/").then_some(ONE))?;
         parts.try_fold(above, |whole, below| Some(whole.times(below?, -1)))
     }
 
@@ -79,8 +84,7 @@ impl UnitQuantity {
 fn product(text: &str) -> Option<UnitQuantity> {
     let mut factors = text.split([' ', '*', '·']).filter(|part| !part.is_empty()).map(power).peekable();
     factors.peek()?;
-    let one = UnitQuantity { factor: 1.0, dimension: NONE };
-    factors.try_fold(one, |whole, factor| Some(whole.times(factor?, 1)))
+    factors.try_fold(ONE, |whole, factor| Some(whole.times(factor?, 1)))
 }
 
 /// A symbol with an exponent or without.
@@ -91,8 +95,7 @@ fn power(text: &str) -> Option<UnitQuantity> {
         Some((base.strip_suffix('^').unwrap_or(base), power))
     };
     let (base, power) = exponents.into_iter().find_map(split).unwrap_or((text, 1));
-    let one = UnitQuantity { factor: 1.0, dimension: NONE };
-    symbol(base).map(|unit| one.times(unit, power))
+    symbol(base).map(|unit| ONE.times(unit, power))
 }
 
 /// True for a single symbol that may end the name of a column without brackets, as in `force_kN`.
@@ -102,8 +105,7 @@ pub(super) fn may_end_a_name(text: &str) -> bool {
 }
 
 /// Symbols that are words too, and are units only in brackets.
-const NOT_IN_NAMES: [&str; 14] =
-    ["in", "ft", "%", "‰", "°", "°C", "\"", "'", "d", "second", "seconds", "minutes", "hours", "microstrain"];
+const NOT_IN_NAMES: [&str; 11] = ["in", "ft", "%", "‰", "°", "°C", "\"", "'", "d", "second", "microstrain"];
 
 fn symbol(text: &str) -> Option<UnitQuantity> {
     let found = |(names, factor, dimension): &(&str, f64, Dimension)| {
@@ -117,9 +119,9 @@ fn symbol(text: &str) -> Option<UnitQuantity> {
 #[rustfmt::skip]
 const SYMBOLS: &[(&str, f64, Dimension)] = &[
     ("s sec Sec secs second seconds с сек 秒", 1.0, TIME), ("ms msec мс 毫秒 ミリ秒", 1e-3, TIME), ("us µs μs usec", 1e-6, TIME), ("ns", 1e-9, TIME),
-    ("min minutes", 60.0, TIME), ("h hours", 3600.0, TIME), ("d", 86400.0, TIME),
+    ("min minutes", 60.0, TIME), ("h hours hour hr hrs", 3600.0, TIME), ("d days", 86400.0, TIME),
     ("m м 米", 1.0, LENGTH), ("mm мм 毫米", 1e-3, LENGTH), ("cm см 厘米", 1e-2, LENGTH), ("um µm μm мкм 微米", 1e-6, LENGTH), ("nm", 1e-9, LENGTH),
-    ("km", 1e3, LENGTH), ("inch in \"", 0.0254, LENGTH), ("ft '", 0.3048, LENGTH),
+    ("km", 1e3, LENGTH), ("dm", 0.1, LENGTH), ("mil mils", 2.54e-5, LENGTH), ("inch in \"", 0.0254, LENGTH), ("ft '", 0.3048, LENGTH),
     ("g", 1e-3, MASS), ("kg", 1.0, MASS),
     ("N Н 牛", 1.0, FORCE), ("mN", 1e-3, FORCE), ("kN кН 千牛", 1e3, FORCE), ("MN", 1e6, FORCE),
     ("lbf", 4.448_221_615_260_5, FORCE), ("kip kips klbf", 4_448.221_615_260_5, FORCE),
@@ -136,6 +138,7 @@ const SYMBOLS: &[(&str, f64, Dimension)] = &[
     ("G", 1e-4, FLUX_DENSITY), ("kG", 0.1, FLUX_DENSITY),
     ("Wb", 1.0, FLUX), ("mWb", 1e-3, FLUX),
     ("Oe", 1000.0 / (4.0 * std::f64::consts::PI), FIELD), ("kOe", 1e6 / (4.0 * std::f64::consts::PI), FIELD),
+    ("emu", 1e-3, MAGNETIC_MOMENT), ("memu", 1e-6, MAGNETIC_MOMENT), ("uemu µemu", 1e-9, MAGNETIC_MOMENT), ("cc", 1e-6, VOLUME),
     ("Hz", 1.0, FREQUENCY), ("kHz", 1e3, FREQUENCY), ("MHz", 1e6, FREQUENCY),
     ("K", 1.0, TEMPERATURE), ("ohm", 1.0, RESISTANCE),
     ("rad", 1.0, ANGLE), ("mrad", 1e-3, ANGLE), ("deg °", std::f64::consts::PI / 180.0, ANGLE),
