@@ -148,9 +148,9 @@ fn refuse(error: clap::Error) -> ExitCode {
     }
 }
 
-/// With `--json`, an error is an object on stdout too, for programs that read it.
+/// With `--json`, an error is an object on stdout too, for programs that read it, unless one with the problem is there.
 fn say_as_json(message: &str) {
-    if std::env::args_os().any(|argument| argument == "--json") {
+    if std::env::args_os().any(|argument| argument == "--json") && !messages::has_results() {
         // Whoever closed stdout does not read it.
         let _ = messages::json_results(&object! { error: message });
     }

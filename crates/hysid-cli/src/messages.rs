@@ -66,6 +66,7 @@ pub fn json_results(value: &impl Serialize) -> Result<()> {
 
 /// Writes results to stdout as they are: tables and whatever else a program reads.
 pub fn raw_results(text: &str) -> Result<()> {
+    HAS_RESULTS.store(true, Ordering::Relaxed);
     let mut stdout = io::stdout().lock();
     stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(stdout_failed)
 }
@@ -76,6 +77,14 @@ pub fn stdout_failed(error: io::Error) -> anyhow::Error {
         io::ErrorKind::BrokenPipe => StdoutClosed.into(),
         _ => anyhow::anyhow!("cannot write to stdout: {}", hysid_files::reason(&error)),
     }
+}
+
+/// Something was printed to stdout.
+static HAS_RESULTS: AtomicBool = AtomicBool::new(false);
+
+/// True once something was printed to stdout.
+pub fn has_results() -> bool {
+    HAS_RESULTS.load(Ordering::Relaxed)
 }
 
 /// True after `--quiet`.

@@ -162,8 +162,7 @@ impl Layout {
         let cells =
             |place: usize| rows.iter().filter_map(move |row| row.get(place)).map(|cell| cell.text.trim());
         let are = |place: usize, kind: &dyn Fn(&str) -> bool| {
-            cells(place).next().is_some_and(|first| kind(first))
-                && cells(place).all(|cell| cell.is_empty() || kind(cell))
+            cells(place).next().is_some_and(kind) && cells(place).all(|cell| cell.is_empty() || kind(cell))
         };
         let only = |kind: &dyn Fn(&str) -> bool| {
             let mut found = (0..self.names.len()).filter(|&place| are(place, kind));

@@ -61,6 +61,9 @@ fn refused(data: String, options: &str, line: &str) {
     let ran = bench.run(&format!("fit data.csv {QUICK} {options}"));
     assert_eq!((ran.last_line(), ran.status), (line, Some(1)), "{}", ran.stderr);
     assert!(!bench.path("out.json").exists());
+    let looked = bench.run(&format!("look data.csv --json {options}")).stdout;
+    let looked: Value = serde_json::from_str(&looked).unwrap_or_else(|error| panic!("{error}: {looked}"));
+    assert!(line.ends_with(looked["problem"].as_str().unwrap()), "{looked}");
 }
 
 #[test]

@@ -61,7 +61,7 @@ const OF_FORCES: &str = "rate derivative slope ratio modulus stiffness phase tan
 
 /// Words about a measurement.
 const STATISTICS: &str = "std stdev stddev stderr err error sigma uncertainty deviation dev quality fit chi status state flag \
-    range gain harmonic overload valid averages averaging offset limit mode min max minimum maximum lag quad coil";
+    range gain harmonic overload valid averages averaging offset limit mode min max minimum maximum lag quad";
 
 /// Words of inputs, beside those of [`UsualRole::of`].
 const DRIVES: &[(Domain, &str)] = &[
@@ -111,7 +111,7 @@ impl ColumnKind {
             })
         };
         let unit = unit.as_deref();
-        if has(STATISTICS) {
+        if has(STATISTICS) || has("coil") && !has("current") {
             return Self::Statistic;
         }
         if unit.is_some_and(|unit| UNITS_OF_SUMS.contains(&unit) || unit.contains("Ah/")) || has(INTEGRALS) {
@@ -120,7 +120,7 @@ impl ColumnKind {
         // A change of one quantity with another: `dV/dt`, `dQ/dV`.
         let is_speed = unit.is_some_and(|unit| UNITS_OF_SPEED.contains(&unit));
         let is_change = quantity.contains("/d") && quantity.starts_with(['d', 'D']) || is_speed;
-        if is_change || has(DERIVED) && !(has(FORCES) && !has(OF_FORCES)) {
+        if is_change || has(DERIVED) && (!has(FORCES) || has(OF_FORCES)) {
             return Self::Derived;
         }
         if quantity == "T" && matches!(unit, None | Some("C" | "F")) || has("amplitude frequency freq") {
@@ -335,7 +335,7 @@ mod tests {
             ),
             (
                 ColumnKind::Drives(Electricity),
-                "Electric Field (kV/cm); Drive Voltage (V); current; I [A]; Vg; E (V/m)",
+                "Electric Field (kV/cm); Drive Voltage (V); current; Coil Current (A); I [A]; Vg; E (V/m)",
             ),
             (
                 ColumnKind::Follows(Mechanics),
