@@ -20,7 +20,7 @@ from pathlib import Path
 
 SMALL = (
     "--model duhem-nn --initial-state free --odd --acceleration --states 6 --hidden 10 --operators 0 "
-    "--rate-compression 0.2 --starts 6"
+    "--rate-compression 0.2 --rate central --starts 6"
 )
 ROLES = "--input B_T --input temperature_C --output H_A_per_m"
 KNOWN = [100, 300, 500, 700, 900]

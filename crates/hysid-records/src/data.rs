@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::Path;
 
+use hysid_core::data::column::correlation;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::data::usual_role::Domain;
 use hysid_core::error::{Channel, DataError, DataProblem};
@@ -81,23 +82,17 @@ impl Data {
         let (input, output) = (&self.roles.inputs[0], &self.roles.output);
         let is_force = ColumnKind::of(input) == ColumnKind::Drives(Domain::Mechanics)
             && ColumnKind::of(output) == ColumnKind::Follows(Domain::Mechanics);
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        for record in self.set.records().iter().filter(|_| is_force) {
-            let rows = || record.inputs()[0].iter().zip(record.output()).filter(|(_, y)| y.is_finite());
-            let count = rows().count().max(1) as f64;
-            let (x_mean, y_mean) =
-                (rows().map(|row| row.0).sum::<f64>() / count, rows().map(|row| row.1).sum::<f64>() / count);
-            for (x, y) in rows().map(|(x, y)| (x - x_mean, y - y_mean)) {
-                (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
-            }
-        }
+        let records = || self.set.records().iter().filter(|_| is_force);
+        let x: Vec<f64> = records().flat_map(|record| record.inputs()[0].iter().copied()).collect();
+        let y: Vec<f64> = records().flat_map(|record| record.output().iter().copied()).collect();
+        let falls = correlation(&x, &y).is_some_and(|correlation| correlation < LEAST_FALL);
         let words = format!(
             "{} falls while {} rises: is it a reaction, whose sign is opposite to that of the force on the specimen?",
             clipped(output),
             clipped(input)
         );
         let advice = "multiply the column by -1 in the file: no option does it";
-        (xy < LEAST_FALL * (xx * yy).sqrt()).then(|| Words::from(words).advised(advice))
+        falls.then(|| Words::from(words).advised(advice))
     }
 
     /// Takes records from tables that have columns of the roles `like`, each by its own roles, in the units of `like`.

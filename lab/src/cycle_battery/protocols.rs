@@ -18,6 +18,8 @@ pub struct Protocol {
     pub is_steady: bool,
     /// Where in its first cycle the record begins: 0 at rest, 0.25 at the peak.
     pub phase: f64,
+    /// Load about which the cycles are, as a share of the largest amplitude: the record first goes there.
+    pub load: f64,
 }
 
 /// Course of a cycle.
@@ -32,11 +34,15 @@ pub enum Wave {
 }
 
 const fn growing(name: &'static str, wave: Wave, steps: &'static [(f64, usize)]) -> Protocol {
-    Protocol { name, steps, wave, is_steady: false, phase: 0.0 }
+    Protocol { name, steps, wave, is_steady: false, phase: 0.0, load: 0.0 }
 }
 
 const fn steady(name: &'static str, wave: Wave, cycles: &'static [(f64, usize)], phase: f64) -> Protocol {
-    Protocol { name, steps: cycles, wave, is_steady: true, phase }
+    Protocol { name, steps: cycles, wave, is_steady: true, phase, load: 0.0 }
+}
+
+const fn loaded(name: &'static str, wave: Wave, steps: &'static [(f64, usize)]) -> Protocol {
+    Protocol { name, steps, wave, is_steady: false, phase: 0.0, load: 0.4 }
 }
 
 const ISO: &[(f64, usize)] = &[
@@ -147,6 +153,8 @@ const ASTM: &[(f64, usize)] = &[
 ];
 const SPIRAL: &[(f64, usize)] =
     &[(1.0, 1), (0.9, 1), (0.8, 1), (0.7, 1), (0.6, 1), (0.5, 1), (0.4, 1), (0.3, 1), (0.2, 1), (0.1, 1)];
+const EACH: &[(f64, usize)] = &[(0.2, 1), (0.4, 1), (0.6, 1), (0.8, 1), (1.0, 1)];
+const THRICE: &[(f64, usize)] = &[(0.25, 3), (0.5, 3), (1.0, 3)];
 const NESTED: &[(f64, usize)] = &[(1.0, 1), (0.5, 2), (0.25, 2), (1.0, 1), (0.1, 3)];
 
 /// All protocols.
@@ -161,6 +169,8 @@ pub const PROTOCOLS: &[Protocol] = &[
     growing("ASTM E2126", Wave::Lines, ASTM),
     growing("spiral inwards", Wave::Lines, SPIRAL),
     growing("nested loops", Wave::Sine, NESTED),
+    loaded("about a static load", Wave::Lines, EACH),
+    loaded("about a static load, sine", Wave::Sine, THRICE),
     growing("one cycle from rest", Wave::Lines, &[(1.0, 1)]),
     steady("one loop from its tip", Wave::Lines, &[(1.0, 1)], 0.25),
     steady("one loop from its other tip", Wave::Sine, &[(1.0, 1)], 0.75),
@@ -279,14 +289,20 @@ impl Trial {
                 state.to(wave(row as f64 / 2000.0));
             });
         }
-        let (mut x, mut bounds) = (Vec::new(), vec![0]);
+        let (load, way) = (protocol.load, (protocol.load * rows as f64 / 4.0).ceil());
+        let mut x: Vec<f64> =
+            (0..=way as usize).filter(|_| load > 0.0).map(|row| load * row as f64 / way).collect();
+        let mut bounds = vec![x.len().saturating_sub(1)];
         for &amplitude in &amplitudes {
             let count = match protocol.wave {
                 Wave::Lines => ((rows as f64 * amplitude / 4.0).ceil() as usize * 4).max(12),
                 _ => rows,
             };
             let begin = if x.is_empty() { 0 } else { 1 };
-            x.extend((begin..=count).map(|row| amplitude * wave(protocol.phase + row as f64 / count as f64)));
+            x.extend(
+                (begin..=count)
+                    .map(|row| load + amplitude * wave(protocol.phase + row as f64 / count as f64)),
+            );
             bounds.push(x.len() - 1);
         }
         let y: Vec<f64> = x.iter().map(|x| state.to(*x)).collect();

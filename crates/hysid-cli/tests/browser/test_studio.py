@@ -171,11 +171,13 @@ def test_the_whole_way(start, visit, tmp_path):
     complete = sum(row["complete"] for row in counted)
     assert f"{complete} cycles" in cycles.inner_text() and cycles.locator("table").count() >= 1
     # What the columns do not tell is given in a form.
-    assert "Field: magnet" not in cycles.inner_text()
+    assert "squareness" not in cycles.inner_text()
     cycles.get_by_label("Field").select_option("magnet")
+    cycles.get_by_role("button", name="Read the cycles").click()
+    cycles.get_by_text("squareness").first.wait_for()
     cycles.get_by_label("Mass density").fill("7650")
     cycles.get_by_role("button", name="Read the cycles").click()
-    cycles.get_by_text("specific loss").first.wait_for()
+    cycles.get_by_text("losses per mass need an energy per volume").first.wait_for()
 
     # 3. Identify, and a second model.
     opened.fit("xpnn", stops=4, seed=3)

@@ -62,6 +62,11 @@ impl Course {
 
 /// The correlation of two columns if they are one signal; otherwise `None`.
 pub fn one_signal(a: &[f64], b: &[f64]) -> Option<f64> {
+    correlation(a, b).filter(|correlation| correlation.abs() >= ONE_SIGNAL)
+}
+
+/// The correlation of two columns over the rows that both have; `None` for few rows.
+pub fn correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     let rows = || a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
     let count = rows().count();
     if count < FEWEST {
@@ -74,8 +79,7 @@ pub fn one_signal(a: &[f64], b: &[f64]) -> Option<f64> {
         let (x, y) = (x - mean_a, y - mean_b);
         (aa, ab, bb) = (aa + x * x, ab + x * y, bb + y * y);
     }
-    let correlation = ab / (aa * bb).sqrt();
-    (correlation.abs() >= ONE_SIGNAL).then_some(correlation)
+    Some(ab / (aa * bb).sqrt())
 }
 
 impl UsualRole {

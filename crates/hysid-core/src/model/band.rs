@@ -28,6 +28,15 @@ use crate::model::ensemble::Predictions;
 /// Probabilities for which the factors are stored.
 const LEVELS: [f64; 10] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.925, 0.95, 0.975, 0.99];
 
+/// Half the width of a band of normal errors of deviation 1, for each of [`LEVELS`].
+const HALVES_OF_NORMAL: [f64; 10] = [
+    0.674_490, 0.841_621, 1.036_433, 1.281_552, 1.439_531, 1.644_854, 1.780_464, 1.959_964, 2.241_403,
+    2.575_829,
+];
+
+/// The level at which two bands are compared.
+const TYPICAL: f64 = 0.9;
+
 /// The smallest and largest probability of a band.
 pub const BAND_PROBABILITIES: RangeInclusive<f64> = LEVELS[0]..=LEVELS[LEVELS.len() - 1];
 
@@ -191,6 +200,19 @@ impl Band {
         self
     }
 
+    /// The same band, or one of normal errors of this standard deviation where that is wider: errors that the held-out rows
+    /// could not show.
+    pub fn for_unseen(self, deviation: f64) -> Self {
+        let quantiles = HALVES_OF_NORMAL.to_vec();
+        if factor(&self.inside, TYPICAL) * self.floor >= factor(&quantiles, TYPICAL) * deviation {
+            return self;
+        }
+        let beyond = |(outside, inside): (f64, f64)| (outside / inside).max(1.0);
+        let ratios = self.outside.iter().copied().zip(self.inside.iter().copied()).map(beyond);
+        let outside = ratios.zip(&quantiles).map(|(ratio, quantile)| ratio * quantile).collect();
+        Self { floor: deviation, inside: quantiles, outside, ..self }
+    }
+
     /// The same band, at each level at least as wide as the training errors, each over `√(f² + d²)`.
     pub(crate) fn at_least(mut self, errors: &mut Predictions) -> Self {
         for (place, level) in LEVELS.into_iter().enumerate() {
@@ -282,6 +304,23 @@ mod tests {
         let held = rows.iter().filter(|row| 3.0 * row.error <= half(&wide)).count();
         assert!((180..=182).contains(&held), "{held}");
         assert!(wide.half_width(0.9.into(), 0.0, 1.0) >= half(&wide));
+    }
+
+    #[test]
+    fn a_band_for_unseen_errors_is_that_of_a_normal_number_where_it_is_wider() {
+        let rows: Vec<HeldOutRow> = (1..=200)
+            .map(|k| HeldOutRow { error: 1e-3 * f64::from(k), disagreement: 0.0, outside: 0.0, weight: 1.0 })
+            .collect();
+        let band = Band::calibrate(&[rows]).unwrap();
+        assert_eq!(band.clone().for_unseen(0.01), band);
+        let wide = band.for_unseen(2.0);
+        for (probability, half) in [(0.5, 0.674_49), (0.9, 1.644_854), (0.99, 2.575_829)] {
+            let found = wide.half_width(probability.into(), 0.0, 0.0);
+            assert!((found / (2.0 * half) - 1.0).abs() < 1e-6, "{found}");
+            // A member that disagrees adds to it as an independent error would.
+            let found = wide.half_width(probability.into(), 1.5, 0.0);
+            assert!((found / (2.5 * half) - 1.0).abs() < 1e-6, "{found}");
+        }
     }
 
     /// Errors of 1 to 200, all members agree: the floor is half the median, and a band of 90 % has half the

@@ -59,7 +59,7 @@ export class CyclesStep extends TrainingPage {
   }
 
   async update() {
-    this.form.update(project.labels?.input, () => (project.labels ? [this.row()] : []));
+    this.form.update(Boolean(project.labels), () => (project.labels ? [this.row()] : []));
     return super.update();
   }
 

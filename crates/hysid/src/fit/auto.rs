@@ -253,7 +253,7 @@ impl EnsembleSelection<'_, '_, '_> {
         {
             return Ok(fitted);
         }
-        let band = self.band(&rows);
+        let band = self.band(&rows, combination.unseen_error(&self.trials, self.evidence));
         let held_out = self.held_out(&predicted)?;
         Ok(fit(model.with_band_over(band, self.data)?)?.with_held_out(held_out))
     }
@@ -349,12 +349,15 @@ impl EnsembleSelection<'_, '_, '_> {
         }
     }
 
-    /// The band from the errors on held-out rows, wider where the data cannot distinguish candidates.
-    fn band(&self, folds: &[Vec<HeldOutRow>]) -> Option<Band> {
+    /// The band from the errors on held-out rows; of one loop, at least that of the errors `unseen` that smaller loops are
+    /// expected to have.
+    fn band(&self, folds: &[Vec<HeldOutRow>], unseen: f64) -> Option<Band> {
         let band = Band::calibrate(folds)?;
         Some(match self.evidence {
             LoopEvidence::SeveralLoops => band,
-            LoopEvidence::OneLoop(_) => band.wider(prior::WIDER_BAND),
+            LoopEvidence::OneLoop(_) => {
+                band.wider(prior::WIDER_BAND).for_unseen(unseen * single::deviation(self.data))
+            }
         })
     }
 
@@ -381,22 +384,24 @@ impl EnsembleSelection<'_, '_, '_> {
         let Some(found) = makers.single(ensemble)? else { return Ok(None) };
         selection.single = Some(found.how);
         let validation = self.errors_held_out(&found.predicted);
-        Ok(Some(self.validated(found.model, selection, validation, &found.predicted)?))
+        let unseen = combination.unseen_error(&self.trials, self.evidence);
+        Ok(Some(self.validated(found.model, selection, validation, (&found.predicted, unseen))?))
     }
 
-    /// A single model with what is known of it from what models made in the same way `predicted` on the folds.
+    /// A single model with what is known of it from what models made in the same way `predicted` on the folds, and the error
+    /// to be expected where the data show nothing.
     fn validated(
         &self,
         model: Model,
         selection: Selection,
         validation: Option<Errors>,
-        predicted: &[Vec<f64>],
+        (predicted, unseen): (&[Vec<f64>], f64),
     ) -> Result<Fitted> {
         let FoldBench { folds, work, .. } = self.bench;
         let mut selection = self.judged_by(selection, validation.as_ref(), predicted);
         selection.candidates.iter_mut().for_each(|candidate| candidate.members = 0);
         let provenance = provenance_of(&model, Some(selection), validation, work);
-        let band = self.band(&single::rows_held_out(predicted, folds));
+        let band = self.band(&single::rows_held_out(predicted, folds), unseen);
         // A distilled model was taught more than the data.
         let model =
             model.with_provenance(provenance).trained_on(self.data)?.with_band_over(band, self.data)?;

@@ -96,6 +96,7 @@ impl EnsembleSelection<'_, '_, '_> {
             plain_percent: validation.as_ref().and_then(|errors| errors.nrmse_std_percent),
             is_law: true,
         });
-        Ok(Some(self.validated(model, selection, validation, &predicted)?))
+        let unseen = combination.unseen_error(&self.trials, self.evidence);
+        Ok(Some(self.validated(model, selection, validation, (&predicted, unseen))?))
     }
 }

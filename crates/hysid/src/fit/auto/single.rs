@@ -217,7 +217,7 @@ impl SingleSources<'_, '_, '_> {
     }
 }
 
-fn deviation(data: &Dataset) -> f64 {
+pub(super) fn deviation(data: &Dataset) -> f64 {
     let records = data.records().iter();
     let measured: Vec<f64> =
         records.flat_map(|record| record.output().iter().copied()).filter(|y| !y.is_nan()).collect();
