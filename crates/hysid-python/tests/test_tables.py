@@ -134,5 +134,5 @@ def test_cycles_warn_of_a_charge_that_begins_anew():
     voltage = np.tile(np.concatenate([rising + 0.03, rising[::-1] - 0.03]), 3)
     with pytest.warns(hysid.HysidWarning, match="the charge begins anew in each half cycle"):
         table = hysid.cycles({"Capacity (mAh)": charge}, {"Voltage (V)": voltage})
-    assert table.notes[0].startswith("the charge begins anew") and len(table) == 3
+    assert table.notes[0].startswith("the charge begins anew") and len(table["width"]) == 3
     assert np.allclose(table["width"], 0.06)
