@@ -16,11 +16,10 @@ use std::path::{Path, PathBuf};
 use hysid::Model;
 use hysid::data::record::Dataset;
 use hysid::diagnosis::cycles::{
-    Correction, CycleOptions, CycleRow, CycleTable, FIGURES, Figure, LEVEL_FIGURES, corrected,
-    counted_through,
+    Correction, CycleOptions, CycleRow, CycleTable, FIGURES, Figure, LEVEL_FIGURES, corrected, prepared,
 };
 use hysid::diagnosis::model::{MagnetisationNode, ModelCycles};
-use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves, without_calibration_points};
+use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
 use hysid_document::visible::clipped;
 use hysid_document::{Problem, Result, count, object};
 
@@ -60,14 +59,7 @@ impl<'a> Cycles<'a> {
         (smoothing_factor, smoothing_growth): (Option<usize>, f64),
         (file, understood): (&str, Vec<(String, String)>),
     ) -> hysid::Result<Self> {
-        let (mut set, mut removed) = (Cow::Borrowed(data), Vec::new());
-        if let Some((curves, note)) = without_calibration_points(data) {
-            (set, removed) = (Cow::Owned(curves), vec![note]);
-        }
-        if let Some((joined, note)) = counted_through(&set, options.field) {
-            set = Cow::Owned(joined);
-            removed.push(note);
-        }
+        let (mut set, mut removed) = prepared(data, options.field);
         if !corrections.is_empty() {
             let (other, notes) = corrected(&set, corrections)?;
             set = Cow::Owned(other);

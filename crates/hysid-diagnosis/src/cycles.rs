@@ -34,10 +34,10 @@ mod table;
 mod tests;
 mod tips;
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 pub use self::backbone::{BackbonePoint, Direction};
-pub use self::charge::counted_through;
 pub use self::correction::{Correction, corrected};
 pub use self::division::Division;
 pub use self::field::Field;
@@ -49,9 +49,11 @@ pub use self::record_figure::{RecordFigure, RecordFigureKind};
 pub use self::row::CycleRow;
 pub use self::table::{CycleOptions, CycleTable};
 
+use self::charge::counted_through;
 use self::path::{area, range, weights};
 use self::reading::apart_along_input;
 use super::branch::{Branch, BranchSet};
+use super::reversal_curves::without_calibration_points;
 use super::significance::{self, MEDIAN_OF_NORMAL};
 use super::static_hysteresis::FULL;
 use super::{DiagnosisOptions, Piece};
@@ -60,6 +62,20 @@ use hysid_core::elementary::square;
 
 /// A cycle closes if the input comes back this close, as a share of its swing.
 pub(crate) const CLOSED: f64 = 0.02;
+
+/// The data from which cycles are read: without calibration points, and the charge of a battery on one axis; with a note on
+/// each change.
+pub fn prepared(data: &Dataset, field: Option<Field>) -> (Cow<'_, Dataset>, Vec<String>) {
+    let (mut set, mut notes) = (Cow::Borrowed(data), Vec::new());
+    if let Some((curves, note)) = without_calibration_points(data) {
+        (set, notes) = (Cow::Owned(curves), vec![note]);
+    }
+    if let Some((joined, note)) = counted_through(&set, field) {
+        set = Cow::Owned(joined);
+        notes.push(note);
+    }
+    (set, notes)
+}
 
 /// A branch and the next one, if they come back to the same input: what tests of properties compare. The table of cycles
 /// that users read is a [`CycleTable`].

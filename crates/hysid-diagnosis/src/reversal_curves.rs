@@ -24,7 +24,7 @@ use hysid_core::data::record::Dataset;
 use hysid_core::error::Result;
 use serde::Serialize;
 
-pub use self::calibration::without_calibration_points;
+pub(crate) use self::calibration::without_calibration_points;
 use self::density::{Smoothing, chosen};
 use self::recognition::{CurveSet, recognised};
 use super::branch::BranchSet;

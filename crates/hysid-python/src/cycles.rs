@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use hysid::diagnosis::cycles::{CycleOptions, CycleTable, counted_through};
+use hysid::diagnosis::cycles::{CycleOptions, CycleTable, prepared};
 use hysid::diagnosis::model::ModelCycles;
-use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves, without_calibration_points};
+use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
 use hysid::model::Model;
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -54,14 +54,10 @@ pub fn cycles(
     let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor, smoothing_growth };
     let set = Arc::clone(&data.set);
     let find = move || {
-        let cleaned = without_calibration_points(&set);
-        let set = cleaned.as_ref().map_or(&*set, |(set, _)| set);
-        let joined = counted_through(set, options.field);
-        let set = joined.as_ref().map_or(set, |(set, _)| set);
-        let mut table = CycleTable::of(set, &options)?;
-        let changes: Vec<String> = cleaned.iter().chain(&joined).map(|(_, note)| note.clone()).collect();
+        let (set, changes) = prepared(&set, options.field);
+        let mut table = CycleTable::of(&set, &options)?;
         table.notes.splice(..0, changes.clone());
-        Ok((table, ReversalCurves::of(set, &of_curves)?, changes))
+        Ok((table, ReversalCurves::of(&set, &of_curves)?, changes))
     };
     let (table, curves, changes) = interruptible(py, find)?;
     told(&table, curves.as_ref(), &changes)

@@ -20,7 +20,7 @@ struct HalfCycle {
 
 /// The data of a battery with the half cycles of each record, or all records of one half cycle each, on one axis of charge,
 /// and a note; `None` if the input is one already.
-pub fn counted_through(data: &Dataset, field: Option<Field>) -> Option<(Dataset, String)> {
+pub(super) fn counted_through(data: &Dataset, field: Option<Field>) -> Option<(Dataset, String)> {
     if field.unwrap_or_else(|| Field::of(data.names())) != Field::Battery {
         return None;
     }

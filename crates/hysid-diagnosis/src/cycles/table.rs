@@ -324,7 +324,7 @@ impl CycleReader<'_> {
             row.notes.push("no frequency: the input rests for more than half of the cycle".into());
         }
         if rest > 0.0 {
-            row.notes.push(format!("its period is without a rest of {:.3} at its ends", Significant(rest)));
+            row.notes.push(format!("its period leaves out a rest of {:.3} at its ends", Significant(rest)));
         }
         let tips = self.tips();
         row.peak_input = tips.peak.map(|tip| tip.input);
@@ -471,8 +471,8 @@ impl CycleReader<'_> {
         let height = row.output_max.zip(row.output_min).map_or(f64::INFINITY, |(high, low)| high - low);
         if largest > STEEP * height + 2.0 * SURE * self.survey.output_noise.deviation() {
             row.notes.push(format!(
-                "the output changes by {:.0} % of its range from row to row at a turning point: so uncertain are the \
-                 secant stiffness and the damping",
+                "the output changes by {:.0} % of its range from row to row at a turning point: the secant \
+                 stiffness and the damping are uncertain by about as much",
                 100.0 * largest / height
             ));
         }

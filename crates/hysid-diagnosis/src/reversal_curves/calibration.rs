@@ -32,7 +32,7 @@ struct CalibrationPoint {
 
 /// The data without calibration points and with the drift that they show removed from the output, each curve a record of its
 /// own, and a note that says so; `None` if there are none.
-pub fn without_calibration_points(data: &Dataset) -> Option<(Dataset, String)> {
+pub(crate) fn without_calibration_points(data: &Dataset) -> Option<(Dataset, String)> {
     let inputs = |record: &Record| record.inputs()[0].to_vec();
     let steps = data.records().iter().flat_map(|record| {
         let x = inputs(record);

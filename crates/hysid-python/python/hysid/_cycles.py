@@ -277,4 +277,6 @@ def cycles_of(
     """The figures of each cycle in columns; arguments as of `cycles`."""
     options = (division, field, smoothing_factor)
     rest = (*options, smoothing_growth, density, height)
-    return Cycles._of(_hysid.cycles(arranged.dataset(), smallest_reversal, smoothing, *rest))
+    data = arranged.dataset()
+    warn(data.warnings())
+    return Cycles._of(_hysid.cycles(data, smallest_reversal, smoothing, *rest))

@@ -347,7 +347,7 @@ fn half_cycles_of_a_battery_are_one_loop_on_one_axis_of_charge() {
         (set(&[("charge", charge.clone()), ("discharge", state.clone())]), false),
         (set(&[("charge", line((1.0, 3.6), (0.0, 3.7))), ("discharge", discharge.clone())]), false),
     ] {
-        let (joined, note) = counted_through(&data, None).unwrap();
+        let (joined, note) = super::super::charge::counted_through(&data, None).unwrap();
         assert_eq!(note.contains("counted up while the voltage rises"), counted, "{note}");
         assert_eq!(joined.input_range(0), (0.0, 1.0));
         let table = CycleTable::of(&joined, &CycleOptions::default()).unwrap();
@@ -357,8 +357,11 @@ fn half_cycles_of_a_battery_are_one_loop_on_one_axis_of_charge() {
         assert_relative_eq!(row.energy_efficiency_percent.unwrap(), 100.0 * 3.45 / 3.65, epsilon = 1e-9);
     }
     // What is one axis already, and what has one direction alone, stays; a jump of the charge gives no figures.
-    assert_eq!(counted_through(&set(&[("r", whole(&[&charge, &state]))]), None), None);
-    assert_eq!(counted_through(&set(&[("a", charge.clone()), ("b", charge.clone())]), None), None);
+    assert_eq!(super::super::charge::counted_through(&set(&[("r", whole(&[&charge, &state]))]), None), None);
+    assert_eq!(
+        super::super::charge::counted_through(&set(&[("a", charge.clone()), ("b", charge.clone())]), None),
+        None
+    );
     let jumps =
         CycleTable::of(&set(&[("r", whole(&[&charge, &discharge]))]), &CycleOptions::default()).unwrap();
     assert!(jumps.complete().all(|row| row.mean_gap.is_none() && row.energy.is_none()));
