@@ -94,7 +94,9 @@ pub(crate) fn verdict(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
         let [lost, loops] = [100.0 * trend.loss, trend.cycles.len() as f64];
         (
             Verdict::NotTestable,
-            format!("the energy falls by {lost:.1} % over {loops} loops: too few to show whether it goes on"),
+            format!(
+                "the energy falls by {lost:.1} % over {loops} loops: more loops would show whether the loss goes on"
+            ),
         )
     } else if strongest.loss > limit {
         (
@@ -104,14 +106,12 @@ pub(crate) fn verdict(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
                 100.0 * strongest.loss
             ),
         )
+    } else if strongest.loss < -limit {
+        let grows = -100.0 * strongest.loss;
+        (Verdict::No, format!("the energy of repeated loops does not fall: it grows by {grows:.0} % or more"))
     } else {
-        (
-            Verdict::No,
-            format!(
-                "repeated loops keep their energy, within {:.1} %",
-                100.0 * if limit > EFFECT { limit } else { strongest.loss.abs() }
-            ),
-        )
+        let within = 100.0 * if limit > EFFECT { limit } else { strongest.loss.abs() };
+        (Verdict::No, format!("repeated loops keep their energy, within {:.2} %", Significant(within)))
     };
     Finding {
         property: Property::Deterioration,
@@ -271,9 +271,15 @@ mod tests {
     fn four_cycles_that_lose_a_little_are_not_said_to_keep_their_energy() {
         let [wear, _] = findings_of(4, 0.03, 0.0005, 1);
         assert_eq!(wear.verdict, Verdict::NotTestable, "{}", wear.statement);
-        assert!(wear.statement.contains("whether it goes on"), "{}", wear.statement);
+        assert!(wear.statement.contains("whether the loss goes on"), "{}", wear.statement);
         let [wear, _] = findings_of(4, 0.0, 0.0005, 1);
         assert_eq!(wear.verdict, Verdict::No, "{}", wear.statement);
+        let [wear, _] = findings_of(4, -0.1, 0.0005, 1);
+        assert!(
+            wear.verdict == Verdict::No && wear.statement.contains("it grows by 1"),
+            "{}",
+            wear.statement
+        );
     }
 
     #[test]

@@ -87,11 +87,11 @@ impl Data {
         let y: Vec<f64> = records().flat_map(|record| record.output().iter().copied()).collect();
         let falls = correlation(&x, &y).is_some_and(|correlation| correlation < LEAST_FALL);
         let words = format!(
-            "{} falls while {} rises: is it a reaction, whose sign is opposite to that of the force on the specimen?",
+            "{} falls while {} rises, as a reaction does, whose sign is opposite to that of the force on the specimen",
             clipped(output),
             clipped(input)
         );
-        let advice = "multiply the column by -1 in the file: no option does it";
+        let advice = "if it is one, multiply the column by -1 in the file; no option does this";
         falls.then(|| Words::from(words).advised(advice))
     }
 

@@ -345,8 +345,8 @@ impl Rows {
             if let Some(lines) = self.rest()?.map(|rest| filled(rest).count() as u64)
                 && lines * LEAST_ROWS_A_LINE <= self.read
             {
-                let words =
-                    Words::from("they stand behind blank lines").advised("rows? remove the blank lines");
+                let words = Words::from("they follow blank lines")
+                    .advised("if they are rows of the table, remove the blank lines");
                 (self.left_out.end, self.left_out.end_doubt) = (Some((line, lines)), Some(words));
                 return Ok(true);
             }

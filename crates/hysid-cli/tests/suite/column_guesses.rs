@@ -73,7 +73,7 @@ fn time_has_many_names() {
         told(data, "", &[&format!("time     {name}: steps of 0.1"), "input    x: "]);
     }
     let data = table("t,Zeit,x,y", |_, [t, x, y]| texts(&[&t, &(2.0 * t), &x, &y]));
-    told(data, "", &["time     t: ", "input    x: ", "ignored  Zeit: a second time"]);
+    told(data, "", &["time     t: ", "input    x: ", "ignored  Zeit: another time column is used"]);
     // An hour that comes twice.
     let data = table("timestamp,x,y", |k, [t, x, y]| texts(&[&(t - if k > 40 { 3.0 } else { 0.0 }), &x, &y]));
     told(data, "", &["input    x: ", "ignored  timestamp: time that falls back from one row to the next"]);
@@ -119,7 +119,7 @@ fn of_two_forces_the_one_that_varies_is_advised() {
 
 #[test]
 fn a_reaction_is_told_by_its_sign() {
-    let words = "warning: reaction_kN falls while disp_mm rises: is it a reaction";
+    let words = "warning: reaction_kN falls while disp_mm rises, as a reaction does";
     let data = |sign: f64| {
         table("t_s,disp_mm,reaction_kN", |_, [t, x, y]| texts(&[&t, &x, &(sign * (x + 0.1 * y))]))
     };
@@ -338,10 +338,14 @@ fn a_time_that_runs_through_is_preferred_to_one_that_starts_again_in_steps() {
                 texts(&[&(t - 2.0 * step), &(t + gap * step), &x, &y])
             })
         };
-        let again = format!("ignored  {name}: a second time");
+        let again = format!("ignored  {name}: another time column is used");
         told(steps(0.0), "", &["time     Total Time (s): ", &again, "in 1 record"]);
         // Tests with a pause between them.
-        told(steps(50.0), "", &[&format!("time     {name}: "), "ignored  Total Time (s): a second time"]);
+        told(
+            steps(50.0),
+            "",
+            &[&format!("time     {name}: "), "ignored  Total Time (s): another time column is used"],
+        );
     }
 }
 

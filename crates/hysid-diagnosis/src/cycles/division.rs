@@ -55,7 +55,7 @@ const LARGEST_STEP: f64 = 0.5;
 /// Share of the way of the input in half cycles that pass the level of a division.
 const MOST: f64 = 0.5;
 
-/// That share of a record which first goes to the mean of its cycles.
+/// That share where the record first goes to a static load.
 const NEARLY_ALL: f64 = 0.9;
 
 /// A record that oscillates about its mean begins this close to it, as a share of the swing.

@@ -58,7 +58,7 @@ pub(super) fn figures(record: &str, backbone: &[BackbonePoint], level: f64) -> V
         && let Some(figure) = all.pop()
     {
         // The mean ends at the end of the shorter side, and falls otherwise than both.
-        let words = "left out: that of the mean backbone, which ends with the shorter side, is outside those of both sides";
+        let words = "no ductility: it would lie outside those of the two sides, because the mean backbone ends where the shorter side does";
         all.push(RecordFigure { value: None, ..figure }.with_note(words));
     }
     all

@@ -11,17 +11,17 @@ use crate::branch::{Branch, BranchSet};
 const RESTS: f64 = 1e-3;
 const RESTS_IN_NOISE: f64 = 4.0;
 
-/// Times as far, the input has left the place of its rest.
+/// The input leaves its place until it is so many times as far from it.
 const LEAVES: f64 = 4.0;
 
-/// Fewest rows of a rest, for each row in which the input leaves it. At a passing, a steady motion needs three times as many
-/// rows to leave; at a rounded turning point, as many.
+/// Fewest rows of a rest, for each row in which the input leaves it. A steady motion leaves in three times as many rows as it
+/// stays, a rounded turning point in as many.
 const FEWEST: usize = 4;
 
 /// A dwell at the other turning point lasts at least this share of the rest.
 const DWELLS: f64 = 0.3;
 
-/// A cycle whose ways there and back last unequally by this factor, between others that do not, has no frequency.
+/// Ratio of the durations of its halves from which on a cycle has no frequency, if those beside it have halves more alike.
 const UNEVEN: f64 = 1.5;
 
 /// Time for which the input rests where a cycle begins and where it ends. Of dwells at all turning points, two belong to the

@@ -324,7 +324,10 @@ impl CycleReader<'_> {
             row.notes.push("no frequency: the input rests for more than half of the cycle".into());
         }
         if rest > 0.0 {
-            row.notes.push(format!("its period leaves out a rest of {:.3} at its ends", Significant(rest)));
+            row.notes.push(format!(
+                "the period leaves out a rest of {:.3} at the beginning or the end of the cycle",
+                Significant(rest)
+            ));
         }
         let tips = self.tips();
         row.peak_input = tips.peak.map(|tip| tip.input);

@@ -159,7 +159,7 @@ impl<'t> Guess<'t> {
                     let none = || Hint::Value("time", NO_TIME.into());
                     let reason = match self.no_time {
                         true => Words::from("time, which ") + none() + " leaves out",
-                        false => "a second time".into(),
+                        false => "another time column is used".into(),
                     };
                     self.set_aside(name, reason);
                 }
