@@ -1,5 +1,6 @@
 //! Checks of training tables before the fit.
 
+use hysid::data::record::Dataset;
 use hysid::data::summary::Summary;
 use hysid::diagnosis::before_a_fit;
 use hysid::options::FitSpec;
@@ -34,8 +35,12 @@ impl Beforehand {
 
 /// Warnings on training data.
 pub fn data_warnings(data: &Data, summary: &Summary, face: Face) -> Vec<String> {
-    // Data that cannot be looked at cannot be fitted to either: the fit says why.
-    let doubtful = before_a_fit(&data.set).unwrap_or_default();
-    let statements = doubtful.iter().map(|issue| face.told(&issue.words()));
-    summarised(&summary.warnings(&data.set)).into_iter().chain(statements).collect()
+    summarised(&summary.warnings(&data.set)).into_iter().chain(value_warnings(&data.set, face)).collect()
+}
+
+/// Warnings of values that may not be measured: codes and clipped channels.
+pub fn value_warnings(data: &Dataset, face: Face) -> Vec<String> {
+    // Data that cannot be looked at cannot be used otherwise: that says why.
+    let doubtful = before_a_fit(data).unwrap_or_default();
+    doubtful.iter().map(|issue| face.told(&issue.words())).collect()
 }

@@ -68,7 +68,7 @@ use hysid_files::{PAGE_MARK, with_page_sum};
 
 pub use band_coverage::BandCoverage;
 #[cfg(feature = "tables")]
-pub use beforehand::data_warnings;
+pub use beforehand::{data_warnings, value_warnings};
 pub use course::ProgressText;
 pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, scored_rows, small_loops};
 pub use identified::{Beforehand, Identified};

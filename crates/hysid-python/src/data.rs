@@ -5,8 +5,9 @@ use std::sync::Arc;
 use hysid::data::record::{self, ColumnNames, Record};
 use hysid::data::summary::Summary;
 use hysid::data::unit::Conversion;
-use hysid::diagnosis::{Diagnosis, DiagnosisOptions, before_a_fit};
+use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
 use hysid_app::diagnosis::data_text;
+use hysid_app::value_warnings;
 use hysid_document::Face;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -74,10 +75,12 @@ impl Dataset {
     /// Warnings on these data before training.
     fn warnings(&self) -> Vec<String> {
         let summary = Summary::of(&self.set);
-        // Data that cannot be looked at cannot be fitted to either: the fit says why.
-        let doubtful = before_a_fit(&self.set).unwrap_or_default();
-        let statements = doubtful.iter().map(|issue| Face::Python.told(&issue.words()));
-        summary.warnings(&self.set).iter().map(ToString::to_string).chain(statements).collect()
+        summary.warnings(&self.set).iter().map(ToString::to_string).chain(self.value_warnings()).collect()
+    }
+
+    /// Warnings of values that may not be measured.
+    fn value_warnings(&self) -> Vec<String> {
+        value_warnings(&self.set, Face::Python)
     }
 
     /// Warns of records that were trained on too, or parts of them.

@@ -6,7 +6,7 @@ use anyhow::Result;
 use hysid::data::summary::Summary;
 use hysid::diagnosis::cycles::CycleOptions;
 use hysid::options::chosen::RateChoice;
-use hysid_app::data_warnings;
+use hysid_app::value_warnings;
 use hysid_document::Face;
 use hysid_files::{Destination, Kind};
 use hysid_records::understanding;
@@ -42,7 +42,7 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
             let summary = Summary::of(&data.set);
             let understood = understanding::of_data(&data, &summary, Face::Terminal);
             note_labelled(&understanding::in_short(&data, &summary, Face::Terminal));
-            data_warnings(&data, &summary, Face::Terminal).iter().for_each(warning);
+            value_warnings(&data.set, Face::Terminal).iter().for_each(warning);
             data.unused_inputs("cycles of", "used").iter().for_each(warning_words);
             if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
                 warning("cycles ignores --rate: it needs no rate");

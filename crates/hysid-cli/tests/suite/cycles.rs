@@ -334,6 +334,25 @@ fn the_table_goes_to_stdout_where_asked_and_files_of_others_are_kept() {
     bench.succeeds("cycles member.csv -o other.csv --field actuator");
 }
 
+/// A code in a cell would change the energy of its cycle; that a single loop shows little of the memory matters to a fit alone.
+#[test]
+fn codes_for_missing_values_are_told_and_few_turning_points_are_not() {
+    let bench = Workbench::new();
+    let text = table("disp_mm,force_kN", &[0.0, 3.0, -3.0, 3.0, -3.0, 0.0], 0.1, &mut member());
+    let place = text.lines().position(|line| line.starts_with("1.500000,")).unwrap();
+    let with_code: Vec<&str> = text
+        .lines()
+        .enumerate()
+        .map(|(line, row)| if line == place { "1.500000,-9999" } else { row })
+        .collect();
+    bench.put("code.csv", with_code.join("\n"));
+    let ran = bench.succeeds("cycles code.csv --no-report");
+    assert!(ran.stderr.contains("warning: \"force_kN\" is -9999"), "{}", ran.stderr);
+    bench.put("loop.csv", table("disp_mm,force_kN", &[3.0, -3.0, 3.0], 0.1, &mut member()));
+    let ran = bench.succeeds("cycles loop.csv --no-report");
+    assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
+}
+
 #[test]
 fn poor_data_leave_cells_empty_and_say_why() {
     let bench = Workbench::new();

@@ -278,5 +278,5 @@ def cycles_of(
     options = (division, field, smoothing_factor)
     rest = (*options, smoothing_growth, density, height)
     data = arranged.dataset()
-    warn(data.warnings())
+    warn(data.value_warnings())
     return Cycles._of(_hysid.cycles(data, smallest_reversal, smoothing, *rest))
