@@ -134,13 +134,13 @@ fn passing(survey: &BranchSet, division: Division) -> f64 {
     passing / all
 }
 
-/// True if each half cycle and the next have the middle of all.
+/// True if both turning points of each cycle lie equally far from the mean. The first branch goes to a turning point.
 fn is_about_its_mean(branches: &[Branch]) -> bool {
     let mean = mean(branches);
-    half_cycles(branches).windows(2).all(|pair| {
-        let middle = 0.25 * (pair[0].from + 2.0 * pair[0].to + pair[1].to);
-        (middle - mean).abs() <= NEAR_THE_MEAN * pair[0].travel().max(pair[1].travel())
-    })
+    half_cycles(branches)
+        .iter()
+        .step_by(2)
+        .all(|branch| (0.5 * (branch.from + branch.to) - mean).abs() <= NEAR_THE_MEAN * branch.travel())
 }
 
 /// True if all records begin near the level of a division.

@@ -24,55 +24,73 @@ const DWELLS: f64 = 0.3;
 /// Ratio of the durations of its halves from which on a cycle has no frequency, if those beside it have halves more alike.
 const UNEVEN: f64 = 1.5;
 
-/// Time for which the input rests where a cycle begins and where it ends. Of dwells at all turning points, two belong to the
-/// cycle.
-pub(super) fn resting_time(
+/// Rests of the input in a cycle.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Rests {
+    /// Time at the beginning of the cycle that does not belong to it.
+    pub beginning: f64,
+    /// Time at its end. Of dwells at all turning points, two belong to the cycle.
+    pub end: f64,
+    /// True if one rest between them is longer than the rest of the cycle.
+    pub is_mostly_one: bool,
+}
+
+impl Rests {
+    /// Time that does not belong to the cycle.
+    pub fn at_ends(self) -> f64 {
+        self.beginning + self.end
+    }
+}
+
+/// The rests of a cycle; none without time.
+pub(super) fn rests(
     survey: &BranchSet,
     record: &Record,
     branches: &[Branch],
     span: &Span,
     division: Division,
-) -> f64 {
-    let Some(time) = record.time() else { return 0.0 };
+) -> Rests {
+    let Some(time) = record.time() else { return Rests::default() };
     let x = &record.inputs()[0];
     let (first, last) = (span.from.ceil() as usize, span.to.floor() as usize);
     let noise = survey.input_noise.deviation();
-    let tolerance = (RESTS * width(&x[first..=last])).max(RESTS_IN_NOISE * noise);
-    let lasts = |rows: &mut dyn Iterator<Item = usize>, end: f64| {
+    let small = RESTS * width(&x[first..=last]);
+    let tolerance = small.max(RESTS_IN_NOISE * noise);
+    // The last row of a rest at `end`, in the direction of the rows, and its time.
+    let rest = |rows: &mut dyn Iterator<Item = usize>, end: f64| {
         let is_near = |row: usize, times: f64| (x[row] - at(x, end)).abs() <= times * tolerance;
         let mut rows = rows.peekable();
-        let (mut resting, mut leaving, mut until) = (0, 1, end);
+        let (mut resting, mut leaving, mut until) = (0, 1, None);
         while let Some(row) = rows.next_if(|row| is_near(*row, 1.0)) {
-            (resting, until) = (resting + 1, row as f64);
+            (resting, until) = (resting + 1, Some(row));
         }
         while rows.next_if(|row| is_near(*row, LEAVES)).is_some() {
             leaving += 1;
         }
-        if resting >= FEWEST * leaving { (at(time, until) - at(time, end)).abs() } else { 0.0 }
+        until.filter(|_| resting >= FEWEST * leaving).map(|row| (row, (time[row] - at(time, end)).abs()))
     };
-    let ends = [lasts(&mut (first..=last), span.from), lasts(&mut (first..=last).rev(), span.to)];
-    let rest = ends[0] + ends[1];
+    let ends = [rest(&mut (first..=last), span.from), rest(&mut (first..=last).rev(), span.to)];
+    let lasts = |rest: Option<(usize, f64)>| rest.map_or(0.0, |rest| rest.1);
+    let (mut beginning, mut end) = (lasts(ends[0]), lasts(ends[1]));
     let turn = branches[span.branches.start].rows.end - 1;
-    let is_dwell = division == Division::Reversals && {
+    if division == Division::Reversals {
         let at_turn = turn as f64;
-        lasts(&mut (turn..=last), at_turn) + lasts(&mut (first..=turn).rev(), at_turn) > DWELLS * rest
-    };
-    if is_dwell { ends[0].min(ends[1]) } else { rest }
-}
-
-/// True if the input rests at one place for more than half of a cycle of this period.
-pub(super) fn rests_within(record: &Record, span: &Span, period: f64) -> bool {
-    let Some(time) = record.time() else { return false };
-    let x = &record.inputs()[0];
-    let (first, last) = (span.from.ceil() as usize, span.to.floor() as usize);
-    let tolerance = RESTS * width(&x[first..=last]);
-    let mut begin = first;
-    (first..=last).any(|row| {
-        if (x[row] - x[begin]).abs() > tolerance {
+        let around = [rest(&mut (turn..=last), at_turn), rest(&mut (first..=turn).rev(), at_turn)];
+        if lasts(around[0]) + lasts(around[1]) > DWELLS * (beginning + end) {
+            (beginning, end) = (0.0, beginning.min(end));
+        }
+    }
+    let row = |end: Option<(usize, f64)>, otherwise| end.map_or(otherwise, |end| end.0);
+    let within = row(ends[0], first)..=row(ends[1], last);
+    let half = 0.5 * (at(time, span.to) - at(time, span.from) - beginning - end);
+    let mut begin = *within.start();
+    let is_mostly_one = within.into_iter().any(|row| {
+        if (x[row] - x[begin]).abs() > small {
             begin = row;
         }
-        time[row] - time[begin] > 0.5 * period
-    })
+        time[row] - time[begin] > half
+    });
+    Rests { beginning, end, is_mostly_one }
 }
 
 /// A cycle whose halves are of two frequencies has none. `unevenness` is how many times as long the second half of each
@@ -98,8 +116,8 @@ mod tests {
 
     use crate::cycles::{CycleOptions, CycleTable, Division};
 
-    /// Periods of three sines of 2 s, after each of which the input rests, or dwells at both turning points.
-    fn periods(division: Division, (rest, dwell): (f64, f64), noise: f64) -> Vec<f64> {
+    /// Periods and frequencies of three sines of 2 s, after each of which the input rests, or dwells at both turning points.
+    fn periods(division: Division, (rest, dwell): (f64, f64), noise: f64) -> Vec<(f64, Option<f64>)> {
         let (step, quarter) = (0.01, if division == Division::Zero { 0.0 } else { 0.25 });
         let (mut time, mut x) = (Vec::new(), Vec::new());
         let mut push = |value: f64| {
@@ -123,7 +141,7 @@ mod tests {
         let record = Record::new("test", vec![x], y).unwrap().with_time(time).unwrap();
         let options = CycleOptions { division: Some(division), ..CycleOptions::default() };
         let table = CycleTable::of(&Dataset::new(names, vec![record]).unwrap(), &options).unwrap();
-        table.complete().filter_map(|row| row.period).collect()
+        table.complete().map(|row| (row.period.unwrap(), row.frequency)).collect()
     }
 
     #[test]
@@ -132,8 +150,9 @@ mod tests {
             for division in [Division::Zero, Division::Reversals] {
                 let found = periods(division, (5.0, 0.0), noise);
                 assert!(found.len() >= 2, "{division}: {found:?}");
-                found.iter().for_each(|period| {
+                found.iter().for_each(|(period, frequency)| {
                     assert!((period - 2.0).abs() < 0.05, "{division} {noise}: {found:?}");
+                    assert_eq!(*frequency, Some(period.recip()), "{division} {noise}");
                 });
             }
         }
@@ -156,10 +175,12 @@ mod tests {
     #[test]
     fn a_dwell_at_each_turning_point_is_part_of_it() {
         // The record begins without a dwell.
-        for (period, expected) in periods(Division::Reversals, (0.0, 1.0), 0.0).iter().zip([3.0, 4.0, 4.0]) {
+        for ((period, _), expected) in
+            periods(Division::Reversals, (0.0, 1.0), 0.0).iter().zip([3.0, 4.0, 4.0])
+        {
             assert!((period - expected).abs() < 0.02, "{period}");
         }
-        for period in periods(Division::Zero, (0.0, 0.0), 0.0) {
+        for (period, _) in periods(Division::Zero, (0.0, 0.0), 0.0) {
             assert!((period - 2.0).abs() < 0.01, "{period}");
         }
     }

@@ -22,7 +22,7 @@ use super::loss_separation::LossLaws;
 use super::losses::{LossAtFrequency, losses};
 use super::notes::notes;
 use super::path::{Closure, CyclePath, area, at, range, weights, width};
-use super::period::{leave_out_mixed_frequencies, resting_time, rests_within};
+use super::period::{Rests, leave_out_mixed_frequencies, rests};
 use super::quantities::Quantities;
 use super::reading::{SURE, Widest, damping, end_without_noise, output_at_end, secant, widest};
 use super::record_figure::RecordFigure;
@@ -242,7 +242,11 @@ fn rows_of(
     for (place, span) in spans.iter().enumerate() {
         let reader =
             CycleReader { survey, record: &survey.data.records()[record], branches, span, field, division };
-        let mut row = reader.row(place + 1);
+        let rests = match span.part {
+            SpanPart::Cycle => rests(survey, reader.record, branches, span, division),
+            _ => Rests::default(),
+        };
+        let mut row = reader.row(place + 1, rests);
         mark_backbone(&mut row, backbone);
         if row.complete {
             cumulative = cumulative.zip(row.energy).map(|(sum, energy)| sum + energy);
@@ -255,7 +259,7 @@ fn rows_of(
         if let Some(hold) = longest {
             set_creep(&mut row, hold, survey.height());
         }
-        unevenness.push(reader.unevenness().filter(|_| row.complete).unwrap_or(1.0));
+        unevenness.push(reader.unevenness(rests).filter(|_| row.complete).unwrap_or(1.0));
         rows.push(row);
     }
     leave_out_mixed_frequencies(&mut rows, &unevenness);
@@ -291,7 +295,7 @@ struct CycleReader<'r> {
 }
 
 impl CycleReader<'_> {
-    fn row(&self, cycle: usize) -> CycleRow {
+    fn row(&self, cycle: usize, rests: Rests) -> CycleRow {
         let Span { from, to, part, ref branches } = *self.span;
         let (first, last) = (branches.start, branches.end - 1);
         let turns = (self.branches[first].rows.end - 1, self.branches[last].rows.start);
@@ -301,17 +305,15 @@ impl CycleReader<'_> {
         let measured = (!outputs.is_empty()).then(|| range(&outputs));
         let complete = part == SpanPart::Cycle;
         let time = self.record.time().map(|time| (at(time, from), at(time, to)));
-        let rest = match complete {
-            true => resting_time(self.survey, self.record, self.branches, self.span, self.division),
-            false => 0.0,
-        };
         let mut row = CycleRow {
             record: self.record.name().into(),
             cycle,
             rows: (from.ceil() as usize, to.floor() as usize),
             complete,
             start_time: time.map(|(start, _)| start),
-            period: time.filter(|_| complete).map(|(start, end)| end - start + self.missing_time() - rest),
+            period: time
+                .filter(|_| complete)
+                .map(|(start, end)| end - start + self.missing_time() - rests.at_ends()),
             input_min: Some(low),
             input_max: Some(high),
             output_min: measured.map(|range| range.0),
@@ -319,14 +321,14 @@ impl CycleReader<'_> {
             ..CycleRow::default()
         };
         row.frequency = row.period.map(f64::recip).filter(|frequency| frequency.is_finite());
-        if row.period.is_some_and(|period| rests_within(self.record, self.span, period)) {
+        if rests.is_mostly_one {
             row.frequency = None;
             row.notes.push("no frequency: the input rests for more than half of the cycle".into());
         }
-        if rest > 0.0 {
+        if rests.at_ends() > 0.0 {
             row.notes.push(format!(
                 "the period leaves out a rest of {:.3} at the beginning or the end of the cycle",
-                Significant(rest)
+                Significant(rests.at_ends())
             ));
         }
         let tips = self.tips();
@@ -344,11 +346,11 @@ impl CycleReader<'_> {
     }
 
     /// How many times as long the way back lasts as the way there, of a cycle from turning point to turning point.
-    fn unevenness(&self) -> Option<f64> {
+    fn unevenness(&self, rests: Rests) -> Option<f64> {
         let Span { from, to, ref branches, .. } = *self.span;
         let time = self.record.time().filter(|_| branches.len() == 2)?;
         let turn = at(time, (self.branches[branches.start].rows.end - 1) as f64);
-        Some((at(time, to) - turn) / (turn - at(time, from)))
+        Some((at(time, to) - rests.end - turn) / (turn - at(time, from) - rests.beginning))
     }
 
     /// The time that a cycle lacks because its record ends a step before the level is passed: at the speed with which it was

@@ -351,6 +351,11 @@ fn cycles_about_a_static_load_are_found() {
             assert_relative_eq!(row.energy.unwrap(), 4.0 * (amplitude - 1.0), epsilon = 1e-9);
         }
     }
+    // The second cycle is three times as large, and passes zero.
+    let jump = table_of(&stop(&[0.0, 3.5, 0.5, 3.5, 0.5, 6.5, -2.5, 6.5, -2.5, 2.0]), Field::Structure);
+    let amplitudes: Vec<f64> = jump.complete().filter_map(|row| row.amplitude).collect();
+    assert_eq!(jump.division, Division::Mean);
+    approx::assert_abs_diff_eq!(amplitudes[..], [1.5, 1.5, 4.5, 4.5], epsilon = 1e-9);
     // One-sided tests that begin at their end keep their cycles.
     let one_sided = table_of(&stop(&[0.0, 4.0, 0.0, 4.0, 0.0, 4.0, 0.0]), Field::Structure);
     assert_eq!((one_sided.division, one_sided.complete().count()), (Division::Reversals, 3));
