@@ -4,7 +4,7 @@ mod curves;
 pub mod over_amplitude;
 mod page;
 pub mod pictures;
-pub mod table;
+pub(crate) mod table;
 #[cfg(feature = "tables")]
 mod tables;
 mod text;

@@ -370,8 +370,7 @@ fn model(name: &str) -> Result<ModelName, String> {
 }
 
 fn effort(name: &str) -> Result<Effort, String> {
-    let found = Effort::ALL.into_iter().find(|effort| effort.name() == name);
-    found.ok_or_else(|| "choose quick, normal or thorough".into())
+    name.parse().map_err(|_: hysid::Error| "choose quick, normal or thorough".into())
 }
 
 fn number_within(text: &str, range: &RangeInclusive<usize>) -> Result<usize, String> {

@@ -91,7 +91,7 @@ pub(crate) fn verdict(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
         .filter(|trend| decides(trend) && may_go_on(trend))
         .max_by(|a, b| a.loss.total_cmp(&b.loss))
     {
-        let [lost, loops] = [100.0 * trend.loss, trend.cycles.len() as f64];
+        let (lost, loops) = (100.0 * trend.loss, trend.cycles.len());
         (
             Verdict::NotTestable,
             format!(

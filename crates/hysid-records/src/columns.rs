@@ -1,7 +1,7 @@
 //! Which column is what: found from the names, from options, or from a model.
 
 mod guess;
-pub mod kind;
+pub(crate) mod kind;
 mod other_table;
 pub mod values;
 

@@ -145,15 +145,20 @@ fn largest(parts: &[TablePart<'_>]) -> Vec<bool> {
     parts.iter().map(|part| part.layout.names == *best).collect()
 }
 
+/// Adds the column of the names of the parts, as the first.
+fn begin_with_records(layout: &mut Layout) {
+    layout.names.insert(0, RECORD.into());
+    layout.cell_units.insert(0, None);
+    layout.stamps.insert(0, false);
+    layout.clock = layout.clock.map(|(clock, date)| (clock + 1, date.map(|date| date + 1)));
+}
+
 /// Parts with equal columns one below the other, with a column of their names if there are several.
 fn joined(parts: &[TablePart<'_>]) -> GatheredTables {
     let mut layout = parts[0].layout.clone();
     let known = layout.names.iter().position(|name| is_record(name));
     if parts.len() > 1 && known.is_none() {
-        layout.names.insert(0, RECORD.into());
-        layout.cell_units.insert(0, None);
-        layout.stamps.insert(0, false);
-        layout.clock = layout.clock.map(|(clock, date)| (clock + 1, date.map(|date| date + 1)));
+        begin_with_records(&mut layout);
     }
     let (mut text, mut lines) = (String::new(), Vec::new());
     for part in parts {
@@ -192,9 +197,7 @@ fn joined(parts: &[TablePart<'_>]) -> GatheredTables {
 fn loops_of_branches(parts: &[TablePart<'_>]) -> Option<GatheredTables> {
     let loops: Vec<GatheredTables> = parts.iter().map(TablePart::loop_of_branches).collect::<Option<_>>()?;
     let mut layout = loops[0].layout.clone();
-    layout.names.insert(0, RECORD.into());
-    layout.cell_units.insert(0, None);
-    layout.stamps.insert(0, false);
+    begin_with_records(&mut layout);
     let mut text = String::new();
     for (part, rows) in parts.iter().zip(&loops) {
         for row in rows.text.lines() {

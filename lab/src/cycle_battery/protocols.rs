@@ -289,9 +289,12 @@ impl Trial {
                 state.to(wave(row as f64 / 2000.0));
             });
         }
-        let (load, way) = (protocol.load, (protocol.load * rows as f64 / 4.0).ceil());
-        let mut x: Vec<f64> =
-            (0..=way as usize).filter(|_| load > 0.0).map(|row| load * row as f64 / way).collect();
+        let load = protocol.load;
+        let way = (load * rows as f64 / 4.0).ceil() as usize;
+        let mut x: Vec<f64> = Vec::new();
+        if load > 0.0 {
+            x.extend((0..=way).map(|row| load * row as f64 / way as f64));
+        }
         let mut bounds = vec![x.len().saturating_sub(1)];
         for &amplitude in &amplitudes {
             let count = match protocol.wave {

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::named;
+
 /// How long the candidates of `auto` are searched.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -15,19 +17,9 @@ pub enum Effort {
     Thorough,
 }
 
+named!(Effort, "effort": Quick = "quick", Normal = "normal", Thorough = "thorough");
+
 impl Effort {
-    /// All of them, the least first.
-    pub const ALL: [Self; 3] = [Self::Quick, Self::Normal, Self::Thorough];
-
-    /// Name of the effort as an option value.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Quick => "quick",
-            Self::Normal => "normal",
-            Self::Thorough => "thorough",
-        }
-    }
-
     /// Candidates of each kind at most, apart from laws that are searched.
     pub fn candidates_of_a_kind(self) -> usize {
         match self {

@@ -66,9 +66,15 @@ struct DifferenceVariance {
     order: usize,
     distance: usize,
     variance: f64,
-    /// That of the half whose ends differ least: the course of the values is in few of these differences, where it
-    /// changes over a part of a run. Measured at the distances that tell whether noise is white.
-    calm: f64,
+}
+
+/// Which differences count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Rows {
+    All,
+    /// The half whose ends differ least, at near distances: the course of the values is in few of these, where it changes
+    /// over a part of a run.
+    Calm,
 }
 
 /// Fewest values that show anything about their noise.
@@ -80,7 +86,7 @@ pub(crate) fn roughness<'a>(columns: impl Iterator<Item = &'a [f64]>) -> f64 {
         columns.map(|values| DistinctRows::new(ChannelRun { values, beside: &[] })).collect();
     let rows: usize = columns.iter().map(|column| column.values.len()).sum();
     let runs = columns.iter().map(DistinctRows::run);
-    if rows < FEWEST { 0.0 } else { least(&differences(runs, rows, 0), 1, |d| d.variance).sqrt() }
+    if rows < FEWEST { 0.0 } else { least(&differences(runs, rows, 0, Rows::All), 1).sqrt() }
 }
 
 /// The rows of a run without those that repeat the one before: a logger that is faster than its sensor makes them, and they
@@ -112,13 +118,9 @@ impl<'a> DistinctRows<'a> {
 }
 
 /// The least variance of all orders at a distance: the course of the values adds to each. 0 where none was measured.
-fn least(
-    differences: &[DifferenceVariance],
-    distance: usize,
-    variance: impl Fn(&DifferenceVariance) -> f64,
-) -> f64 {
+fn least(differences: &[DifferenceVariance], distance: usize) -> f64 {
     let alike = differences.iter().filter(|difference| difference.distance == distance);
-    let least = alike.map(variance).fold(f64::INFINITY, f64::min);
+    let least = alike.map(|difference| difference.variance).fold(f64::INFINITY, f64::min);
     if least.is_finite() { least } else { 0.0 }
 }
 
@@ -131,24 +133,24 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = ChannelRun<'a>>) -> Noise {
         return Noise::default();
     }
     let length = typical_length(runs.clone(), rows);
-    let differences = differences(runs, rows, length);
-    let roughness = least(&differences, 1, |d| d.variance).sqrt();
+    let differences_of = |which| differences(runs.clone(), rows, length, which);
+    let differences = differences_of(Rows::All);
+    let roughness = least(&differences, 1).sqrt();
     if roughness == 0.0 {
         return Noise::default();
     }
     // The least of each distance does not grow where noise is white; a course of the values adds to all of them.
     let sampling = SAMPLING / (rows as f64).sqrt();
     let is_told = |distance: usize| differences.iter().any(|d| d.distance == distance && d.order >= TELLING);
-    let exceeds = |distance: usize, variance: fn(&DifferenceVariance) -> f64| {
-        least(&differences, distance, variance) > (1.0 + sampling) * least(&differences, 1, variance)
+    let grow = |differences: &[DifferenceVariance], told: &[usize]| {
+        told.iter().all(|&distance| least(differences, distance) > (1.0 + sampling) * least(differences, 1))
     };
-    let grows = |&distance: &usize| exceeds(distance, |d| d.variance) && exceeds(distance, |d| d.calm);
     let told: Vec<usize> = NEAR.into_iter().filter(|distance| is_told(*distance)).collect();
     if told.is_empty() {
         // At one distance alone, a course of the values cannot be told from noise.
         return Noise::white(roughness);
     }
-    let is_white = !told.iter().all(grows);
+    let is_white = !grow(&differences, &told) || !grow(&differences_of(Rows::Calm), &told);
     let correlations = if is_white { vec![Correlation::White] } else { correlations(length) };
     let shares = shares(&differences, &correlations);
     let total: f64 = shares.iter().sum();
@@ -210,18 +212,22 @@ fn differences<'a>(
     runs: impl Iterator<Item = ChannelRun<'a>> + Clone,
     rows: usize,
     length: usize,
+    which: Rows,
 ) -> Vec<DifferenceVariance> {
     let stride = rows.div_ceil(MOST);
     let longest = SPAN * length as f64;
+    let counts = |distance: usize| which == Rows::All || distance <= NEAR[1];
     let pairs = ORDERS.iter().flat_map(|&order| DISTANCES.map(|distance| (order, distance)));
-    let measured = pairs.filter(|(order, distance)| *distance == 1 || (order * distance) as f64 <= longest);
+    let measured = pairs.filter(|&(order, distance)| {
+        counts(distance) && (distance == 1 || (order * distance) as f64 <= longest)
+    });
     let variance = |(order, distance): (usize, usize)| {
         let coefficients = coefficients(order);
         let span = order * distance;
         let of = |values: &[f64], row: usize| -> f64 {
             coefficients.iter().enumerate().map(|(k, c)| c * values[row + k * distance]).sum()
         };
-        let tells = distance <= NEAR[1];
+        // Size of each difference, and how far its ends differ.
         let (mut sizes, mut sizes_apart) = (Vec::with_capacity(rows / stride), Vec::new());
         for ChannelRun { values, beside } in runs.clone() {
             for row in (0..values.len().saturating_sub(span)).step_by(stride) {
@@ -235,28 +241,26 @@ fn differences<'a>(
                 }
             }
         }
-        let deviation = |sizes: &[(f64, f64)]| {
-            let mut sizes: Vec<f64> = sizes.iter().map(|size| size.0).collect();
-            if sizes.is_empty() { f64::INFINITY } else { median(&mut sizes) / MEDIAN_OF_NORMAL }
-        };
-        let all = deviation(&sizes).min(deviation(&sizes_apart));
-        let calm = |sizes: &mut [(f64, f64)]| {
-            let half = sizes.len() / 2;
-            if half == 0 {
-                return f64::INFINITY;
-            }
-            sizes.select_nth_unstable_by(half, |a, b| a.1.total_cmp(&b.1));
-            deviation(&sizes[..half])
-        };
-        let calm = if tells { calm(&mut sizes).min(calm(&mut sizes_apart)) } else { all };
-        all.is_finite().then_some(DifferenceVariance {
+        let deviation = typical(&mut sizes, which).min(typical(&mut sizes_apart, which)) / MEDIAN_OF_NORMAL;
+        deviation.is_finite().then_some(DifferenceVariance {
             order,
             distance,
-            variance: all * all,
-            calm: calm * calm,
+            variance: deviation * deviation,
         })
     };
     measured.filter_map(variance).collect()
+}
+
+/// The median size of differences, of which the change between their ends is known too; infinite for none.
+fn typical(sizes: &mut [(f64, f64)], which: Rows) -> f64 {
+    let count = if which == Rows::Calm { sizes.len() / 2 } else { sizes.len() };
+    if count == 0 {
+        return f64::INFINITY;
+    }
+    if which == Rows::Calm {
+        sizes.select_nth_unstable_by(count, |a, b| a.1.total_cmp(&b.1));
+    }
+    median(&mut sizes[..count].iter().map(|size| size.0).collect::<Vec<f64>>())
 }
 
 /// Variances of noise of each correlation that add up to the differences, together with a course of the values that
